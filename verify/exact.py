@@ -1,0 +1,136 @@
+"""User numbers as exact rationals, and back to decimals whose every digit is known.
+
+`0.001` written by a user is 1/1000. A Python float is taken by its exact binary value, with a
+warning where that is not the short decimal it prints as.
+"""
+
+import re
+import warnings
+from decimal import Decimal
+from fractions import Fraction
+
+from verify.errors import InputError
+
+Exact = int | str | float | Decimal | Fraction
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
+_MAX_EXPONENT = 1000
+_MAX_LENGTH = 1000
+
+
+def rational(value: Exact, name: str = "number") -> Fraction:
+    """The exact value of a user's number.
+
+    Strings may be decimals (`0.001`, `1e-3`) or quotients (`7/3`). Raises InputError for NaN,
+    infinities, booleans, other types, and exponents beyond ±1000.
+    """
+    if isinstance(value, bool) or not isinstance(value, Exact):
+        raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
+    if isinstance(value, str):
+        return _from_text(value, name)
+    if isinstance(value, Decimal):
+        return _from_text(str(value), name)
+    if isinstance(value, float):
+        return _from_float(value, name)
+    return Fraction(value)
+
+
+def positive(value: Exact, name: str) -> Fraction:
+    """The exact value, refused unless it is greater than zero."""
+    number = rational(value, name)
+    if number <= 0:
+        raise InputError(name, value, "must be greater than 0")
+    return number
+
+
+def _from_text(text: str, name: str) -> Fraction:
+    stripped = text.strip()
+    match = _NUMBER.fullmatch(stripped) if len(stripped) <= _MAX_LENGTH else None
+    # `\d` matches the digits of every script; a number here is written in ASCII.
+    if match is None or not stripped.isascii():
+        raise InputError(name, text, "not a finite number; allowed: 0.001, 1e-3, 7/3")
+    if match[2] and abs(int(match[2][1:])) > _MAX_EXPONENT:
+        raise InputError(name, text, f"exponent beyond ±{_MAX_EXPONENT}")
+    mantissa, _, divisor = stripped.partition("/")
+    if divisor and int(divisor) == 0:
+        raise InputError(name, text, "division by zero")
+    return Fraction(mantissa) / int(divisor or 1)
+
+
+def _from_float(value: float, name: str) -> Fraction:
+    if value != value or value in (float("inf"), float("-inf")):
+        raise InputError(name, value, "not a finite number")
+    exact = Fraction(value)
+    if exact != Fraction(repr(value)):
+        warnings.warn(
+            f"{name}={value!r} is a binary float, taken by its exact value, which is not "
+            f"{value!r}; write it as a string, '{value!r}', to mean the decimal",
+            stacklevel=3,
+        )
+    return exact
+
+
+def text(value: Fraction) -> str:
+    """A short exact text of a rational: a decimal where it ends, else a quotient."""
+    denominator = value.denominator
+    twos = fives = 0
+    while denominator % 2 == 0:
+        denominator, twos = denominator // 2, twos + 1
+    while denominator % 5 == 0:
+        denominator, fives = denominator // 5, fives + 1
+    places = max(twos, fives)
+    if denominator != 1 or places > 20 or abs(value) >= 10**20:
+        return str(value)
+    digits = f"{abs(value.numerator) * 10**places // value.denominator:0{places + 1}d}"
+    sign = "-" if value < 0 else ""
+    return sign + (f"{digits[:-places]}.{digits[-places:]}" if places else digits)
+
+
+def decimal(value: Fraction, digits: int) -> str:
+    """`value` rounded half-even to `digits` significant digits, in scientific notation."""
+    if value == 0:
+        return "0"
+    exponent = magnitude(value)
+    scaled = abs(value) / Fraction(10) ** (exponent - digits + 1)
+    mantissa = str(round(scaled))
+    if len(mantissa) > digits:  # 9.99… rounded up to 10
+        mantissa, exponent = mantissa[:digits], exponent + 1
+    sign = "-" if value < 0 else ""
+    point = f".{mantissa[1:]}" if digits > 1 else ""
+    return f"{sign}{mantissa[0]}{point}e{exponent:+03d}"
+
+
+def magnitude(value: Fraction) -> int:
+    """The decimal exponent e of value ≠ 0: 10^e ≤ |value| < 10^(e+1)."""
+    size = abs(value)
+    # Bit lengths place the exponent within one; the comparison settles it.
+    bits = size.numerator.bit_length() - size.denominator.bit_length()
+    exponent = bits * 30103 // 100000 - 1
+    while Fraction(10) ** (exponent + 1) <= size:
+        exponent += 1
+    return exponent
+
+
+def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]:
+    """`value` with the digits that `bound` allows, at most `most`, and the bound of what is printed.
+
+    The last digit printed has a unit of at least twice `bound`, so that it is known to one unit.
+    The returned bound includes the rounding of the text. Where no digit is known the text is "0".
+    """
+    if value == 0 and bound == 0:
+        return "0", "0"
+    digits = most
+    if value == 0 or (bound > 0 and 2 * bound > abs(value)):
+        return "0", upper(abs(value) + bound)
+    if bound > 0:
+        digits = max(1, min(most, magnitude(value) - magnitude(2 * bound)))
+    printed = decimal(value, digits)
+    return printed, upper(bound + abs(value - Fraction(printed)))
+
+
+def upper(bound: Fraction) -> str:
+    """A bound rounded up to three significant digits."""
+    if bound == 0:
+        return "0"
+    unit = Fraction(10) ** (magnitude(bound) - 2)
+    return decimal(-(-bound // unit) * unit, 3)

@@ -1,0 +1,280 @@
+"""From expressions to elements of one ring: which generators they need, and how to write them.
+
+`embed(expressions, variables)` builds the ring for all of them at once, since the arguments of all
+sines (and of all exponentials) decide together over which basis they are expanded.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import flint
+import sympy
+
+from verify.errors import InputError
+from verify.ring import Poly, Ring
+
+MAX_TERMS = 20000
+_MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
+
+_TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
+_EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
+_OTHER = (sympy.log, sympy.atan)
+_HYPERBOLIC = (sympy.sinh, sympy.cosh, sympy.tanh)
+
+
+def embed(expressions: Sequence[sympy.Expr], variables: Sequence[str]) -> tuple[Ring, list[Poly]]:
+    """The ring of the expressions over the variables, and each expression as its element.
+
+    Raises InputError where an expression divides by zero, or grows beyond `MAX_TERMS` terms.
+    """
+    levels = _levels(expressions)
+    room = 6 * sum(len(level) for level in levels) + 2 * len(list(variables))
+    room += 2 * sum(len(e.atoms(sympy.Pow)) for e in expressions)
+    builder = _Builder(Ring(variables, room))
+    for level in levels:
+        builder.functions(level)
+    return builder.ring, [builder.element(e) for e in expressions]
+
+
+def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
+    """The function applications in the expressions by depth of nesting, innermost first."""
+    depth: dict[sympy.Expr, int] = {}
+
+    def visit(node: sympy.Expr) -> int:
+        inner = max((visit(a) for a in node.args), default=0)
+        if isinstance(node, (*_TRIGONOMETRIC, *_EXPONENTIAL, *_OTHER)):
+            inner += 1
+            depth[node] = inner
+        return inner
+
+    for expression in expressions:
+        visit(expression)
+    top = max(depth.values(), default=0)
+    return [
+        sorted((e for e, d in depth.items() if d == level), key=sympy.default_sort_key)
+        for level in range(1, top + 1)
+    ]
+
+
+class _Builder:
+    """Holds the ring while its generators are made, and what each expression became."""
+
+    def __init__(self, ring: Ring) -> None:
+        self.ring = ring
+        self.known: dict[sympy.Expr, Poly] = {}
+        self.roots: list[tuple[Poly, int, Poly]] = []
+
+    # -- functions ----------------------------------------------------------------------------
+
+    def functions(self, level: Sequence[sympy.Expr]) -> None:
+        """Generators for one level of functions, whose arguments are elements by now."""
+        self.family([f for f in level if isinstance(f, _TRIGONOMETRIC)], self.circle)
+        self.family([f for f in level if isinstance(f, _EXPONENTIAL)], self.exponential)
+        for function in level:
+            if isinstance(function, _OTHER):
+                self.other(function)
+
+    def family(
+        self,
+        functions: Sequence[sympy.Expr],
+        make: Callable[[Poly, list[sympy.Expr]], Callable[[int], tuple[Poly, Poly]]],
+    ) -> None:
+        """Functions f(Σ kᵢ bᵢ) by their values at the basis bᵢ and the addition theorems."""
+        if not functions:
+            return
+        ring = self.ring
+        arguments = [self.element(f.args[0] if f.args else sympy.S.One) for f in functions]
+        basis, multiples = _lattice(ring, arguments)
+        values = [
+            make(b, [f for f, row in zip(functions, multiples, strict=True) if row[k]])
+            for k, b in enumerate(basis)
+        ]
+        for function, row in zip(functions, multiples, strict=True):
+            trigonometric = isinstance(function, _TRIGONOMETRIC)
+            even, odd = ring.one, ring.zero
+            for k, value in zip(row, values, strict=True):
+                c, s = value(k)
+                sign = -1 if trigonometric else 1
+                even, odd = (
+                    ring.reduce(even * c + sign * odd * s),
+                    ring.reduce(odd * c + even * s),
+                )
+            self.known[function] = self.select(function, even, odd)
+
+    def select(self, function: sympy.Expr, even: Poly, odd: Poly) -> Poly:
+        if isinstance(function, sympy.cos | sympy.cosh):
+            return even
+        if isinstance(function, sympy.sin | sympy.sinh):
+            return odd
+        if isinstance(function, sympy.exp | type(sympy.E)):
+            return self.ring.reduce(even + odd)
+        return self.ring.multiply(odd, self.inverse(even, function))
+
+    def circle(self, b: Poly, _: list[sympy.Expr]) -> Callable[[int], tuple[Poly, Poly]]:
+        """cos b and sin b; returns k ↦ (cos kb, sin kb)."""
+        ring, expression = self.ring, self.ring.expression(b)
+        c = ring.add("cos", sympy.cos(expression), b)
+        s = ring.add("sin", sympy.sin(expression), b)
+        ring.relate(s, 2, s**2 + c**2 - 1)
+        ring.set_gradient(c, -s, b)
+        ring.set_gradient(s, c, b)
+        return lambda k: self.multiple(c, s, k, -1)
+
+    def exponential(
+        self, b: Poly, functions: list[sympy.Expr]
+    ) -> Callable[[int], tuple[Poly, Poly]]:
+        """cosh b and sinh b where they are asked for, else exp b and where needed its inverse.
+
+        Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
+        """
+        ring, expression = self.ring, self.ring.expression(b)
+        if any(isinstance(f, _HYPERBOLIC) for f in functions):
+            c = ring.add("cosh", sympy.cosh(expression), b)
+            s = ring.add("sinh", sympy.sinh(expression), b)
+            ring.relate(s, 2, s**2 - c**2 + 1)
+            ring.set_gradient(c, s, b)
+            ring.set_gradient(s, c, b)
+            return lambda k: self.multiple(c, s, k, 1)
+        e = ring.add("exp", sympy.exp(expression), b)
+        ring.set_gradient(e, e, b)
+        return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
+
+    def multiple(self, c: Poly, s: Poly, k: int, sign: int) -> tuple[Poly, Poly]:
+        """(c, s) at k times the argument by the addition theorem; `sign` is that of s² in it."""
+        ring = self.ring
+        even, odd = ring.one, ring.zero
+        for _ in range(abs(k)):
+            even, odd = ring.reduce(even * c + sign * odd * s), ring.reduce(odd * c + even * s)
+        return even, odd if k >= 0 else -odd
+
+    def other(self, function: sympy.Expr) -> None:
+        ring, u = self.ring, self.element(function.args[0])
+        kind = "log" if isinstance(function, sympy.log) else "atan"
+        outer = self.inverse(u if kind == "log" else ring.reduce(u * u + 1), function)
+        generator = ring.add(kind, function, u)
+        ring.set_gradient(generator, outer, u)
+        self.known[function] = generator
+
+    # -- everything else ----------------------------------------------------------------------
+
+    def element(self, node: sympy.Expr) -> Poly:
+        """The element of the expression; InputError where it is not defined or too large."""
+        if node in self.known:
+            return self.known[node]
+        result = self.build(node)
+        if len(result) > MAX_TERMS:
+            raise InputError("formula", str(node), f"expands to more than {MAX_TERMS} terms")
+        self.known[node] = result
+        return result
+
+    def build(self, node: sympy.Expr) -> Poly:
+        ring = self.ring
+        if node.is_Rational:
+            return ring.context.constant(flint.fmpq(int(node.p), int(node.q)))
+        if node.is_Symbol:
+            return ring.variable(node.name)
+        if node is sympy.pi:
+            return ring.add("pi", sympy.pi)
+        if node.is_Add:
+            total = ring.zero
+            for argument in node.args:
+                total += self.element(argument)
+            return total
+        if node.is_Mul:
+            total = ring.one
+            for argument in node.args:
+                total = self.limited(total, self.element(argument), node)
+            return total
+        if node.is_Pow and node.exp.is_Rational:
+            return self.power(node)
+        raise InputError("formula", str(node), f"{type(node).__name__} cannot be handled exactly")
+
+    def power(self, node: sympy.Expr) -> Poly:
+        base = self.element(node.base)
+        n, degree = int(node.exp.p), int(node.exp.q)
+        if degree == 1:
+            return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
+        root = self.root(base, degree, node)
+        if n < 0:
+            # 1/R = R^(degree−1) / u keeps the one inverse that the derivative needs anyway.
+            inverse = self.ring.multiply(root ** (degree - 1), self.inverse(base, node))
+            return self.repeated(inverse, -n, node)
+        return self.repeated(root, n, node)
+
+    def root(self, u: Poly, degree: int, node: sympy.Expr) -> Poly:
+        for known, n, root in self.roots:
+            if n == degree and known == u:
+                return root
+        ring = self.ring
+        inverse = self.inverse(u, node)
+        root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
+        ring.relate(root, degree, root**degree - u)
+        ring.set_gradient(root, ring.multiply(root, inverse) / degree, u)
+        self.roots.append((u, degree, root))
+        return root
+
+    def repeated(self, base: Poly, n: int, node: sympy.Expr) -> Poly:
+        total = self.ring.one
+        for _ in range(n):
+            total = self.limited(total, base, node)
+        return total
+
+    def limited(self, x: Poly, y: Poly, node: sympy.Expr) -> Poly:
+        result = self.ring.multiply(x, y)
+        if len(result) > MAX_TERMS:
+            raise InputError("formula", str(node), f"expands to more than {MAX_TERMS} terms")
+        return result
+
+    def inverse(self, u: Poly, node: sympy.Expr) -> Poly:
+        try:
+            return self.ring.inverse(u)
+        except ZeroDivisionError:
+            raise InputError("formula", str(node), "division by zero") from None
+
+
+def _lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
+    """A basis of the lattice the arguments span, and each argument as integers over it.
+
+    Arguments are vectors of rational coefficients over their monomials; the basis is the Hermite
+    normal form of their integer multiples. Where a multiple would be large (sin(100 q) beside
+    sin(q)) each argument is a basis element of its own: nothing wrong can follow, only an
+    identity may go unseen.
+    """
+    terms = [a.to_dict() for a in arguments]
+    monomials = sorted({m for t in terms for m in t}, reverse=True)
+    common = 1
+    for t in terms:
+        for value in t.values():
+            common = int(flint.fmpz(common).lcm(value.denom()))
+    rows = [[int(t.get(m, 0) * common) for m in monomials] for t in terms]
+    basis = [r for r in _rows(flint.fmpz_mat(rows).hnf()) if any(r)]
+    multiples = [_coordinates(row, basis) for row in rows]
+    if any(abs(k) > _MAX_MULTIPLE for row in multiples for k in row):
+        distinct = [a for k, a in enumerate(arguments) if a not in arguments[:k]]
+        return distinct, [[int(a == b) for b in distinct] for a in arguments]
+    for k, vector in enumerate(basis):
+        if all(row[k] <= 0 for row in multiples):  # exp(−q²) by itself, not by 1/exp(q²)
+            basis[k] = [-v for v in vector]
+            multiples = [[*row[:k], -row[k], *row[k + 1 :]] for row in multiples]
+    elements = [
+        ring.context.from_dict(
+            {m: flint.fmpq(v, common) for m, v in zip(monomials, vector, strict=True) if v}
+        )
+        for vector in basis
+    ]
+    return elements, multiples
+
+
+def _rows(matrix: Any) -> list[list[int]]:
+    return [[int(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())]
+
+
+def _coordinates(row: list[int], basis: list[list[int]]) -> list[int]:
+    """Integers k with Σ kᵢ basisᵢ = row, for a basis in echelon form that spans it."""
+    rest, result = list(row), []
+    for vector in basis:
+        pivot = next(j for j, v in enumerate(vector) if v)
+        k = rest[pivot] // vector[pivot]
+        rest = [r - k * v for r, v in zip(rest, vector, strict=True)]
+        result.append(k)
+    return result

@@ -1,0 +1,111 @@
+"""A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy
+
+from verify.errors import InputError
+from verify.exact import Exact, rational
+from verify.formula import parameter_name, parse, symbol
+from verify.generators import embed
+from verify.ring import Poly, Ring
+
+
+@dataclass(frozen=True)
+class Hamiltonian:
+    """H(p, q) as an exact expression, with the values of those parameters that have one.
+
+    A parameter without a value stays a symbol. `expression` holds all parameters as symbols;
+    `exact` has the values put in.
+    """
+
+    expression: sympy.Expr
+    values: tuple[tuple[str, Fraction], ...] = ()
+
+    @classmethod
+    def parse(
+        cls, text: str, parameters: Mapping[str, Exact | None] | None = None
+    ) -> "Hamiltonian":
+        """From a formula (see `verify.formula`) and parameter values; None leaves a symbol.
+
+        Raises InputError for a bad formula, a bad value, or a parameter that H does not have.
+        """
+        expression = parse(text, source="hamiltonian")
+        return cls(expression).with_values(parameters or {})
+
+    def with_values(self, parameters: Mapping[str, Exact | None]) -> "Hamiltonian":
+        """The same H with these parameter values instead of its present ones."""
+        given = {}
+        for name, value in parameters.items():
+            if parameter_name(name) not in self.parameters:
+                known = ", ".join(self.parameters) or "none"
+                raise InputError("parameter", name, f"H has no such parameter; it has: {known}")
+            if value is not None:
+                given[name] = rational(value, f"parameter {name}")
+        result = Hamiltonian(self.expression, tuple(sorted(given.items())))
+        if result.exact.has(sympy.nan, sympy.zoo, sympy.oo, sympy.I):
+            shown = ", ".join(f"{n}={v}" for n, v in result.values)
+            raise InputError("parameter", shown, f"H = {self.expression} is not defined there")
+        return result
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """All parameter names, with or without a value."""
+        return tuple(sorted(s.name for s in self.expression.free_symbols if s.name not in "pq"))
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """The names of the parameters without a value."""
+        given = dict(self.values)
+        return tuple(name for name in self.parameters if name not in given)
+
+    @property
+    def exact(self) -> sympy.Expr:
+        return self.expression.subs(
+            {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
+        )
+
+    def generic(self) -> "Hamiltonian":
+        """H with its parameters as symbols, but for those of value 0, whose terms vanish.
+
+        This is what a kernel is compiled for: the other values are its run-time arguments.
+        """
+        zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
+        return Hamiltonian(self.expression.subs(zeros))
+
+    def field(self, *others: sympy.Expr) -> tuple["VectorField", list[Poly]]:
+        """The vector field of `exact`, and the other expressions as elements of its ring."""
+        variables = ("p", "q", "h", *self.symbols)
+        ring, elements = embed([self.exact, *others], variables)
+        return VectorField.of(ring, elements[0]), elements[1:]
+
+
+@dataclass(frozen=True)
+class VectorField:
+    """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative."""
+
+    ring: Ring
+    h_p: Poly
+    h_q: Poly
+
+    @classmethod
+    def of(cls, ring: Ring, hamiltonian: Poly) -> "VectorField":
+        return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"))
+
+    def derive(self, y: Poly) -> Poly:
+        """X y, the derivative of y along the flow."""
+        ring = self.ring
+        return ring.reduce(self.h_p * ring.diff(y, "q") - self.h_q * ring.diff(y, "p"))
+
+    def powers(self, y: Poly, most: int) -> Sequence[Poly]:
+        """[y, X y, …, X^most y]."""
+        result = [y]
+        for _ in range(most):
+            result.append(self.derive(result[-1]))
+        return result
+
+    def separable(self) -> bool:
+        """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""
+        return self.ring.decide(self.ring.diff(self.h_p, "q")).zero is True

@@ -1,0 +1,1 @@
+"""Proofs: exact algebra, whose answers are PROVED, REFUTED or UNDECIDED."""

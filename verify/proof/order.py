@@ -1,0 +1,191 @@
+"""The order in h of ΔJ for one Hamiltonian, and the order of the map itself.
+
+A map that does nothing preserves area, so area alone proves no scheme: the Taylor coefficients of
+p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
+"""
+
+import math
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import sympy
+
+from verify.errors import InputError
+from verify.generators import embed
+from verify.ring import Decision, Poly, Ring
+from verify.scheme import Scheme
+from verify.step_map import H_STEP, StepMap, h_inside
+from verify.verdict import Verdict
+
+MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What is proved of one step map.
+
+    `order`: ΔJ = `leading`·h^order + O(h^(order+1)) with `leading` not the zero function; None
+    where ΔJ ≡ 0 (`area_preserving` True) or where it is not decided (`area_preserving` None).
+    `witness`: a point (p, q, parameters) at which `leading` is not zero, with `enclosure` its value.
+    `convergence_order`: p', q' agree with the exact flow up to h to this power; None where all
+    coefficients looked at agree. `verdict` is REFUTED for a map that is not a scheme for H at all,
+    or misses the order its scheme claims; `reason` says what was found in one line.
+    """
+
+    verdict: Verdict
+    reason: str
+    order: int | None
+    leading: sympy.Expr
+    delta_j: sympy.Expr
+    area_preserving: bool | None
+    convergence_order: int | None
+    witness: dict[str, Fraction] = field(default_factory=dict)
+    enclosure: str = ""
+
+    @property
+    def consistent(self) -> bool:
+        return self.convergence_order is None or self.convergence_order >= 1
+
+
+@dataclass(frozen=True)
+class Leading:
+    """The first coefficient in h that is not shown to vanish: of h^`power`, as an expression.
+
+    `decision.zero` is False at a proved leading term, None at an undecided one, and True where
+    every coefficient vanishes (`power` is None then).
+    """
+
+    power: int | None
+    coefficient: sympy.Expr
+    decision: Decision
+
+
+class Expansion:
+    """The Taylor coefficients in h, at h = 0, of a ring element."""
+
+    def __init__(self, ring: Ring, x: Poly) -> None:
+        self.ring = ring
+        self.polynomial = not h_inside(ring, x)
+        self._powers = ring.powers(x, "h") if self.polynomial else {}
+        self._derivatives = [x]
+
+    @property
+    def length(self) -> int:
+        """How many coefficients there are to look at."""
+        return max(self._powers, default=0) + 1 if self.polynomial else MOST_ORDERS + 1
+
+    def coefficient(self, n: int) -> tuple[Ring, Poly]:
+        """The coefficient of hⁿ, with the ring that it is an element of."""
+        if self.polynomial:
+            return self.ring, self._powers.get(n, self.ring.zero)
+        while len(self._derivatives) <= n:
+            self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
+        value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
+        if value.has(sympy.zoo, sympy.nan, sympy.oo, -sympy.oo):
+            raise InputError("map", str(value), "the map is not smooth in h at h = 0")
+        ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
+        return ring, x
+
+    def leading(self) -> Leading:
+        for n in range(self.length):
+            ring, x = self.coefficient(n)
+            decision = ring.decide(x)
+            if decision.zero is not True:
+                return Leading(n, ring.factored(x), decision)
+        if self.polynomial:
+            return Leading(None, sympy.S.Zero, Decision(True))
+        return Leading(self.length, sympy.S.Zero, Decision(None))
+
+
+def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
+    """The order of ΔJ and of the map, decided by exact algebra; holds `scheme`'s claims against it."""
+    convergence = convergence_of(step_map)
+    leading = _leading_of_delta_j(step_map)
+    verdict, reason = _verdict(convergence, leading, scheme)
+    return Proof(
+        verdict=verdict,
+        reason=reason,
+        order=leading.power if leading.decision.zero is False else None,
+        leading=leading.coefficient,
+        delta_j=step_map.delta_j,
+        area_preserving=leading.decision.zero,
+        convergence_order=convergence.order,
+        witness=leading.decision.witness,
+        enclosure=leading.decision.enclosure,
+    )
+
+
+def _leading_of_delta_j(step_map: StepMap) -> Leading:
+    if step_map.preserves_area:
+        return Leading(None, sympy.S.Zero, Decision(True))
+    _, step = step_map.flat
+    if step.preserves_area:
+        return Leading(None, sympy.S.Zero, Decision(True))
+    return Expansion(step.ring, step.delta_j).leading()
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """p', q' agree with the exact flow up to h^order, shown by algebra; None: in all looked at.
+
+    `decided`: the next coefficient is shown to differ (or there is none). −1: they differ at h⁰.
+    """
+
+    order: int | None
+    decided: bool
+
+    def misses(self, claimed: int) -> bool:
+        return self.order is not None and self.order < claimed
+
+
+def convergence_of(step_map: StepMap) -> Convergence:
+    """The order to which the map agrees with the exact flow."""
+    vector_field, step = step_map.flat
+    ring = vector_field.ring
+    pairs = [(step.p_next, ring.variable("p")), (step.q_next, ring.variable("q"))]
+    expansions = [(Expansion(ring, x), [y]) for x, y in pairs]
+    most = max(MOST_ORDERS, *(e.length for e, _ in expansions))
+    for n in range(most + 1):
+        for expansion, flow in expansions:
+            if n == len(flow):
+                flow.append(vector_field.derive(flow[-1]))
+            agrees = _agrees(expansion, n, ring, flow[n])
+            if agrees is not True:
+                return Convergence(n - 1, agrees is False)
+    return Convergence(None, True)
+
+
+def _agrees(expansion: Expansion, n: int, ring: Ring, flow: Poly) -> bool | None:
+    """Whether the coefficient of hⁿ is `flow`/n!; None where that is not decided."""
+    own, x = expansion.coefficient(n)
+    if own is ring:
+        return ring.decide(x - flow / math.factorial(n)).zero
+    gap = own.expression(x) - ring.expression(flow) / math.factorial(n)
+    common, (difference,) = embed([gap], ring.variables)
+    return common.decide(difference).zero
+
+
+def _verdict(
+    convergence: Convergence, leading: Leading, scheme: Scheme | None
+) -> tuple[Verdict, str]:
+    claimed = scheme.order if scheme else 1
+    if convergence.misses(claimed):
+        known = f"agrees with the exact flow up to h^{convergence.order}"
+        if not convergence.decided:
+            return Verdict.UNDECIDED, f"the map {known}; whether further is not decided"
+        if scheme:
+            return Verdict.REFUTED, f"{scheme.name} claims order {claimed}; the map {known} only"
+        return Verdict.REFUTED, f"not a scheme for this H: the map {known} only"
+    match leading.decision.zero:
+        case True:
+            return Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1"
+        case None:
+            return Verdict.UNDECIDED, (
+                f"the coefficient of h^{leading.power} in ΔJ is neither shown to vanish nor not to"
+            )
+    if scheme is not None and scheme.area_preserving:
+        return Verdict.REFUTED, f"{scheme.name} claims det J ≡ 1; ΔJ has order {leading.power}"
+    return Verdict.PROVED, (
+        f"the coefficients of ΔJ below h^{leading.power} vanish identically, that of "
+        f"h^{leading.power} does not"
+    )

@@ -1,0 +1,304 @@
+"""The differential ring in which zero is decided.
+
+An expression becomes a polynomial, over the rationals, in the variables (p, q, h, parameters) and
+in generators for what is not polynomial in them: sin b and cos b, exp b, sinh b and cosh b, log u,
+atan u, u^(1/n), 1/u and π. Relations hold between generators (sin² + cos² = 1, w·u = 1, Rⁿ = u, …)
+and each generator knows its derivative, so that the ring is closed under ∂/∂p, ∂/∂q and ∂/∂h.
+
+Contract. `decide(x)` answers
+- zero, when x with its denominators cleared reduces to 0 modulo the relations: exact algebra, and
+  every relation is an identity of functions;
+- not zero, with a witness: a rational point at which an enclosure of x excludes 0 (Arb's ball
+  arithmetic, so rounding is accounted for);
+- neither (None), when the relations do not show it zero and no point shows it non-zero.
+`simplify` plays no part in either. The third answer can occur only where generators hide an
+identity, as log(q²) and 2 log(q) do; the callers report UNDECIDED.
+
+Functions of sums are expanded over a basis of the lattice that their arguments span, so that
+sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import product as cartesian
+from typing import Any
+
+import flint
+import sympy
+
+from verify.formula import symbol
+
+Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+
+_SPARE = 6  # generators that later calls to `inverse` may still add
+_PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
+
+
+@dataclass(frozen=True)
+class Generator:
+    """One ring generator: `kind` of function, its argument, and its expression.
+
+    `kind`: variable, pi, sin, cos, exp, sinh, cosh, log, atan, root (of `degree`) or inverse.
+    """
+
+    index: int
+    kind: str
+    expression: sympy.Expr
+    argument: Poly = None
+    degree: int = 1
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Whether an element is zero: True, False or None (undecided), with the witness of False."""
+
+    zero: bool | None
+    witness: dict[str, Fraction] = field(default_factory=dict)
+    enclosure: str = ""
+
+
+class Ring:
+    """The ring of the given variables with room for `room` generators; see `generators.embed`."""
+
+    def __init__(self, variables: Sequence[str], room: int) -> None:
+        self.variables = tuple(variables)
+        self.room = room + _SPARE
+        names = [f"g{k}_" for k in range(self.room)]
+        # Lexicographic with the newest generator first: relations then reduce to older ones.
+        self.context = flint.fmpq_mpoly_ctx.get([*names, *self.variables], flint.Ordering.lex)
+        self._gens = self.context.gens()
+        self.generators: list[Generator] = [
+            Generator(self.room + k, "variable", symbol(name))
+            for k, name in enumerate(self.variables)
+        ]
+        self._by_index = {g.index: g for g in self.generators}
+        self._relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
+        self._gradients: dict[int, dict[str, Poly]] = {}
+        self._inverses: list[tuple[Poly, Poly]] = []
+
+    # -- elements -----------------------------------------------------------------------------
+
+    @property
+    def zero(self) -> Poly:
+        return self.context.constant(0)
+
+    @property
+    def one(self) -> Poly:
+        return self.context.constant(1)
+
+    def constant(self, value: Fraction) -> Poly:
+        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
+
+    def variable(self, name: str) -> Poly:
+        return self._gens[self.room + self.variables.index(name)]
+
+    def reduce(self, x: Poly) -> Poly:
+        """The normal form of x modulo the relations, newest generator first."""
+        for index, power, relation in reversed(self._relations):
+            if x.degrees()[index] >= power:
+                x = divmod(x, relation)[1]
+        return x
+
+    def multiply(self, x: Poly, y: Poly) -> Poly:
+        return self.reduce(x * y)
+
+    def diff(self, x: Poly, name: str) -> Poly:
+        """∂x/∂name in normal form, by the chain rule over the generators."""
+        total = x.derivative(self.room + self.variables.index(name))
+        degrees = x.degrees()
+        for index, gradient in self._gradients.items():
+            if degrees[index] and name in gradient:
+                total += x.derivative(index) * gradient[name]
+        return self.reduce(total)
+
+    def used(self, *elements: Poly) -> list[Generator]:
+        """The generators that the elements depend on, arguments included, oldest first."""
+        seen: set[int] = set()
+        stack = list(elements)
+        while stack:
+            for index, power in enumerate(stack.pop().degrees()):
+                if power > 0 and index not in seen:
+                    seen.add(index)
+                    argument = self._by_index[index].argument
+                    if argument is not None:
+                        stack.append(argument)
+        return [g for g in self.generators if g.index in seen]
+
+    def depends(self, x: Poly, name: str) -> bool:
+        return any(g.kind == "variable" and str(g.expression) == name for g in self.used(x))
+
+    def powers(self, x: Poly, name: str) -> dict[int, Poly]:
+        """x as a polynomial in one variable: {power: coefficient}, the coefficients non-zero.
+
+        The caller sees to it that no generator in x depends on that variable.
+        """
+        at = self.room + self.variables.index(name)
+        split: dict[int, dict[tuple[int, ...], Any]] = {}
+        for monomial, coefficient in x.to_dict().items():
+            rest = (*monomial[:at], 0, *monomial[at + 1 :])
+            split.setdefault(int(monomial[at]), {})[rest] = coefficient
+        return {power: self.context.from_dict(part) for power, part in split.items()}
+
+    def expression(self, x: Poly) -> sympy.Expr:
+        """x as an expression, its terms as they stand in the ring."""
+        expressions = {g.index: g.expression for g in self.generators}
+        terms = []
+        for monomial, coefficient in x.to_dict().items():
+            factors = [expressions[k] ** int(n) for k, n in enumerate(monomial) if n]
+            terms.append(sympy.Mul(rational_of(coefficient), *factors))
+        return sympy.Add(*terms)
+
+    def factored(self, x: Poly) -> sympy.Expr:
+        """x as an expression, factored into irreducible polynomials in the generators."""
+        if x == 0:
+            return sympy.Integer(0)
+        content, factors = x.factor()
+        parts = [self.expression(f) ** int(n) for f, n in factors]
+        return sympy.Mul(rational_of(content), *parts)
+
+    # -- generators ---------------------------------------------------------------------------
+
+    def add(
+        self,
+        kind: str,
+        expression: sympy.Expr,
+        argument: Poly = None,
+        degree: int = 1,
+    ) -> Poly:
+        """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
+        count = len(self.generators) - len(self.variables)
+        if count >= self.room:
+            raise RuntimeError(f"the ring has room for {self.room} generators only")
+        index = self.room - 1 - count
+        generator = Generator(index, kind, expression, argument, degree)
+        self.generators.append(generator)
+        self._by_index[index] = generator
+        return self._gens[index]
+
+    def relate(self, generator: Poly, power: int, relation: Poly) -> None:
+        """relation = 0, used where `generator` occurs with at least that power."""
+        self._relations.append((self._gens.index(generator), power, relation))
+
+    def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
+        """d generator = outer · d inner."""
+        partials = ((name, self.diff(inner, name)) for name in self.variables)
+        gradient = {name: self.multiply(outer, part) for name, part in partials if part != 0}
+        self._gradients[self._gens.index(generator)] = gradient
+
+    def inverse(self, u: Poly) -> Poly:
+        """1/u, by the inverses of the irreducible factors of u.
+
+        Raises ZeroDivisionError where u is zero, or cannot be shown not to be.
+        """
+        if self.decide(u).zero is not False:
+            raise ZeroDivisionError
+        content, factors = u.factor()
+        result = self.context.constant(1 / content)
+        for factor, power in factors:
+            result = self.multiply(result, self._inverse_of_irreducible(factor) ** int(power))
+        return result
+
+    def _inverse_of_irreducible(self, u: Poly) -> Poly:
+        for known, inverse in self._inverses:
+            if known == u:
+                return inverse
+        w = self.add("inverse", 1 / self.expression(u), u)
+        self._inverses.append((u, w))
+        self.relate(w, 1, w * u - 1)
+        self.set_gradient(w, -(w**2), u)
+        return w
+
+    # -- the decision -------------------------------------------------------------------------
+
+    def decide(self, x: Poly) -> Decision:
+        """Whether x is the zero function; see the module's contract."""
+        x = self.reduce(x)
+        if self.clear_inverses(x) == 0:
+            return Decision(True)
+        names = [str(g.expression) for g in self.used(x) if g.kind == "variable"]
+        for precision in _PRECISIONS:
+            for point in _points(names):
+                value = self.enclose(x, point, precision)
+                if value is not None and not value.contains(0):
+                    return Decision(False, point, value.str(12))
+        return Decision(None)
+
+    def clear_inverses(self, x: Poly) -> Poly:
+        """x times the powers of denominators that remove every inverse, in normal form."""
+        for g in reversed([g for g in self.generators if g.kind == "inverse"]):
+            highest = int(x.degrees()[g.index])
+            if not highest:
+                continue
+            total = self.zero
+            for monomial, coefficient in x.to_dict().items():
+                rest = (*monomial[: g.index], 0, *monomial[g.index + 1 :])
+                missing = highest - int(monomial[g.index])
+                total += self.context.from_dict({rest: coefficient}) * g.argument**missing
+            x = self.reduce(total)
+        return x
+
+    def enclose(self, x: Poly, point: dict[str, Fraction], precision: int) -> Any:
+        """A ball (flint.arb) that contains x at the point, or None where x is not defined.
+
+        Leaves flint's global context as it was.
+        """
+        with flint.ctx.workprec(precision):
+            values: dict[int, Any] = {}
+            for g in self.used(x):
+                if g.kind == "variable":
+                    at = point[str(g.expression)]
+                    values[g.index] = flint.arb(flint.fmpq(at.numerator, at.denominator))
+                elif g.kind == "pi":
+                    values[g.index] = flint.arb.pi()
+                else:
+                    values[g.index] = _BALLS[g.kind](_at(g.argument, values), g.degree)
+                if not values[g.index].is_finite():
+                    return None
+            return _at(x, values)
+
+
+_BALLS: dict[str, Callable[[Any, int], Any]] = {
+    "sin": lambda x, _: x.sin(),
+    "cos": lambda x, _: x.cos(),
+    "exp": lambda x, _: x.exp(),
+    "sinh": lambda x, _: x.sinh(),
+    "cosh": lambda x, _: x.cosh(),
+    "log": lambda x, _: x.log(),
+    "atan": lambda x, _: x.atan(),
+    "root": lambda x, n: x.root(n),
+    "inverse": lambda x, _: 1 / x,
+}
+
+
+def _at(x: Poly, values: dict[int, Any]) -> Any:
+    total = flint.arb(0)
+    for monomial, coefficient in x.to_dict().items():
+        term = flint.arb(coefficient)
+        for index, power in enumerate(monomial):
+            if power:
+                term *= values[index] ** int(power)
+        total += term
+    return total
+
+
+def rational_of(value: Any) -> sympy.Rational:
+    """A flint rational as sympy's."""
+    return sympy.Rational(int(value.numer()), int(value.denom()))
+
+
+def _points(names: Sequence[str]) -> list[dict[str, Fraction]]:
+    """A few rational points, small and without a pattern that a formula could share.
+
+    Both signs of every variable are tried (up to 4 variables) since a root or a logarithm may be
+    defined on one side only.
+    """
+    primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
+    size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(len(names))]
+    signs = list(cartesian((1, -1), repeat=min(len(names), 4))) or [()]
+    points = []
+    for scale in (Fraction(1), Fraction(1, 16), Fraction(9, 4)):
+        for sign in signs:
+            full = (*sign, *(1 for _ in names[len(sign) :]))
+            points.append({n: scale * s * v for n, s, v in zip(names, full, size, strict=True)})
+    return points

@@ -1,0 +1,27 @@
+"""What an integration scheme is: a name, its claims as data, and how it makes a step map."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from verify.hamiltonian import Hamiltonian
+from verify.step_map import StepMap
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """A one-step scheme; tests hold its claims against proofs.
+
+    `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
+    that the scheme takes. `explicit`: no equation is solved. `source`: where it is defined.
+    `build` raises InputError for an H that the scheme does not take.
+    """
+
+    name: str
+    order: int
+    area_preserving: bool
+    explicit: bool
+    source: str
+    build: Callable[[Hamiltonian], StepMap]
+
+    def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
+        return self.build(hamiltonian)

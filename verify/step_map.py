@@ -1,0 +1,140 @@
+"""The exact one-step map (p, q, h) → (p', q'), its Jacobian J (Eq. 12) and ΔJ = det J − 1 (Eq. 14).
+
+A map is a composition of substeps, each with its own exact closed form: one for the Lie-derivative
+scheme, two shears for symplectic Euler. ΔJ of a substep is written with its increments
+u = p' − p, v = q' − q as u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels, and
+1 + ΔJ of the composition is the product along it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy
+
+from verify.formula import parse, symbol
+from verify.hamiltonian import Hamiltonian, VectorField
+from verify.ring import Poly, Ring
+
+P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
+
+
+@dataclass(frozen=True)
+class Substep:
+    """(p, q) → (p', q') as elements of a ring."""
+
+    ring: Ring
+    p_next: Poly
+    q_next: Poly
+
+    @property
+    def increments(self) -> tuple[Poly, Poly]:
+        return (
+            self.p_next - self.ring.variable("p"),
+            self.q_next - self.ring.variable("q"),
+        )
+
+    @cached_property
+    def jacobian(self) -> tuple[Poly, Poly, Poly, Poly]:
+        """∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q."""
+        diff = self.ring.diff
+        return (
+            diff(self.p_next, "p"),
+            diff(self.p_next, "q"),
+            diff(self.q_next, "p"),
+            diff(self.q_next, "q"),
+        )
+
+    @cached_property
+    def delta_j(self) -> Poly:
+        a, u_q, v_p, d = self.jacobian
+        u_p, v_q = a - 1, d - 1
+        return self.ring.reduce(u_p + v_q + u_p * v_q - u_q * v_p)
+
+    @cached_property
+    def preserves_area(self) -> bool:
+        """True where ΔJ is shown to be the zero function."""
+        return self.ring.decide(self.delta_j).zero is True
+
+
+@dataclass(frozen=True)
+class StepMap:
+    """A one-step map of one Hamiltonian, as the composition of its substeps, first one first."""
+
+    hamiltonian: Hamiltonian
+    substeps: tuple[Substep, ...]
+
+    @classmethod
+    def from_expressions(
+        cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
+    ) -> "StepMap":
+        field, (p1, q1) = hamiltonian.field(p_next, q_next)
+        return cls(hamiltonian, (Substep(field.ring, p1, q1),))
+
+    @classmethod
+    def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
+        """A user's own map, from formulas in p, q, h and the parameters of H.
+
+        `q_next` may also use p_next, and then stands for the composition. Raises InputError.
+        """
+        names = ("p", "q", "h", *hamiltonian.parameters)
+        values = dict(hamiltonian.values)
+        put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in values.items()}
+        p1 = parse(p_next, names, source="p_next")
+        q1 = parse(q_next, (*names, "p_next"), source="q_next").subs(symbol("p_next"), p1)
+        return cls.from_expressions(hamiltonian, p1.subs(put), q1.subs(put))
+
+    @cached_property
+    def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
+        p1, q1 = P, Q
+        for step in self.substeps:
+            put = {P: p1, Q: q1}
+            p1, q1 = (step.ring.expression(x).xreplace(put) for x in (step.p_next, step.q_next))
+        return p1, q1
+
+    @property
+    def p_next(self) -> sympy.Expr:
+        return self.composed[0]
+
+    @property
+    def q_next(self) -> sympy.Expr:
+        return self.composed[1]
+
+    @cached_property
+    def flat(self) -> tuple[VectorField, Substep]:
+        """The whole map as one substep, in a ring that holds the vector field too."""
+        field, (p1, q1) = self.hamiltonian.field(*self.composed)
+        return field, Substep(field.ring, p1, q1)
+
+    @property
+    def preserves_area(self) -> bool:
+        """True where every substep's ΔJ, and so the composition's, is shown to vanish."""
+        return all(step.preserves_area for step in self.substeps)
+
+    @property
+    def jacobian(self) -> sympy.Matrix:
+        """J = ∂(p', q')/∂(p, q) (Eq. 12), 2 × 2."""
+        _, step = self.flat
+        return sympy.Matrix(2, 2, [grouped(step.ring, entry) for entry in step.jacobian])
+
+    @cached_property
+    def delta_j(self) -> sympy.Expr:
+        """ΔJ = det J − 1 (Eq. 14) in closed form."""
+        if self.preserves_area:
+            return sympy.S.Zero
+        _, step = self.flat
+        return grouped(step.ring, step.delta_j)
+
+
+def grouped(ring: Ring, x: Poly) -> sympy.Expr:
+    """x as an expression: by powers of h, each coefficient factored, where h stands outside."""
+    if h_inside(ring, x):
+        return ring.factored(x)
+    powers = ring.powers(x, "h")
+    return sympy.Add(*(H_STEP**n * ring.factored(c) for n, c in sorted(powers.items())))
+
+
+def h_inside(ring: Ring, *elements: Poly) -> bool:
+    """Whether h occurs inside a generator, so that x is not a polynomial in h."""
+    arguments: Sequence[Poly] = [g.argument for g in ring.used(*elements) if g.argument is not None]
+    return any(ring.depends(a, "h") for a in arguments)

@@ -1,0 +1,17 @@
+"""What can be said of a claim."""
+
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """The five answers; each is given together with its evidence, never alone."""
+
+    PROVED = "PROVED"  # exact algebra
+    ENCLOSED = "ENCLOSED"  # a rigorous numeric enclosure
+    MEASURED = "MEASURED"  # numeric, with its error estimate
+    REFUTED = "REFUTED"  # a counterexample, or the proof of the contrary
+    UNDECIDED = "UNDECIDED"
+
+    @property
+    def holds(self) -> bool:
+        return self in (Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED)
