@@ -112,7 +112,7 @@ def magnitude(value: Fraction) -> int:
 
 
 def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]:
-    """`value` with the digits that `bound` allows, at most `most`, and the bound of what is printed.
+    """`value` with the digits that `bound` allows (at most `most`), and the printed text's bound.
 
     The last digit printed has a unit of at least twice `bound`, so that it is known to one unit.
     The returned bound includes the rounding of the text. Where no digit is known the text is "0".

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import sympy
+from sympy.printing.str import StrPrinter
 
 from verify.errors import InputError
 from verify.exact import rational
@@ -32,7 +33,9 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "tanh": sympy.tanh,
     "atan": sympy.atan,
 }
-NOT_SMOOTH = frozenset("abs Abs fabs sign sgn floor ceil round trunc max min Heaviside".split())
+NOT_SMOOTH = frozenset(
+    {"abs", "Abs", "fabs", "sign", "sgn", "floor", "ceil", "round", "trunc", "max", "min"}
+)
 RESERVED = frozenset({"p", "q", "h", "t", "pi", *FUNCTIONS, *NOT_SMOOTH})
 _NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
@@ -41,6 +44,18 @@ _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 def symbol(name: str) -> sympy.Symbol:
     """The one symbol of that name: real, so that √(q²) is |q| and is seen not to be smooth."""
     return sympy.Symbol(name, real=True)
+
+
+class _Printer(StrPrinter):  # type: ignore[misc]
+    """sympy's text form, but for e, which would read back as a parameter named E."""
+
+    def _print_Exp1(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
+        return "exp(1)"
+
+
+def to_text(expression: sympy.Expr) -> str:
+    """The expression as a formula that `parse` reads back to the same expression."""
+    return str(_Printer().doprint(expression))
 
 
 def parameter_name(name: str) -> str:
@@ -146,7 +161,9 @@ class _Reader:
             raise self.fail(f"{name} takes one argument")
         argument = self.read(node.args[0], depth + 1)
         # sympy sums and simplifies as it builds: infinities must not get into it.
-        return self.finite(FUNCTIONS[name](argument))
+        value = self.finite(FUNCTIONS[name](argument))
+        # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
+        return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 
     def operation(self, node: ast.BinOp, depth: int) -> sympy.Expr:
         left, right = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
@@ -172,7 +189,10 @@ class _Reader:
             raise self.fail(f"exponent {exponent} beyond ±{MAX_EXPONENT}")
         if base.is_zero and exponent <= 0:
             raise self.fail("division by zero" if exponent < 0 else "0**0 is not defined")
-        return self.finite(base**exponent)
+        result = self.finite(base**exponent)
+        if result.is_Pow and result.exp.is_Rational and abs(result.exp) > MAX_EXPONENT:
+            raise self.fail(f"exponent {result.exp} beyond ±{MAX_EXPONENT}")
+        return result
 
     def finite(self, value: sympy.Expr) -> sympy.Expr:
         if value.is_Rational and max(value.p.bit_length(), value.q.bit_length()) > MAX_NUMBER_BITS:

@@ -26,7 +26,7 @@ class Proof:
 
     `order`: ΔJ = `leading`·h^order + O(h^(order+1)) with `leading` not the zero function; None
     where ΔJ ≡ 0 (`area_preserving` True) or where it is not decided (`area_preserving` None).
-    `witness`: a point (p, q, parameters) at which `leading` is not zero, with `enclosure` its value.
+    `witness`: a point (p, q, parameters) at which `leading` is not zero; `enclosure`: its value.
     `convergence_order`: p', q' agree with the exact flow up to h to this power; None where all
     coefficients looked at agree. `verdict` is REFUTED for a map that is not a scheme for H at all,
     or misses the order its scheme claims; `reason` says what was found in one line.
@@ -98,7 +98,7 @@ class Expansion:
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
-    """The order of ΔJ and of the map, decided by exact algebra; holds `scheme`'s claims against it."""
+    """The order of ΔJ and of the map by exact algebra, and whether `scheme`'s claims hold."""
     convergence = convergence_of(step_map)
     leading = _leading_of_delta_j(step_map)
     verdict, reason = _verdict(convergence, leading, scheme)

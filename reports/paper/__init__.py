@@ -1,0 +1,1 @@
+"""The paper's scenes and claims, as data; this package's TOML files."""

@@ -1,0 +1,49 @@
+"""IEEE double precision, compiled by numba: the arithmetic that is under test.
+
+No fast-math: operations are rounded one by one, as the source writes them. Division by zero and
+overflow give infinities and NaN, which the run finds.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from verify.number_system import Arithmetic
+
+NAME = "float64"
+
+
+def make(digits: int) -> Arithmetic:
+    """float64 has 53 bits, whatever `digits` asks for."""
+    return Arithmetic(
+        name=NAME,
+        bits=53,
+        number=_number,
+        exact=Fraction,
+        finite=math.isfinite,
+        functions={
+            **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
+            "sqrt": math.sqrt,
+            "pi": math.pi,
+        },
+        compile=_compile,
+        guard=None,
+        chunk=1 << 22,
+    )
+
+
+def _number(value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    import numba
+
+    scope = {"root": numba.njit(lambda x, n: x ** (1.0 / n)), **namespace}
+    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
+    compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(scope[name])
+    return compiled

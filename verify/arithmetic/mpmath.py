@@ -1,0 +1,62 @@
+"""mpmath at any precision, in a context of its own: the reference number system.
+
+The global `mpmath.mp` is neither used nor changed.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from mpmath import libmp
+from mpmath.ctx_mp import MPContext
+
+from verify.number_system import Arithmetic
+
+NAME = "mpmath"
+ESCAPE_BITS = 4000  # an orbit with |z| ≥ 2^4000 is stopped: exponents could grow without end
+
+
+def make(digits: int) -> Arithmetic:
+    """mpmath with the bits for `digits` decimal digits."""
+    return at_bits(math.ceil(digits * math.log2(10)) + 1)
+
+
+def at_bits(bits: int) -> Arithmetic:
+    context = MPContext()
+    context.prec = bits
+
+    def number(value: Fraction) -> Any:
+        made = libmp.from_rational(value.numerator, value.denominator, bits, "n")
+        return context.make_mpf(made)
+
+    names = ("sin", "cos", "exp", "log", "sinh", "cosh", "atan", "root", "sqrt")
+    return Arithmetic(
+        name=NAME,
+        bits=bits,
+        number=number,
+        exact=_exact,
+        finite=lambda x: bool(context.isfinite(x)),
+        functions={
+            **{f: getattr(context, f) for f in names},
+            "cos_sin": context.cos_sin,
+            "pi": +context.pi,
+            "escape": context.ldexp(1, ESCAPE_BITS),
+        },
+        compile=_compile,
+        guard="-escape < {x} < escape",
+        chunk=1 << 12,
+    )
+
+
+def _exact(x: Any) -> Fraction:
+    sign, mantissa, exponent, _ = x._mpf_
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return Fraction(-size if sign else size)
+
+
+def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    scope = dict(namespace)
+    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
+    function: Callable[..., Any] = scope[name]
+    return function

@@ -1,0 +1,86 @@
+"""Measured values as balls (flint.arb): the printed value with its bound as radius."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.exact import decimal, known_digits
+from verify.results import Value
+
+Ball = Any  # flint.arb, which has no type stubs
+_BITS = 256
+
+
+@contextmanager
+def precision(bits: int = _BITS) -> Iterator[None]:
+    """Ball arithmetic with enough bits for anything float64 can give; leaves flint's as it was."""
+    with flint.ctx.workprec(bits):
+        yield
+
+
+def rational_ball(value: Fraction) -> Ball:
+    return flint.arb(flint.fmpq(value.numerator, value.denominator))
+
+
+def ball(value: Value) -> Ball:
+    """The ball of a reported value and its bound."""
+    middle = rational_ball(Fraction(value.value))
+    radius = rational_ball(Fraction(value.bound))
+    return middle + flint.arb(0, 1) * radius
+
+
+def lg(x: Ball) -> Ball:
+    """The decimal logarithm; not finite where x may be 0 or negative."""
+    return x.log() / flint.arb(10).log()
+
+
+def bounds(x: Ball) -> tuple[Fraction, Fraction]:
+    """The ball's end points as exact rationals; the ball must be finite."""
+    middle, radius = (
+        Fraction(int(m)) * Fraction(2) ** int(e)
+        for m, e in (x.mid().man_exp(), flint.arb(x.rad()).man_exp())
+    )
+    return middle - radius, middle + radius
+
+
+def shown(x: Ball, digits: int = 6) -> str:
+    """The known digits of a ball, at most `digits`, in scientific notation."""
+    if not x.is_finite():
+        return "unknown"
+    low, high = bounds(x)
+    return known_digits((low + high) / 2, (high - low) / 2, digits)[0]
+
+
+def fixed(x: Ball, places: int) -> str:
+    """The ball's middle with so many decimal places, where both its ends round to it."""
+    if not x.is_finite():
+        return "unknown"
+    low, high = bounds(x)
+    unit = Fraction(1, 10**places)
+    if round(low / unit) != round(high / unit):
+        return shown(x)
+    return place(round(low / unit), places)
+
+
+def place(units: int, places: int) -> str:
+    """An integer number of 10^−places as a decimal."""
+    digits = f"{abs(units):0{places + 1}d}"
+    return f"{'-' if units < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def scientific(value: Fraction, digits: int = 3) -> str:
+    return decimal(value, digits)
+
+
+def slope(points: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """The least-squares slope of y over x and its standard error, of at least three points."""
+    count = len(points)
+    mean_x = sum(x for x, _ in points) / count
+    mean_y = sum(y for _, y in points) / count
+    spread = sum((x - mean_x) ** 2 for x, _ in points)
+    steep = sum((x - mean_x) * (y - mean_y) for x, y in points) / spread
+    residue = sum((y - mean_y - steep * (x - mean_x)) ** 2 for x, y in points)
+    return float(steep), float((residue / (count - 2) / spread) ** 0.5)

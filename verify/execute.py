@@ -1,0 +1,210 @@
+"""Tasks → results, on this process or a pool over the cores; what is finished is kept.
+
+Each result is written by itself, atomically, as soon as it is there, under a name made of the task
+and of this package's own source: an interrupted job goes on from there, and no result of other
+code is taken for one of this.
+"""
+
+import contextlib
+import hashlib
+import multiprocessing
+import os
+import signal
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from functools import cache
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from verify.exact import text
+from verify.formula import to_text
+from verify.hamiltonian import Hamiltonian
+from verify.plan import Plan, ProofTask, RunTask, Task
+from verify.proof.order import prove
+from verify.results import ProofResult, RunResult
+from verify.run import run
+from verify.schemes import get
+from verify.step_map import grouped
+
+Result = ProofResult | RunResult
+Done = Callable[[str, Result], None]  # called with a task's key and its result
+
+_WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
+_STEP_COST = {"float64": 1, "mpmath": 3000}
+
+
+def perform(task: Task) -> Result:
+    """Do one task."""
+    hamiltonian = Hamiltonian.parse(task.hamiltonian, task.parameters)
+    if isinstance(task, ProofTask):
+        return _proof(hamiltonian, task.scheme)
+    return run(
+        hamiltonian,
+        task.scheme,
+        q=task.q,
+        p=task.p,
+        step_size=task.step_size,
+        steps=task.steps,
+        arithmetic=task.arithmetic,
+        digits=task.digits,
+        observables=task.observables,
+        points=task.points,
+    )
+
+
+def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
+    begun = time.perf_counter()
+    step_map = get(scheme).step_map(hamiltonian)
+    proof = prove(step_map, get(scheme))
+    _, flat = step_map.flat
+    a, b, c, d = (to_text(grouped(flat.ring, entry)) for entry in flat.jacobian)
+    return ProofResult(
+        hamiltonian=to_text(hamiltonian.expression),
+        parameters={name: text(value) for name, value in hamiltonian.values},
+        scheme=scheme,
+        verdict=proof.verdict,
+        reason=proof.reason,
+        order=proof.order,
+        leading=to_text(proof.leading),
+        delta_j=to_text(proof.delta_j),
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        witness={name: text(value) for name, value in proof.witness.items()},
+        enclosure=proof.enclosure,
+        p_next=to_text(grouped(flat.ring, flat.p_next)),
+        q_next=to_text(grouped(flat.ring, flat.q_next)),
+        jacobian=((a, b), (c, d)),
+        seconds=time.perf_counter() - begun,
+    )
+
+
+class Store:
+    """Finished results in a folder, one JSON file each; None keeps them in memory only."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+
+    def path(self, name: str) -> Path | None:
+        return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
+
+    def get(self, name: str, task: Task) -> Result | None:
+        path = self.path(name)
+        if path is None or not path.exists():
+            return None
+        model = ProofResult if isinstance(task, ProofTask) else RunResult
+        try:
+            return model.model_validate_json(path.read_text())
+        except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
+            return None
+
+    def put(self, name: str, result: Result) -> None:
+        path = self.path(name)
+        if path is not None:
+            write_atomically(path, result.model_dump_json(indent=1))
+
+
+def write_atomically(path: Path, content: str) -> None:
+    """The whole content or the old one, never a part: written beside it, then renamed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+@cache
+def fingerprint() -> str:
+    """A name for this package's source, so that results of other code are not taken up."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def execute(
+    plan: Plan, store: Store, *, workers: int | None = None, done: Done | None = None
+) -> dict[str, Result]:
+    """All results of the plan by task key; those in the store are taken from there.
+
+    `workers`: None picks by the work there is; 1 stays in this process. On an interruption what
+    is finished is in the store already.
+    """
+    results: dict[str, Result] = {}
+
+    def finish(name: str, result: Result) -> None:
+        results[name] = result
+        if done:
+            done(name, result)
+
+    waiting: dict[str, Task] = {}
+    for name, task in plan.tasks.items():
+        kept = store.get(name, task)
+        if kept is None:
+            waiting[name] = task
+        else:
+            finish(name, kept)
+    for name, result in _performed(waiting, _workers(waiting, workers)):
+        store.put(name, result)
+        finish(name, result)
+    return results
+
+
+def cost(task: Task) -> int:
+    """About how many float64 steps the task is worth."""
+    if isinstance(task, RunTask):
+        return task.steps * _STEP_COST.get(task.arithmetic, 1000)
+    return 1
+
+
+def _workers(tasks: Mapping[str, Task], asked: int | None) -> int:
+    if asked is not None:
+        return max(1, asked)
+    if sum(map(cost, tasks.values())) < _WORTH_A_POOL:
+        return 1
+    return max(1, min(os.cpu_count() or 1, len(tasks)))
+
+
+def _performed(tasks: Mapping[str, Task], workers: int) -> Iterator[tuple[str, Result]]:
+    # Longest first, so that no worker is left with a long one at the end.
+    order = sorted(tasks, key=lambda name: -cost(tasks[name]))
+    if workers == 1:
+        for name in order:
+            yield name, perform(tasks[name])
+        return
+    with _pool(workers) as executor:
+        futures: dict[Future[Result], str] = {
+            executor.submit(perform, tasks[name]): name for name in order
+        }
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
+
+@contextlib.contextmanager
+def _pool(workers: int) -> Iterator[Executor]:
+    """A process pool that an interruption ends at once."""
+    # Spawned, not forked: this process may have threads (the progress bar's, a kernel's).
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupts)
+    try:
+        yield executor
+    except BaseException:
+        for process in (executor._processes or {}).values():
+            process.terminate()
+        executor.shutdown(wait=False, cancel_futures=True)
+        raise
+    executor.shutdown()
+
+
+def _ignore_interrupts() -> None:
+    # Ctrl-C reaches the whole process group; the parent alone answers it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,253 @@
+"""Claims about numbers, decided by runs whose values carry error bounds.
+
+A comparison counts only where the bounds do not touch what it is compared with; else the answer is
+UNDECIDED. A printed decimal is true where the value's whole ball rounds to it.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from itertools import pairwise, product
+
+import flint
+
+from verify.balls import Ball, ball, fixed, lg, precision, rational_ball, shown
+from verify.claims import (
+    Findings,
+    LessClaim,
+    MagnitudeClaim,
+    MonotoneClaim,
+    SpreadClaim,
+    TableClaim,
+    result,
+)
+from verify.errors import InputError
+from verify.exact import text
+from verify.results import ClaimResult, RunResult
+from verify.scene import Scene
+from verify.verdict import Verdict
+
+QUANTITIES: dict[str, Callable[[RunResult], Ball]] = {
+    "mse": lambda run: ball(run.values["mse"]),
+    "abs_lambda": lambda run: abs(ball(run.values["lambda"])),
+    "mse_over_lambda": lambda run: ball(run.values["mse"]) / abs(ball(run.values["lambda"])),
+    "delta_j_max": lambda run: ball(run.values["delta_j_max"]),
+}
+LABELS = {
+    "mse": "MSE",
+    "abs_lambda": "|Λ|",
+    "mse_over_lambda": "MSE/|Λ|",
+    "delta_j_max": "max |ΔJ|",
+}
+
+
+def _rows(claim: object, findings: Findings) -> tuple[Scene, list[list[RunResult]]]:
+    """The grid's runs: one row an initial value, its runs by increasing step size."""
+    scene = findings.scene(claim.scene)  # type: ignore[attr-defined]
+    runs = findings.runs(scene, claim.scheme)  # type: ignore[attr-defined]
+    if not runs or scene.grid is None:
+        raise InputError("claim", claim.id, "its scene has no runs of that scheme")  # type: ignore[attr-defined]
+    width = len(scene.grid.step_sizes)
+    rows = [runs[i : i + width] for i in range(0, len(runs), width)]
+    return scene, [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
+
+
+def _start(run: RunResult) -> str:
+    return f"q₀ = {run.q}, p₀ = {run.p}"
+
+
+def check_table(claim: TableClaim, findings: Findings) -> ClaimResult:
+    scene, rows = _rows(claim, findings)
+    details = [["initial value", *(f"h = {text(h)}" for h in claim.step_sizes)]]
+    details.append(["printed, for all", *claim.printed])
+    verdicts: list[bool | None] = []
+    lowest = highest = None
+    with precision():
+        for row in rows:
+            by_h = {Fraction(run.step_size): run for run in row}
+            values = [lg(ball(_at(by_h, h, claim).values["mse"])) for h in claim.step_sizes]
+            verdicts += [_rounds_to(v, p) for v, p in zip(values, claim.printed, strict=True)]
+            details.append([_start(row[0]), *(fixed(v, 4) for v in values)])
+            for v in values:
+                lowest = v if lowest is None or v < lowest else lowest
+                highest = v if highest is None or v > highest else highest
+        seen = f"computed lg MSE lies between {fixed(lowest, 2)} and {fixed(highest, 2)}"
+        names = _identities(claim, rows[0], scene.grid.time if scene.grid else None)
+    wrong = verdicts.count(False)
+    if wrong:
+        named = f"; the printed row is {' = '.join(names)} to all its digits" if names else ""
+        evidence = f"{wrong} of {len(verdicts)} entries are wrong: {seen}{named}"
+        return result(claim, Verdict.REFUTED, evidence, details)
+    verdict = Verdict.UNDECIDED if None in verdicts else Verdict.MEASURED
+    return result(claim, verdict, f"{seen}, as printed", details)
+
+
+def _at(by_h: dict[Fraction, RunResult], h: Fraction, claim: TableClaim) -> RunResult:
+    if h not in by_h:
+        raise InputError(f"claim {claim.id}: step_sizes", text(h), "is not in the scene's grid")
+    return by_h[h]
+
+
+def _rounds_to(value: Ball, printed: str) -> bool | None:
+    """Whether the value's whole ball rounds to the printed decimal; None where only a part does."""
+    half = Fraction(1, 2 * 10 ** len(printed.partition(".")[2]))
+    middle = Fraction(printed)
+    accepted = rational_ball(middle) + flint.arb(0, 1) * rational_ball(half)
+    if accepted.contains(value):
+        return True
+    return None if accepted.overlaps(value) else False
+
+
+def _identities(claim: TableClaim, row: Sequence[RunResult], time: Fraction | None) -> list[str]:
+    """Products hᵃ Nᵇ Tᶜ whose lg is the printed row to all its digits, simplest first.
+
+    Looked for among small exponents. As N h = T (up to a step), one of a, b, c can be 0.
+    """
+    by_h = {Fraction(run.step_size): run for run in row}
+    found = []
+    for a, b, c in product(range(-6, 7), range(-3, 4), range(-3, 4)):
+        if 0 not in (a, b, c) or (a, b, c) == (0, 0, 0):
+            continue
+        if all(
+            _rounds_to(lg(_power(h, by_h[h].steps, time, (a, b, c))), printed) is True
+            for h, printed in zip(claim.step_sizes, claim.printed, strict=True)
+        ):
+            found.append((abs(a) + abs(b) + abs(c), (a, b, c)))
+    return [f"lg({_monomial(exponents)})" for _, exponents in sorted(found)]
+
+
+def _power(h: Fraction, steps: int, time: Fraction | None, exponents: tuple[int, int, int]) -> Ball:
+    a, b, c = exponents
+    length = h * steps if time is None else time
+    return rational_ball(h**a * Fraction(steps) ** b * length**c)
+
+
+def _monomial(exponents: tuple[int, int, int]) -> str:
+    above = [_factor(n, e) for n, e in zip("hNT", exponents, strict=True) if e > 0]
+    below = [_factor(n, -e) for n, e in zip("hNT", exponents, strict=True) if e < 0]
+    return (" ".join(above) or "1") + (f"/{' '.join(below)}" if below else "")
+
+
+def _factor(name: str, exponent: int) -> str:
+    return name if exponent == 1 else f"{name}^{exponent}"
+
+
+def check_spread(claim: SpreadClaim, findings: Findings) -> ClaimResult:
+    _, rows = _rows(claim, findings)
+    quantity = QUANTITIES[claim.quantity]
+    details = [["step size", "least", "greatest", "factor"]]
+    verdicts: list[bool | None] = []
+    worst = Fraction(0)
+    with precision():
+        for column in zip(*rows, strict=True):
+            values = [quantity(run) for run in column]
+            low, high = min(values, key=_middle), max(values, key=_middle)
+            factor = high / low
+            details.append([column[0].step_size, shown(low), shown(high), shown(factor, 3)])
+            allowed = rational_ball(claim.factor)
+            verdicts.append(True if factor < allowed else False if factor > allowed else None)
+            worst = max(worst, _middle(factor))
+    evidence = (
+        f"{LABELS[claim.quantity]} varies over the initial values by a factor of up to "
+        f"{float(worst):.2g} at one step size (allowed here: {text(claim.factor)})"
+    )
+    return result(claim, _all(verdicts), evidence, details)
+
+
+def _middle(x: Ball) -> Fraction:
+    mantissa, exponent = x.mid().man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _all(verdicts: Sequence[bool | None]) -> Verdict:
+    if False in verdicts:
+        return Verdict.REFUTED
+    return Verdict.UNDECIDED if None in verdicts else Verdict.MEASURED
+
+
+def _table(rows: Sequence[Sequence[RunResult]], quantity: str) -> list[list[str]]:
+    head = ["initial value", *(f"h = {run.step_size}" for run in rows[0])]
+    body = [[_start(row[0]), *(shown(QUANTITIES[quantity](run), 5) for run in row)] for row in rows]
+    return [head, *body]
+
+
+def check_monotone(claim: MonotoneClaim, findings: Findings) -> ClaimResult:
+    _, rows = _rows(claim, findings)
+    quantity, sign = QUANTITIES[claim.quantity], 1 if claim.direction == "increases" else -1
+    label = LABELS[claim.quantity]
+    verdicts: list[bool | None] = []
+    counterexamples = []
+    with precision():
+        for row in rows:
+            for one, two in pairwise(row):
+                gap = sign * (quantity(two) - quantity(one))
+                verdicts.append(True if gap > 0 else False if gap < 0 else None)
+                if gap < 0:
+                    counterexamples.append(
+                        f"{_start(one)}: from h = {one.step_size} to {two.step_size}, {label} goes "
+                        f"from {shown(quantity(one), 4)} to {shown(quantity(two), 4)}"
+                    )
+        details = _table(rows, claim.quantity)
+    if counterexamples:
+        count = f"{len(counterexamples)} of {len(verdicts)} neighbouring pairs go the other way"
+        return result(claim, Verdict.REFUTED, f"{count}; {counterexamples[0]}", details)
+    evidence = f"{label} {claim.direction} between all {len(verdicts)} neighbouring step sizes"
+    return result(claim, _all(verdicts), evidence, details)
+
+
+def check_less(claim: LessClaim, findings: Findings) -> ClaimResult:
+    _, rows = _rows(claim, findings)
+    one, two = QUANTITIES[claim.quantity], QUANTITIES[claim.than]
+    with precision():
+        gaps = [two(run) - one(run) for row in rows for run in row]
+        verdicts = [True if g > 0 else False if g < 0 else None for g in gaps]
+        ratios = [one(run) / two(run) for row in rows for run in row]
+        largest = max(map(_middle, ratios))
+    evidence = (
+        f"{LABELS[claim.quantity]} is at most {float(largest):.2g} times {LABELS[claim.than]} "
+        f"in {len(gaps)} runs"
+    )
+    return result(claim, _all(verdicts), evidence)
+
+
+def check_magnitude(claim: MagnitudeClaim, findings: Findings) -> ClaimResult:
+    _, rows = _rows(claim, findings)
+    names = list(claim.exponents)
+    details = [["initial value", *(f"{LABELS[n]} (about 10^{claim.exponents[n]}?)" for n in names)]]
+    holds: list[bool | None] = []
+    half = Fraction(1, 2)
+    with precision():
+        for row in rows:
+            runs = [r for r in row if Fraction(r.step_size) == claim.step_size]
+            if not runs:
+                raise InputError(f"claim {claim.id}", text(claim.step_size), "is not in the grid")
+            values = {name: QUANTITIES[name](runs[0]) for name in names}
+            off = [abs(lg(values[n]) - claim.exponents[n]) - rational_ball(half) for n in names]
+            holds.append(_every([True if x < 0 else False if x > 0 else None for x in off]))
+            details.append([_start(row[0]), *(shown(values[n], 4) for n in names)])
+    yes = [details[i + 1][0] for i, h in enumerate(holds) if h is True]
+    no = [details[i + 1][0] for i, h in enumerate(holds) if h is False]
+    evidence = f"holds for {_list(yes)}; does not hold for {_list(no)}"
+    decided = _some(holds) if claim.quantifier == "some" else _every(holds)
+    verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[decided]
+    return result(claim, verdict, evidence, details)
+
+
+def _every(answers: Sequence[bool | None]) -> bool | None:
+    return False if False in answers else None if None in answers else True
+
+
+def _some(answers: Sequence[bool | None]) -> bool | None:
+    return True if True in answers else None if None in answers else False
+
+
+def _list(names: Sequence[str]) -> str:
+    return "; ".join(f"({name})" for name in names) or "none of the initial values"
+
+
+CHECKS = {
+    TableClaim: check_table,
+    SpreadClaim: check_spread,
+    MonotoneClaim: check_monotone,
+    LessClaim: check_less,
+    MagnitudeClaim: check_magnitude,
+}

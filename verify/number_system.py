@@ -1,0 +1,28 @@
+"""What a kernel needs of a number system."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """One number system at one precision.
+
+    `number` rounds an exact rational once; `exact` gives the rational that a number is. `compile`
+    turns a kernel's source, which uses + − * / and the names in `functions`, into the function of
+    that name. `guard` is a condition on `{x}`, put into the loop, that holds while the orbit is
+    in range (None where infinities propagate and are found afterwards). `chunk`: steps between
+    looks at progress and interruption. Two arithmetics of one name and precision are equal.
+    """
+
+    name: str
+    bits: int
+    number: Callable[[Fraction], Any] = field(compare=False)
+    exact: Callable[[Any], Fraction] = field(compare=False)
+    finite: Callable[[Any], bool] = field(compare=False)
+    functions: Mapping[str, Any] = field(compare=False)
+    compile: Callable[[str, str, Mapping[str, Any]], Callable[..., Any]] = field(compare=False)
+    guard: str | None = field(compare=False)
+    chunk: int = field(compare=False)

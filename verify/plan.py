@@ -1,0 +1,150 @@
+"""What is asked → what is needed: tasks, each once, with reasons; and what is left out and why."""
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any, Literal
+
+from verify.exact import text
+from verify.formula import to_text
+from verify.results import Frozen
+from verify.run import CLOSED_FORM
+from verify.scene import Number, Scene, StepSize
+from verify.schemes import get
+
+
+class ProofTask(Frozen):
+    """Prove the order of ΔJ and of the map for one H and one scheme."""
+
+    kind: Literal["proof"] = "proof"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+
+
+class RunTask(Frozen):
+    """Run N steps and report the observables."""
+
+    kind: Literal["run"] = "run"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    step_size: StepSize
+    steps: int
+    q: Number
+    p: Number
+    arithmetic: str
+    digits: int
+    observables: tuple[str, ...]
+    points: int
+
+
+Task = ProofTask | RunTask
+
+
+def key(task: Task) -> str:
+    """A name for the task by its content."""
+    content = json.dumps(task.model_dump(mode="json"), sort_keys=True)
+    return hashlib.sha256(content.encode()).hexdigest()[:24]
+
+
+@dataclass
+class Plan:
+    """Tasks in the order they are asked for, each with every reason for it."""
+
+    tasks: dict[str, Task] = field(default_factory=dict)
+    reasons: dict[str, list[str]] = field(default_factory=dict)
+    left_out: list[tuple[str, str]] = field(default_factory=list)
+
+    def need(self, task: Task, reason: str) -> None:
+        name = key(task)
+        self.tasks.setdefault(name, task)
+        reasons = self.reasons.setdefault(name, [])
+        if reason not in reasons:
+            reasons.append(reason)
+
+    def leave_out(self, what: str, why: str) -> None:
+        if (what, why) not in self.left_out:
+            self.left_out.append((what, why))
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "tasks": [
+                {**task.model_dump(mode="json"), "reasons": self.reasons[name]}
+                for name, task in self.tasks.items()
+            ],
+            "left_out": [{"what": what, "why": why} for what, why in self.left_out],
+        }
+
+
+def plan_scenes(scenes: list[Scene]) -> Plan:
+    """The tasks of all scenes; a task that several ask for is done once."""
+    plan = Plan()
+    for scene in scenes:
+        _plan_scene(plan, scene)
+    return plan
+
+
+def proof_task(scene: Scene, scheme: str) -> ProofTask:
+    exact = scene.exact_hamiltonian()
+    return ProofTask(
+        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme
+    )
+
+
+def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
+    """The grid's run for a step size and the index of an initial value."""
+    assert scene.grid is not None  # noqa: S101 - asked for by grids only
+    exact, grid, at = scene.exact_hamiltonian(), scene.grid, scene.grid.initial_values[start]
+    return RunTask(
+        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, arithmetic=grid.arithmetic,
+        digits=grid.digits, observables=grid.observables, points=0,
+    )  # fmt: skip
+
+
+def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
+    exact, series = scene.exact_hamiltonian(), scene.series[index]
+    at = series.initial_value
+    return RunTask(
+        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        step_size=series.step_size, steps=series.count, q=at.q, p=at.p, arithmetic="float64",
+        digits=17, observables=CLOSED_FORM, points=series.points,
+    )  # fmt: skip
+
+
+def _plan_scene(plan: Plan, scene: Scene) -> None:
+    name = scene.name or scene.title or "scene"
+    for scheme in scene.schemes:
+        plan.need(proof_task(scene, scheme), f"{name}: closed form and order of ΔJ")
+        step_map = get(scheme).step_map(scene.exact_hamiltonian())
+        preserves = step_map.preserves_area
+        if scene.grid:
+            _plan_grid(plan, scene, scheme, preserves)
+        for index, series in enumerate(scene.series):
+            what = f"{name}: series of {scheme} at h = {text(series.step_size)}"
+            if preserves:
+                plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
+            else:
+                plan.need(series_task(scene, scheme, index), f"{what}, for its plot")
+    if not scene.grid:
+        plan.leave_out(f"{name}: runs over step sizes", "the scene has no [grid]")
+    if not scene.series:
+        plan.leave_out(f"{name}: trajectories and plots over time", "the scene has no [[series]]")
+    if not scene.criteria:
+        plan.leave_out(f"{name}: criteria 1–4", "the scene names no criteria")
+
+
+def _plan_grid(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
+    name, grid = scene.name or scene.title or "scene", scene.grid
+    assert grid is not None  # noqa: S101 - the caller's condition
+    if preserves and set(grid.observables) <= set(CLOSED_FORM):
+        plan.leave_out(
+            f"{name}: {len(grid.step_sizes) * len(grid.initial_values)} runs of {scheme}",
+            "ΔJ ≡ 0 is proved: ΔJ, MSE and Λ are exactly 0",
+        )
+        return
+    for start in range(len(grid.initial_values)):
+        for h in grid.step_sizes:
+            plan.need(grid_task(scene, scheme, h, start), f"{name}: grid")

@@ -1,0 +1,191 @@
+"""Polynomials in generators → a straight-line program: one operation a line, nothing twice.
+
+Operations are hash-consed, so a subexpression that occurs twice is computed once. What depends
+only on the step size, the parameters and constants is `static`, and is computed once before the
+loop; so a polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters
+look like inside it. Constants stay exact rationals; an arithmetic converts them at the edge.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import permutations
+
+from verify.ring import Generator, Poly, Ring
+
+_LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
+_FUNCTION_LATENCY = 20
+_MOST_ORDERS = 24  # orders of the variables tried for nested evaluation
+
+Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
+
+
+@dataclass(frozen=True)
+class Op:
+    """`kind`: input, const, add, sub, mul, neg, inverse, root, or a function's name."""
+
+    kind: str
+    args: tuple[int, ...] = ()
+    name: str = ""
+    value: Fraction = Fraction(0)
+    degree: int = 1
+
+
+class Program:
+    """A growing list of operations; each method returns the index of its result."""
+
+    def __init__(self) -> None:
+        self.ops: list[Op] = []
+        self.static: list[bool] = []
+        self.depth: list[int] = []
+        self._known: dict[Op, int] = {}
+
+    def _add(self, op: Op, static: bool) -> int:
+        if op not in self._known:
+            self._known[op] = len(self.ops)
+            self.ops.append(op)
+            self.static.append(static)
+            ready = max((self.depth[a] for a in op.args), default=0)
+            cost = 0 if static else _LATENCY.get(op.kind, _FUNCTION_LATENCY if op.args else 0)
+            self.depth.append(0 if static else ready + cost)
+        return self._known[op]
+
+    def input(self, name: str, *, static: bool) -> int:
+        return self._add(Op("input", name=name), static)
+
+    def constant(self, value: Fraction) -> int:
+        return self._add(Op("const", value=value), True)
+
+    def apply(self, kind: str, *args: int, degree: int = 1) -> int:
+        """A function, `neg`, `inverse` or `root` of earlier results."""
+        return self._add(Op(kind, args, degree=degree), all(self.static[a] for a in args))
+
+    def is_constant(self, x: int, value: int) -> bool:
+        return self.ops[x].kind == "const" and self.ops[x].value == value
+
+    def neg(self, x: int) -> int:
+        if self.ops[x].kind == "const":
+            return self.constant(-self.ops[x].value)
+        if self.ops[x].kind == "neg":
+            return self.ops[x].args[0]
+        return self.apply("neg", x)
+
+    def add(self, x: int, y: int) -> int:
+        for a, b in ((x, y), (y, x)):
+            if self.is_constant(a, 0):
+                return b
+        if self.ops[y].kind == "neg":
+            return self.apply("sub", x, self.ops[y].args[0])
+        if self.ops[x].kind == "neg":
+            return self.apply("sub", y, self.ops[x].args[0])
+        return self.apply("add", *sorted((x, y)))
+
+    def mul(self, x: int, y: int) -> int:
+        for a, b in ((x, y), (y, x)):
+            if self.is_constant(a, 0):
+                return a
+            if self.is_constant(a, 1):
+                return b
+            if self.is_constant(a, -1):
+                return self.neg(b)
+            if self.ops[a].kind == "neg" and not self.static[a]:
+                return self.neg(self.mul(self.ops[a].args[0], b))
+        return self.apply("mul", *sorted((x, y)))
+
+    def power(self, x: int, n: int) -> int:
+        if n == 0:
+            return self.constant(Fraction(1))
+        if n == 1:
+            return x
+        half = self.power(x, n // 2)
+        square = self.mul(half, half)
+        return self.mul(square, x) if n % 2 else square
+
+
+class Evaluator:
+    """Writes ring elements into a program, at the point whose variables are given inputs."""
+
+    def __init__(self, program: Program, ring: Ring, inputs: Mapping[str, int]) -> None:
+        self.program = program
+        self.ring = ring
+        self._at: dict[int, int] = {}
+        self._inputs = inputs
+
+    def evaluate(self, x: Poly) -> int:
+        """The index of x's value."""
+        used = self.ring.used(x)
+        for generator in used:
+            if generator.index not in self._at:
+                self._at[generator.index] = self._generator(generator)
+        dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
+        return self._nested(self._collect(x, dynamic), [self._at[i] for i in dynamic])
+
+    def _generator(self, g: Generator) -> int:
+        if g.kind == "variable":
+            return self._inputs[str(g.expression)]
+        if g.kind == "pi":
+            return self.program._add(Op("pi"), True)
+        return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
+
+    def _collect(self, x: Poly, dynamic: Sequence[int]) -> list[Term]:
+        """x by monomials in the dynamic generators, the static coefficients evaluated."""
+        parts: dict[tuple[int, ...], list[tuple[tuple[int, ...], Fraction]]] = {}
+        for monomial, c in x.to_dict().items():
+            outer = tuple(int(monomial[i]) for i in dynamic)
+            inner = tuple(0 if i in dynamic else int(n) for i, n in enumerate(monomial))
+            parts.setdefault(outer, []).append((inner, Fraction(int(c.numer()), int(c.denom()))))
+        return [(outer, self._static(terms)) for outer, terms in parts.items()]
+
+    def _static(self, terms: Sequence[tuple[tuple[int, ...], Fraction]]) -> int:
+        program = self.program
+        total = program.constant(Fraction(0))
+        for monomial, coefficient in terms:
+            product = program.constant(coefficient)
+            for index, n in enumerate(monomial):
+                if n:
+                    product = program.mul(product, program.power(self._at[index], n))
+            total = program.add(total, product)
+        return total
+
+    def _nested(self, terms: list[Term], variables: list[int]) -> int:
+        """The sum of the terms in nested form, by the order of variables of least latency."""
+        orders = list(permutations(range(len(variables)))) if len(variables) <= 4 else []
+        if not 1 < len(orders) <= _MOST_ORDERS:
+            return self._horner(terms, variables, tuple(range(len(variables))))
+
+        def latency(order: tuple[int, ...]) -> tuple[int, int]:
+            trial = Evaluator(_copy(self.program), self.ring, self._inputs)
+            result = trial._horner(terms, variables, order)
+            return trial.program.depth[result], len(trial.program.ops)
+
+        return self._horner(terms, variables, min(orders, key=latency))
+
+    def _horner(self, terms: list[Term], variables: list[int], order: tuple[int, ...]) -> int:
+        """Horner's rule in the first variable of `order`, its coefficients by the others."""
+        program = self.program
+        if not order:
+            total = program.constant(Fraction(0))
+            for _, coefficient in terms:
+                total = program.add(total, coefficient)
+            return total
+        v, rest = order[0], order[1:]
+        groups: dict[int, list[Term]] = {}
+        for term in terms:
+            groups.setdefault(term[0][v], []).append(term)
+        powers = sorted(groups, reverse=True)
+        total = self._horner(groups[powers[0]], variables, rest)
+        for above, n in zip(powers, [*powers[1:], None], strict=True):
+            step = above - (n or 0)
+            total = program.mul(total, program.power(variables[v], step))
+            if n is not None:
+                total = program.add(total, self._horner(groups[n], variables, rest))
+                if n == 0:
+                    break
+        return total
+
+
+def _copy(program: Program) -> Program:
+    copy = Program()
+    copy.ops, copy.static, copy.depth = program.ops[:], program.static[:], program.depth[:]
+    copy._known = dict(program._known)
+    return copy

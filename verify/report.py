@@ -1,0 +1,83 @@
+"""Scenes and claims → a Report of results: plans, executes, judges. Makes no page."""
+
+import os
+import platform
+import sys
+import time
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from verify import systems
+from verify.claims import Claim, Findings, check_claims
+from verify.exact import text
+from verify.execute import Done, Store, execute
+from verify.formula import to_text
+from verify.plan import Plan, key, plan_scenes, series_task
+from verify.results import Provenance, Report, RunResult, SceneResult
+from verify.scene import Scene
+
+_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
+
+
+def make_report(
+    title: str,
+    scenes: Sequence[Scene],
+    claims: Sequence[Claim],
+    store: Store,
+    *,
+    command: str,
+    plan: Plan | None = None,
+    workers: int | None = None,
+    done: Done | None = None,
+) -> Report:
+    """Compute what the scenes and claims need, and judge. The claims' scenes must be given."""
+    begun = time.perf_counter()
+    plan = plan_scenes(list(scenes)) if plan is None else plan
+    kept = sum(store.get(name, task) is not None for name, task in plan.tasks.items())
+    results = execute(plan, store, workers=workers, done=done)
+    findings = Findings({scene.name: scene for scene in scenes}, results)
+    return Report(
+        title=title,
+        claims=tuple(check_claims(claims, findings)),
+        scenes=tuple(_scene_result(scene, findings) for scene in scenes),
+        left_out=tuple(plan.left_out),
+        provenance=Provenance(
+            command=command,
+            versions=versions(),
+            machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+            seconds=time.perf_counter() - begun,
+            kept=kept,
+            computed=len(plan.tasks) - kept,
+        ),
+    )
+
+
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    found = {"Python": ".".join(map(str, sys.version_info[:3]))}
+    return found | {name: version(name) for name in _VERSIONED}
+
+
+def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
+    exact = scene.exact_hamiltonian()
+    series = [
+        findings.results.get(key(series_task(scene, scheme, index)))
+        for scheme in scene.schemes
+        for index in range(len(scene.series))
+    ]
+    return SceneResult(
+        name=scene.name,
+        title=scene.title or scene.name,
+        hamiltonian=to_text(exact.expression),
+        parameters={name: text(value) for name, value in exact.values},
+        source=systems.get(scene.system).source if scene.system else "the user's formula",
+        time=text(scene.grid.time) if scene.grid and scene.grid.time else None,
+        proofs=tuple(findings.proof(scene, scheme) for scheme in scene.schemes),
+        criteria=tuple(
+            findings.criterion(scene, scheme, number)
+            for scheme in scene.schemes
+            for number in scene.criteria
+        ),
+        runs=tuple(run for scheme in scene.schemes for run in findings.runs(scene, scheme)),
+        series=tuple(run for run in series if isinstance(run, RunResult)),
+    )

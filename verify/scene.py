@@ -1,0 +1,178 @@
+"""A scene: the declaration of what is to be verified, read from TOML. Unknown keys are refused.
+
+    title = "My oscillator"
+    hamiltonian = "p**2/2 + q**4/4"        # or: system = "duffing"
+    parameters = { delta = "7/3" }
+    schemes = ["lie2", "symplectic-euler"] # or "p_next = …; q_next = …"
+    criteria = [1, 2, 3, 4]
+
+    [grid]                                 # runs: every step size with every initial value
+    time = 20000                           # or steps = 5000
+    step_sizes = [0.001, 0.01]
+    initial_values = [{ q = 1.5, p = 0 }]
+
+    [[series]]                             # thinned ΔJ(t) and Λ(t), for plots
+    step_size = 0.01
+    initial_value = { q = 1.5, p = 0 }
+
+Numbers are exact: `0.001` in the file is 1/1000.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
+
+from verify import arithmetic as number_systems
+from verify import schemes as scheme_catalogue
+from verify import systems
+from verify.errors import InputError
+from verify.exact import positive, rational, text
+from verify.hamiltonian import Hamiltonian
+from verify.results import Frozen
+from verify.run import ASKED, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
+
+Number = Annotated[
+    Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
+]
+StepSize = Annotated[
+    Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
+]
+Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
+
+
+class InitialValue(Frozen):
+    q: Number
+    p: Number
+
+
+class Grid(Frozen):
+    """Runs of every scheme for every step size and initial value, over `time` or `steps`."""
+
+    time: StepSize | None = None
+    steps: Steps | None = None
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
+    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
+    arithmetic: str = "float64"
+    digits: Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)] = 17
+    observables: tuple[str, ...] = CLOSED_FORM
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("grid", "time, steps", "give one of the two")
+        if self.arithmetic not in number_systems.names():
+            number_systems.get(self.arithmetic, self.digits)
+        for name in self.observables:
+            if name not in ASKED:
+                raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
+        for h in self.step_sizes:
+            self.steps_for(h)
+        return self
+
+    def steps_for(self, h: Fraction) -> int:
+        """N: as given, or the whole steps of size h that fit into `time`."""
+        if self.steps is not None:
+            return self.steps
+        assert self.time is not None  # noqa: S101 - the validator above
+        count = self.time // h
+        if not 1 <= count <= MAX_STEPS:
+            raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {MAX_STEPS}")
+        return count
+
+
+class Series(Frozen):
+    """One run kept as a thinned series of at most `points` points; `time` or `steps` long."""
+
+    step_size: StepSize
+    initial_value: InitialValue
+    time: StepSize | None = None
+    steps: Steps | None = None
+    points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("series", "time, steps", "give one of the two")
+        return self
+
+    @property
+    def count(self) -> int:
+        if self.steps is not None:
+            return self.steps
+        assert self.time is not None  # noqa: S101 - the validator above
+        return max(1, self.time // self.step_size)
+
+
+class Scene(Frozen):
+    """See the module's text for the keys."""
+
+    name: str = ""
+    title: str = ""
+    system: str | None = None
+    hamiltonian: str | None = None
+    parameters: dict[str, Number] = Field(default_factory=dict)
+    schemes: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+    criteria: tuple[Annotated[int, Field(ge=1, le=4)], ...] = ()
+    grid: Grid | None = None
+    series: tuple[Series, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.system is None) == (self.hamiltonian is None):
+            raise InputError("scene", "system, hamiltonian", "give one of the two")
+        exact = self.exact_hamiltonian()
+        for name in self.schemes:
+            scheme_catalogue.get(name).step_map(exact)
+        if (self.grid or self.series) and exact.symbols:
+            raise InputError("parameter", exact.symbols[0], "has no value; a run needs one")
+        return self
+
+    def exact_hamiltonian(self) -> Hamiltonian:
+        """The Hamiltonian with the scene's parameter values."""
+        if self.system is not None:
+            return systems.get(self.system).hamiltonian(self.parameters)
+        return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
+
+
+def load_scene(path: Path) -> Scene:
+    """The scene in a TOML file; InputError names the file, the key, its value and the problem."""
+    return scene_from(read_toml(path), path.name, default_name=path.stem)
+
+
+def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
+    """The scene from a mapping, as TOML gives it."""
+    try:
+        scene = Scene.model_validate(dict(data))
+    except ValidationError as error:
+        raise one_line(error, source) from None
+    return scene if scene.name else scene.model_copy(update={"name": default_name})
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The file's content with its decimals kept as text, so that they stay exact."""
+    try:
+        content = path.read_bytes().decode()
+        return tomllib.loads(content, parse_float=str)
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+    except UnicodeDecodeError:
+        raise InputError("file", str(path), "is not UTF-8 text") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError("file", str(path), f"is not TOML: {error}") from None
+
+
+def one_line(error: ValidationError, source: str) -> InputError:
+    first = error.errors(include_url=False)[0]
+    cause = first.get("ctx", {}).get("error")
+    where = ".".join(str(part) for part in first["loc"])
+    if isinstance(cause, InputError):
+        prefix = f"{source}: {where}: " if where else f"{source}: "
+        return InputError(prefix + cause.name, cause.value, cause.problem)
+    problem = first["msg"]
+    if first["type"] == "extra_forbidden":
+        problem = "unknown key"
+    return InputError(f"{source}: {where}", first.get("input"), problem)
