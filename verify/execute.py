@@ -25,7 +25,7 @@ from verify.hamiltonian import Hamiltonian
 from verify.plan import Plan, ProofTask, RunTask, Task
 from verify.proof.order import prove
 from verify.results import ProofResult, RunResult
-from verify.run import run
+from verify.runs import run
 from verify.schemes import get
 from verify.step_map import grouped
 

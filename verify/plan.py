@@ -9,7 +9,7 @@ from typing import Any, Literal
 from verify.exact import text
 from verify.formula import to_text
 from verify.results import Frozen
-from verify.run import CLOSED_FORM
+from verify.runs import CLOSED_FORM
 from verify.scene import Number, Scene, StepSize
 from verify.schemes import get
 

@@ -33,7 +33,7 @@ from verify.errors import InputError
 from verify.exact import positive, rational, text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
-from verify.run import ASKED, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
+from verify.runs import ASKED, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
 
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)

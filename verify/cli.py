@@ -1,0 +1,274 @@
+"""The command `verify`. Heavy libraries are imported inside the command that needs them."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify import show
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.hamiltonian import Hamiltonian
+
+INTERRUPTED = 130
+BAD_INPUT = 2
+
+_SYSTEM_OPTIONS = (
+    click.option("--system", help="A named system: duffing, pendulum, harmonic."),
+    click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
+    click.option(
+        "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
+    ),
+    click.option(
+        "--scheme",
+        required=True,
+        help="lie1, lie2, …, symplectic-euler, or 'p_next = …; q_next = …'.",
+    ),
+    click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output."),
+)
+
+
+def _with_system(command: Any) -> Any:
+    for option in reversed(_SYSTEM_OPTIONS):
+        command = option(command)
+    return command
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="areaproof", prog_name="verify")
+def cli() -> None:
+    """Verify how well a one-step scheme for p' = −H_q, q' = H_p preserves area.
+
+    \b
+    verify prove --system duffing --scheme lie2
+    verify run --system duffing --param delta=1 --scheme lie2 \\
+           --step-size 0.001 --steps 20000 --q 1.5 --p 0 --digits 50
+    verify report paper -o paper-report
+
+    Numbers are exact: 0.001 is 1/1000, 7/3 is a third of seven.
+    """
+
+
+@cli.command()
+@_with_system
+def prove(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    as_json: bool,
+) -> None:
+    """Prove the order in h of ΔJ = det J − 1, and of the map itself, for one Hamiltonian.
+
+    A parameter without a value stays a symbol, and the proof holds for all its values.
+    """
+    import time
+
+    from verify.proof.order import prove as prove_order
+    from verify.schemes import get
+
+    begun = time.perf_counter()
+    exact = _hamiltonian(system, hamiltonian, params)
+    chosen = get(scheme)
+    proof = prove_order(chosen.step_map(exact), chosen)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    if as_json:
+        show.print_json(show.proof_json(exact, chosen.name, proof, seconds))
+    else:
+        show.print_proof(exact, chosen.name, proof)
+
+
+@cli.command()
+@_with_system
+@click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
+@click.option("--steps", required=True, type=int, metavar="N", help="At least 1.")
+@click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
+@click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
+@click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
+@click.option("--arithmetic", help="float64 or mpmath; mpmath where --digits is given.")
+def run(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    as_json: bool,
+    step_size: str,
+    steps: int,
+    q: str,
+    p: str,
+    digits: int | None,
+    arithmetic: str | None,
+) -> None:
+    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound."""
+    from verify.exact import positive, rational
+    from verify.progress import progress_bar
+    from verify.runs import ASKED, CLOSED_FORM
+    from verify.runs import run as run_scheme
+
+    exact = _hamiltonian(system, hamiltonian, params)
+    at_q, at_p, h = rational(q, "q"), rational(p, "p"), positive(step_size, "step_size")
+    arithmetic = arithmetic or ("mpmath" if digits else "float64")
+    with progress_bar("stepping", steps) as advance:
+        last = 0
+
+        def tell(done: int) -> None:
+            nonlocal last
+            advance(done - last)
+            last = done
+
+        result = run_scheme(
+            exact,
+            scheme,
+            q=at_q,
+            p=at_p,
+            step_size=h,
+            steps=steps,
+            arithmetic=arithmetic,
+            digits=17 if digits is None else digits,
+            # The plain way shows what rounding does to it; at many digits that is nothing.
+            observables=ASKED if arithmetic == "float64" else CLOSED_FORM,
+            progress=tell,
+        )
+    if as_json:
+        show.print_json(show.run_json(result))
+    else:
+        show.print_run(result)
+
+
+@cli.command()
+@click.argument("scene", metavar="SCENE")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+def plan(scene: str, as_json: bool) -> None:
+    """Show what SCENE (a TOML file, or `paper`) needs computed, what is left out, and why."""
+    from verify.plan import plan_scenes
+
+    _, scenes, _ = _target(scene)
+    planned = plan_scenes(scenes).as_json()
+    if as_json:
+        show.print_json(planned)
+    else:
+        show.print_plan(planned)
+
+
+@cli.command()
+@click.argument("scene", metavar="SCENE")
+@click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
+@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+def report(scene: str, output: Path | None, workers: int | None, as_json: bool) -> None:
+    """Verify SCENE (a TOML file, or `paper`) and write DIR/index.html and DIR/results.json.
+
+    What is finished is kept in DIR/kept; an interrupted report goes on from there.
+    """
+    from reports.page import write
+
+    from verify.execute import Store, cost
+    from verify.plan import plan_scenes
+    from verify.progress import progress_bar
+    from verify.report import make_report
+
+    title, scenes, claims = _target(scene)
+    folder = output or Path(f"{scenes[0].name if scene != 'paper' else 'paper'}-report")
+    _writable(folder)
+    planned = plan_scenes(scenes)
+    total = sum(cost(task) for task in planned.tasks.values())
+    finished = 0
+    with progress_bar(f"{len(planned.tasks)} tasks", total) as advance:
+
+        def done(name: str, _: object) -> None:
+            nonlocal finished
+            finished += 1
+            advance(cost(planned.tasks[name]))
+
+        try:
+            made = make_report(
+                title,
+                scenes,
+                claims,
+                Store(folder / "kept"),
+                command=f"verify report {scene} -o {folder.name}",
+                plan=planned,
+                workers=workers,
+                done=done,
+            )
+        except KeyboardInterrupt:
+            click.echo(
+                f"interrupted: {finished} of {len(planned.tasks)} tasks are kept in "
+                f"{folder / 'kept'}; the same command goes on from there",
+                err=True,
+            )
+            raise
+    page = write(made, folder)
+    if as_json:
+        show.print_json(made.model_dump(mode="json"))
+    else:
+        show.print_report(made, page)
+
+
+# -- input ----------------------------------------------------------------------------------------
+
+
+def _hamiltonian(
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
+) -> "Hamiltonian":
+    from verify import systems
+    from verify.hamiltonian import Hamiltonian
+
+    if (system is None) == (hamiltonian is None):
+        raise InputError("--system, --hamiltonian", system or "", "give one of the two")
+    values: dict[str, str | None] = {}
+    for text in params:
+        name, given, value = text.partition("=")
+        if name in values:
+            raise InputError("--param", text, f"{name} is given twice")
+        values[name] = value if given else None
+    if system is not None:
+        return systems.get(system).hamiltonian(values)
+    return Hamiltonian.parse(hamiltonian or "", values)
+
+
+def _target(scene: str) -> tuple[str, list[Any], list[Any]]:
+    """Title, scenes and claims of `paper` or of a scene's file."""
+    from verify.claims import load_claims
+    from verify.scene import load_scene
+
+    if scene != "paper":
+        loaded = load_scene(Path(scene))
+        return loaded.title or loaded.name, [loaded], []
+    from importlib.resources import files
+
+    folder = Path(str(files("reports.paper")))
+    scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]
+    title = "A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, verified"
+    return title, scenes, load_claims(folder / "claims.toml")
+
+
+def _writable(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError("--output", str(folder), error.strerror or "cannot be made") from None
+
+
+# -- entry ----------------------------------------------------------------------------------------
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line and exit: 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
+    try:
+        cli.main(args=arguments, prog_name="verify", standalone_mode=False)
+    except InputError as error:
+        _fail(str(error))
+    except click.ClickException as error:
+        _fail(error.format_message())
+    except (KeyboardInterrupt, click.Abort):
+        sys.exit(INTERRUPTED)
+    except OSError as error:
+        _fail(f"{error.filename or 'file'}: {error.strerror or error}")
+
+
+def _fail(message: str) -> None:
+    click.echo(f"verify: {' '.join(message.split())}", err=True)
+    sys.exit(BAD_INPUT)
