@@ -102,13 +102,11 @@ def run(
     arithmetic: str | None,
 ) -> None:
     """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound."""
-    from verify.exact import positive, rational
     from verify.progress import progress_bar
     from verify.runs import ASKED, CLOSED_FORM
     from verify.runs import run as run_scheme
 
     exact = _hamiltonian(system, hamiltonian, params)
-    at_q, at_p, h = rational(q, "q"), rational(p, "p"), positive(step_size, "step_size")
     arithmetic = arithmetic or ("mpmath" if digits else "float64")
     with progress_bar("stepping", steps) as advance:
         last = 0
@@ -121,9 +119,9 @@ def run(
         result = run_scheme(
             exact,
             scheme,
-            q=at_q,
-            p=at_p,
-            step_size=h,
+            q=q,
+            p=p,
+            step_size=step_size,
             steps=steps,
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
@@ -272,3 +270,7 @@ def main(arguments: list[str] | None = None) -> None:
 def _fail(message: str) -> None:
     click.echo(f"verify: {' '.join(message.split())}", err=True)
     sys.exit(BAD_INPUT)
+
+
+if __name__ == "__main__":
+    main()

@@ -59,7 +59,7 @@ def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
     begun = time.perf_counter()
     step_map = get(scheme).step_map(hamiltonian)
     proof = prove(step_map, get(scheme))
-    _, flat = step_map.flat
+    flat = step_map.flat
     a, b, c, d = (to_text(grouped(flat.ring, entry)) for entry in flat.jacobian)
     return ProofResult(
         hamiltonian=to_text(hamiltonian.expression),

@@ -96,7 +96,7 @@ class _Writer:
         delta_j, jacobian = zero, None
         for step in self.map.substeps:
             at = {n: program.add(state[n], total[n]) for n in ("p", "q")}
-            evaluator = Evaluator(program, step.ring, {**fixed, **at})
+            evaluator = Evaluator(program, step.ring, fixed | at, self.arithmetic.pipelined)
             if self.observables & _CLOSED_FORM and not step.preserves_area:
                 own = evaluator.evaluate(step.delta_j)
                 delta_j = program.add(program.add(delta_j, own), program.mul(delta_j, own))

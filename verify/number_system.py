@@ -13,8 +13,9 @@ class Arithmetic:
     `number` rounds an exact rational once; `exact` gives the rational that a number is. `compile`
     turns a kernel's source, which uses + − * / and the names in `functions`, into the function of
     that name. `guard` is a condition on `{x}`, put into the loop, that holds while the orbit is
-    in range (None where infinities propagate and are found afterwards). `chunk`: steps between
-    looks at progress and interruption. Two arithmetics of one name and precision are equal.
+    in range (None where infinities propagate and are found afterwards). `pipelined`: independent
+    operations overlap, so that latency counts and not their number. `chunk`: steps between looks
+    at progress and interruption. Two arithmetics of one name and precision are equal.
     """
 
     name: str
@@ -25,4 +26,5 @@ class Arithmetic:
     functions: Mapping[str, Any] = field(compare=False)
     compile: Callable[[str, str, Mapping[str, Any]], Callable[..., Any]] = field(compare=False)
     guard: str | None = field(compare=False)
+    pipelined: bool = field(compare=False)
     chunk: int = field(compare=False)

@@ -9,13 +9,13 @@ look like inside it. Constants stay exact rationals; an arithmetic converts them
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import permutations
+from itertools import pairwise, permutations
 
 from verify.ring import Generator, Poly, Ring
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
-_MOST_ORDERS = 24  # orders of the variables tried for nested evaluation
+_MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 
 Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
 
@@ -103,11 +103,18 @@ class Program:
 
 
 class Evaluator:
-    """Writes ring elements into a program, at the point whose variables are given inputs."""
+    """Writes ring elements into a program, at the point whose variables are given inputs.
 
-    def __init__(self, program: Program, ring: Ring, inputs: Mapping[str, int]) -> None:
+    `pipelined`: of the ways to sum a polynomial take that of least latency, not of fewest
+    operations.
+    """
+
+    def __init__(
+        self, program: Program, ring: Ring, inputs: Mapping[str, int], pipelined: bool
+    ) -> None:
         self.program = program
         self.ring = ring
+        self.pipelined = pipelined
         self._at: dict[int, int] = {}
         self._inputs = inputs
 
@@ -148,40 +155,63 @@ class Evaluator:
         return total
 
     def _nested(self, terms: list[Term], variables: list[int]) -> int:
-        """The sum of the terms in nested form, by the order of variables of least latency."""
-        orders = list(permutations(range(len(variables)))) if len(variables) <= 4 else []
-        if not 1 < len(orders) <= _MOST_ORDERS:
-            return self._horner(terms, variables, tuple(range(len(variables))))
+        """The sum of the terms by the cheapest of the ways that are tried.
 
-        def latency(order: tuple[int, ...]) -> tuple[int, int]:
-            trial = Evaluator(_copy(self.program), self.ring, self._inputs)
-            result = trial._horner(terms, variables, order)
-            return trial.program.depth[result], len(trial.program.ops)
+        Ways: each order of the variables, by Horner's rule (fewest operations) or by Estrin's
+        (least latency: pairs of coefficients first, then pairs of pairs).
+        """
+        orders = [tuple(range(len(variables)))]
+        if 1 < len(variables) <= _MOST_VARIABLES:
+            orders = list(permutations(range(len(variables))))
+        ways = [(order, estrin) for order in orders for estrin in (False, True)]
 
-        return self._horner(terms, variables, min(orders, key=latency))
+        def cost(way: tuple[tuple[int, ...], bool]) -> tuple[int, int]:
+            trial = Evaluator(_copy(self.program), self.ring, self._inputs, self.pipelined)
+            result = trial._sum(terms, variables, *way)
+            latency, count = trial.program.depth[result], len(trial.program.ops)
+            return (latency, count) if self.pipelined else (count, latency)
 
-    def _horner(self, terms: list[Term], variables: list[int], order: tuple[int, ...]) -> int:
-        """Horner's rule in the first variable of `order`, its coefficients by the others."""
-        program = self.program
+        return self._sum(terms, variables, *min(ways, key=cost))
+
+    def _sum(
+        self, terms: list[Term], variables: list[int], order: tuple[int, ...], estrin: bool
+    ) -> int:
+        """The terms as a polynomial in the first variable of `order`, its coefficients likewise."""
         if not order:
-            total = program.constant(Fraction(0))
+            total = self.program.constant(Fraction(0))
             for _, coefficient in terms:
-                total = program.add(total, coefficient)
+                total = self.program.add(total, coefficient)
             return total
-        v, rest = order[0], order[1:]
         groups: dict[int, list[Term]] = {}
         for term in terms:
-            groups.setdefault(term[0][v], []).append(term)
-        powers = sorted(groups, reverse=True)
-        total = self._horner(groups[powers[0]], variables, rest)
-        for above, n in zip(powers, [*powers[1:], None], strict=True):
-            step = above - (n or 0)
-            total = program.mul(total, program.power(variables[v], step))
-            if n is not None:
-                total = program.add(total, self._horner(groups[n], variables, rest))
-                if n == 0:
-                    break
+            groups.setdefault(term[0][order[0]], []).append(term)
+        coefficients = {
+            n: self._sum(group, variables, order[1:], estrin) for n, group in groups.items()
+        }
+        evaluate = self._estrin if estrin else self._horner
+        return evaluate(coefficients, variables[order[0]])
+
+    def _horner(self, coefficients: dict[int, int], x: int) -> int:
+        program = self.program
+        powers = sorted(coefficients, reverse=True)
+        total = coefficients[powers[0]]
+        for above, n in pairwise([*powers, 0]):
+            total = program.mul(total, program.power(x, above - n))
+            if n in coefficients and n != above:
+                total = program.add(total, coefficients[n])
         return total
+
+    def _estrin(self, coefficients: dict[int, int], x: int) -> int:
+        """c₀ + c₁ x + (c₂ + c₃ x) x² + …, pairwise again in x²."""
+        program = self.program
+        while set(coefficients) != {0}:
+            paired: dict[int, int] = {}
+            for n, c in sorted(coefficients.items()):
+                term = program.mul(c, x) if n % 2 else c
+                half = n // 2
+                paired[half] = program.add(paired[half], term) if half in paired else term
+            coefficients, x = paired, program.mul(x, x)
+        return coefficients[0]
 
 
 def _copy(program: Program) -> Program:

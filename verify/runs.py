@@ -21,7 +21,7 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.exact import decimal, known_digits, text
+from verify.exact import Exact, decimal, known_digits, positive, rational, text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import Kernel, kernel_for
@@ -48,9 +48,9 @@ def run(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Fraction,
-    p: Fraction,
-    step_size: Fraction,
+    q: Exact,
+    p: Exact,
+    step_size: Exact,
     steps: int,
     arithmetic: str = "float64",
     digits: int = 17,
@@ -64,11 +64,11 @@ def run(
     points of a thinned series are kept. `progress` is called with the number of steps done.
     Raises InputError for h ≤ 0, N < 1, a parameter without a value, unknown names.
     """
-    _check(hamiltonian, step_size, steps, digits, observables)
+    start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
+    _check(hamiltonian, steps, digits, observables)
     step_map = get(scheme).step_map(hamiltonian)
-    known = _proved(step_map, step_size, steps, digits)
+    known = _proved(step_map, start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
-    start = {"p": p, "q": q, "h": step_size}
     job = _Job(hamiltonian, scheme, start, steps, needed, points)
 
     own = number_systems.get(arithmetic, _working_digits(digits, steps))
@@ -79,10 +79,10 @@ def run(
         "scheme": scheme,
         "arithmetic": arithmetic,
         "digits": digits,
-        "step_size": text(step_size),
+        "step_size": text(start["h"]),
         "steps": steps,
-        "q": text(q),
-        "p": text(p),
+        "q": text(start["q"]),
+        "p": text(start["p"]),
         "exact": tuple(o for o in observables if o in known),
         "seconds": first.seconds,
     }
@@ -101,21 +101,12 @@ def run(
     )  # fmt: skip
 
 
-def _check(
-    hamiltonian: Hamiltonian,
-    step_size: Fraction,
-    steps: int,
-    digits: int,
-    observables: Sequence[str],
-) -> None:
+def _check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a run needs one")
-    if step_size <= 0:
-        raise InputError("step_size", text(step_size), "must be greater than 0")
-    if not 1 <= steps <= MAX_STEPS:
-        raise InputError("steps", steps, f"must be 1 … {MAX_STEPS}")
-    if not 1 <= digits <= MAX_DIGITS:
-        raise InputError("digits", digits, f"must be 1 … {MAX_DIGITS}")
+    for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+            raise InputError(name, value, f"must be a whole number, 1 … {most}")
     for name in observables:
         if name not in ASKED:
             raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")

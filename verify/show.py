@@ -86,7 +86,10 @@ def run_json(result: "RunResult") -> dict[str, Any]:
 
 def print_run(result: "RunResult") -> None:
     if result.status != "finished":
-        click.echo(f"the orbit left the range of {result.arithmetic} at step {result.failed_step}")
+        click.echo(
+            f"at step {result.failed_step} the orbit leaves the range of {result.arithmetic}, or "
+            "the domain of H"
+        )
         return
     for name, label in _LABELS.items():
         if name in result.values:

@@ -21,11 +21,15 @@ P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 
 @dataclass(frozen=True)
 class Substep:
-    """(p, q) → (p', q') as elements of a ring."""
+    """(p, q) → (p', q') as elements of the ring of the Hamiltonian's vector field."""
 
-    ring: Ring
+    field: VectorField
     p_next: Poly
     q_next: Poly
+
+    @property
+    def ring(self) -> Ring:
+        return self.field.ring
 
     @property
     def increments(self) -> tuple[Poly, Poly]:
@@ -69,7 +73,7 @@ class StepMap:
         cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
     ) -> "StepMap":
         field, (p1, q1) = hamiltonian.field(p_next, q_next)
-        return cls(hamiltonian, (Substep(field.ring, p1, q1),))
+        return cls(hamiltonian, (Substep(field, p1, q1),))
 
     @classmethod
     def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
@@ -101,10 +105,12 @@ class StepMap:
         return self.composed[1]
 
     @cached_property
-    def flat(self) -> tuple[VectorField, Substep]:
-        """The whole map as one substep, in a ring that holds the vector field too."""
+    def flat(self) -> Substep:
+        """The whole map as one substep."""
+        if len(self.substeps) == 1:
+            return self.substeps[0]
         field, (p1, q1) = self.hamiltonian.field(*self.composed)
-        return field, Substep(field.ring, p1, q1)
+        return Substep(field, p1, q1)
 
     @property
     def preserves_area(self) -> bool:
@@ -114,7 +120,7 @@ class StepMap:
     @property
     def jacobian(self) -> sympy.Matrix:
         """J = ∂(p', q')/∂(p, q) (Eq. 12), 2 × 2."""
-        _, step = self.flat
+        step = self.flat
         return sympy.Matrix(2, 2, [grouped(step.ring, entry) for entry in step.jacobian])
 
     @cached_property
@@ -122,8 +128,7 @@ class StepMap:
         """ΔJ = det J − 1 (Eq. 14) in closed form."""
         if self.preserves_area:
             return sympy.S.Zero
-        _, step = self.flat
-        return grouped(step.ring, step.delta_j)
+        return grouped(self.flat.ring, self.flat.delta_j)
 
 
 def grouped(ring: Ring, x: Poly) -> sympy.Expr:

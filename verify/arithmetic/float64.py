@@ -29,6 +29,7 @@ def make(digits: int) -> Arithmetic:
         },
         compile=_compile,
         guard=None,
+        pipelined=True,
         chunk=1 << 22,
     )
 

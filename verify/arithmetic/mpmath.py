@@ -45,6 +45,7 @@ def at_bits(bits: int) -> Arithmetic:
         },
         compile=_compile,
         guard="-escape < {x} < escape",
+        pipelined=False,
         chunk=1 << 12,
     )
 

@@ -36,11 +36,16 @@ class Proof:
     reason: str
     order: int | None
     leading: sympy.Expr
-    delta_j: sympy.Expr
     area_preserving: bool | None
     convergence_order: int | None
+    step_map: StepMap = field(repr=False)
     witness: dict[str, Fraction] = field(default_factory=dict)
     enclosure: str = ""
+
+    @property
+    def delta_j(self) -> sympy.Expr:
+        """ΔJ in closed form, written out when it is asked for."""
+        return self.step_map.delta_j
 
     @property
     def consistent(self) -> bool:
@@ -107,9 +112,9 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         reason=reason,
         order=leading.power if leading.decision.zero is False else None,
         leading=leading.coefficient,
-        delta_j=step_map.delta_j,
         area_preserving=leading.decision.zero,
         convergence_order=convergence.order,
+        step_map=step_map,
         witness=leading.decision.witness,
         enclosure=leading.decision.enclosure,
     )
@@ -118,7 +123,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
 def _leading_of_delta_j(step_map: StepMap) -> Leading:
     if step_map.preserves_area:
         return Leading(None, sympy.S.Zero, Decision(True))
-    _, step = step_map.flat
+    step = step_map.flat
     if step.preserves_area:
         return Leading(None, sympy.S.Zero, Decision(True))
     return Expansion(step.ring, step.delta_j).leading()
@@ -140,15 +145,15 @@ class Convergence:
 
 def convergence_of(step_map: StepMap) -> Convergence:
     """The order to which the map agrees with the exact flow."""
-    vector_field, step = step_map.flat
-    ring = vector_field.ring
+    step = step_map.flat
+    ring = step.ring
     pairs = [(step.p_next, ring.variable("p")), (step.q_next, ring.variable("q"))]
     expansions = [(Expansion(ring, x), [y]) for x, y in pairs]
     most = max(MOST_ORDERS, *(e.length for e, _ in expansions))
     for n in range(most + 1):
         for expansion, flow in expansions:
             if n == len(flow):
-                flow.append(vector_field.derive(flow[-1]))
+                flow.append(step.field.derive(flow[-1]))
             agrees = _agrees(expansion, n, ring, flow[n])
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)

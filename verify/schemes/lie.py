@@ -49,5 +49,5 @@ def lie_map(hamiltonian: Hamiltonian, eta: int) -> StepMap:
         terms = field.powers(y, eta)
         return sum((h**n * x / math.factorial(n) for n, x in enumerate(terms)), ring.zero)
 
-    step = Substep(ring, series(ring.variable("p")), series(ring.variable("q")))
+    step = Substep(field, series(ring.variable("p")), series(ring.variable("q")))
     return StepMap(hamiltonian, (step,))

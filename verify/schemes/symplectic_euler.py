@@ -36,6 +36,6 @@ def symplectic_euler_map(hamiltonian: Hamiltonian) -> StepMap:
             "symplectic-euler is explicit only for H = T(p) + V(q)",
         )
     p, q, h = (ring.variable(name) for name in ("p", "q", "h"))
-    kick = Substep(ring, p - h * field.h_q, q)
-    drift = Substep(ring, p, q + h * field.h_p)
+    kick = Substep(field, p - h * field.h_q, q)
+    drift = Substep(field, p, q + h * field.h_p)
     return StepMap(hamiltonian, (kick, drift))

@@ -1,0 +1,88 @@
+"""A claim as the page shows it: its anchor, and its table's printed row where it has one."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
+
+from verify.results import ClaimResult
+
+_PRINTED = "printed"  # how the printed row of a table claim's details begins
+
+
+@dataclass(frozen=True)
+class ClaimView:
+    """A claim with its place on the page; `row`: the table's printed row, where it is a table."""
+
+    result: ClaimResult
+    anchor: str
+    scene_anchor: str
+    scene_title: str
+
+    @property
+    def is_table(self) -> bool:
+        details = self.result.details
+        return (
+            len(details) > 2
+            and details[1][0].startswith(_PRINTED)
+            and all(head.startswith("h = ") for head in details[0][1:])
+        )
+
+    @property
+    def step_sizes(self) -> list[str]:
+        return [head.removeprefix("h = ") for head in self.result.details[0][1:]]
+
+    @property
+    def printed(self) -> tuple[str, ...]:
+        return self.result.details[1][1:]
+
+    @property
+    def computed(self) -> tuple[tuple[str, ...], ...]:
+        return self.result.details[2:]
+
+    @property
+    def named(self) -> str:
+        """What the evidence says the printed row is, where it says so."""
+        match = re.search(r"the printed row is ([^;]+)", self.result.evidence)
+        return match[0] if match else ""
+
+
+@dataclass(frozen=True)
+class Contrast:
+    """A printed number beside the least and greatest computed for it."""
+
+    step_size: str
+    printed: str
+    least: str
+    greatest: str
+
+
+def contrasts(claim: ClaimView) -> Iterator[Contrast]:
+    """Each printed number with the range computed for it over the table's rows."""
+    for column, (h, printed) in enumerate(zip(claim.step_sizes, claim.printed, strict=True), 1):
+        known = [row[column] for row in claim.computed if is_decimal(row[column])]
+        if known:
+            yield Contrast(h, printed, min(known, key=Decimal), max(known, key=Decimal))
+
+
+def is_decimal(text: str) -> bool:
+    try:
+        return Decimal(text).is_finite()
+    except InvalidOperation:
+        return False
+
+
+class Anchors:
+    """Ids that are unique on the page and safe in a link, whatever the names are."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def take(self, kind: str, name: str) -> str:
+        slug = re.sub(r"[^A-Za-z0-9_.-]+", "-", name).strip("-") or "unnamed"
+        anchor, count = f"{kind}-{slug}", 1
+        while anchor in self._taken:
+            count += 1
+            anchor = f"{kind}-{slug}-{count}"
+        self._taken.add(anchor)
+        return anchor

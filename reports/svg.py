@@ -1,0 +1,181 @@
+"""A matplotlib figure → SVG that stands inside a page: fluid, themed by CSS, with ids of its own.
+
+matplotlib colours are written as fixed marks that become CSS here: the ink is `currentColor`, the
+series colours are custom properties with the light theme's colour as their fallback.
+"""
+
+import io
+import re
+from collections.abc import Callable
+from typing import Any
+from xml.etree import ElementTree
+
+import matplotlib
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+INK = "#010203"
+# Okabe and Ito's colours, darkened where they would fade on white; style.css has the dark theme's.
+SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a3ffc", "#5b6670")
+
+_SVG = "http://www.w3.org/2000/svg"
+_HREF = "{http://www.w3.org/1999/xlink}href"
+_PLACES = 1  # decimals of a coordinate: a tenth of a point is less than a pixel
+_NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
+_UNWANTED = {"font", "font-family", "font-style", "font-variant", "font-weight", "font-stretch"}
+_RC = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "areaproof",
+    "font.family": "DejaVu Sans",
+    "font.size": 11,
+    "text.color": INK,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.unicode_minus": True,
+    "axes.facecolor": "none",
+    "figure.facecolor": "none",
+    "legend.frameon": False,
+    "mathtext.default": "regular",
+    "text.usetex": False,
+    "path.simplify": False,
+}
+
+
+def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
+    """The figure that `draw` makes, as an inline SVG image.
+
+    `name` prefixes every id, so it must be unique on the page; `label` is the text alternative.
+    matplotlib's settings are as before afterwards.
+    """
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RC)
+        stream = io.StringIO()
+        draw().savefig(stream, format="svg", metadata={"Date": None})
+    root = ElementTree.fromstring(stream.getvalue())  # noqa: S314 - matplotlib's own output
+    return _inline(root, name, label)
+
+
+def _inline(root: Any, name: str, label: str) -> Markup:
+    _drop(root)
+    for attribute in ("width", "height", "version"):
+        root.attrib.pop(attribute)
+    used: set[str] = set()
+    for element in root.iter():
+        element.tag = element.tag.removeprefix(f"{{{_SVG}}}")
+        element.text, element.tail = _stripped(element.text), _stripped(element.tail)
+        _tidy(element, name, used)
+    for element in root.iter():
+        if element.get("id", "") not in used:
+            element.attrib.pop("id", None)
+    _unwrap(root)
+    root.set("role", "img")
+    root.set("aria-label", label)
+    root.set("font-size", str(_RC["font.size"]))
+    title = ElementTree.Element("title")
+    title.text = label
+    root.insert(0, title)
+    return Markup(ElementTree.tostring(root, encoding="unicode"))  # noqa: S704 - serialised XML
+
+
+def _drop(root: Any) -> None:
+    """Remove metadata, global styles (they would reach the whole page) and invisible paths."""
+    for parent in list(root.iter()):
+        for child in list(parent):
+            tag = child.tag.removeprefix(f"{{{_SVG}}}")
+            invisible = tag == "path" and child.get("style") == "fill: none"
+            if tag in ("metadata", "style") or invisible:
+                parent.remove(child)
+
+
+def _unwrap(root: Any) -> None:
+    """Put the content of groups that say nothing in their place, from the leaves upwards."""
+    for parent in reversed(list(root.iter())):
+        for index, child in reversed(list(enumerate(parent))):
+            if (child.tag == "g" and not child.attrib) or (child.tag == "defs" and not len(child)):
+                parent[index : index + 1] = list(child)
+
+
+def _stripped(text: str | None) -> str | None:
+    return text if text and text.strip() else None
+
+
+def _tidy(element: Any, name: str, used: set[str]) -> None:
+    """Own ids, short coordinates, themed colours, the page's fonts."""
+    attributes = element.attrib
+    if "id" in attributes:
+        attributes["id"] = f"{name}-{attributes['id']}"
+    if _HREF in attributes:
+        target = f"{name}-{attributes.pop(_HREF).removeprefix('#')}"
+        attributes["href"] = f"#{target}"
+        used.add(target)
+    if "clip-path" in attributes:
+        target = f"{name}-{attributes['clip-path'][len('url(#') : -1]}"
+        attributes["clip-path"] = f"url(#{target})"
+        used.add(target)
+    if "d" in attributes:
+        attributes["d"] = _short_path(attributes["d"])
+    for key in ("x", "y", "width", "height"):
+        if key in attributes:
+            attributes[key] = _rounded(attributes[key])
+    if "transform" in attributes:
+        attributes["transform"] = _NUMBER.sub(lambda m: _rounded(m[0]), attributes["transform"])
+        if attributes["transform"].startswith("rotate(0 "):
+            del attributes["transform"]
+    if "style" in attributes:
+        _set_style(element)
+
+
+def _set_style(element: Any) -> None:
+    pairs = (part.partition(":") for part in element.attrib.pop("style").split(";"))
+    style = {key.strip(): text.strip() for key, _, text in pairs}
+    kept = {k: _themed(v) for k, v in style.items() if k not in _UNWANTED}
+    if element.tag in ("path", "use"):
+        kept.pop("stroke-linejoin", None)
+    for key, text in kept.items():
+        if "var(" not in text:
+            element.set(key, text)
+    themed = "; ".join(f"{k}: {v}" for k, v in kept.items() if "var(" in v)
+    if themed:
+        element.set("style", themed)
+
+
+def _themed(text: str) -> str:
+    if text == INK:
+        return "currentColor"
+    if text in SERIES:
+        return f"var(--series-{SERIES.index(text) + 1}, {text})"
+    return text.removesuffix("px") if re.fullmatch(r"[\d.]+px", text) else text
+
+
+def _rounded(text: str) -> str:
+    shown = f"{float(text):.{_PLACES}f}".rstrip("0").rstrip(".")
+    return "0" if shown == "-0" else shown
+
+
+def _short_path(path: str) -> str:
+    """The path with rounded coordinates, without steps of no length, straight steps as H and V."""
+    out: list[str] = []
+    x = y = ""
+    for command, rest in re.findall(r"([MLCQz])([^MLCQz]*)", path):
+        numbers = [_rounded(n) for n in _NUMBER.findall(rest)]
+        if command == "L":
+            step = _straight(x, y, numbers[0], numbers[1])
+        else:
+            step = command + " ".join(numbers)
+        if step:
+            out.append(step)
+        if numbers:
+            x, y = numbers[-2], numbers[-1]
+    return "".join(out)
+
+
+def _straight(x: str, y: str, to_x: str, to_y: str) -> str:
+    if x == to_x:
+        return "" if y == to_y else f"V{to_y}"
+    return f"H{to_x}" if y == to_y else f"L{to_x} {to_y}"
