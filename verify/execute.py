@@ -7,14 +7,17 @@ code is taken for one of this.
 
 import contextlib
 import hashlib
+import json
 import multiprocessing
 import os
 import signal
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -32,6 +35,7 @@ from verify.step_map import grouped
 Result = ProofResult | RunResult
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
+_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
 _STEP_COST = {"float64": 1, "mpmath": 3000}
 
@@ -122,10 +126,16 @@ def write_atomically(path: Path, content: str) -> None:
         raise
 
 
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    python = ".".join(map(str, sys.version_info[:3]))
+    return {"Python": python} | {name: version(name) for name in _VERSIONED}
+
+
 @cache
 def fingerprint() -> str:
-    """A name for this package's source, so that results of other code are not taken up."""
-    digest = hashlib.sha256()
+    """A name for this package's source and its libraries: results of others are not taken up."""
+    digest = hashlib.sha256(json.dumps(versions()).encode())
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]

@@ -2,21 +2,17 @@
 
 import os
 import platform
-import sys
 import time
 from collections.abc import Sequence
-from importlib.metadata import version
 
 from verify import systems
 from verify.claims import Claim, Findings, check_claims
 from verify.exact import text
-from verify.execute import Done, Store, execute
+from verify.execute import Done, Store, execute, versions
 from verify.formula import to_text
 from verify.plan import Plan, key, plan_scenes, series_task
 from verify.results import Provenance, Report, RunResult, SceneResult
 from verify.scene import Scene
-
-_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
 
 
 def make_report(
@@ -50,12 +46,6 @@ def make_report(
             computed=len(plan.tasks) - kept,
         ),
     )
-
-
-def versions() -> dict[str, str]:
-    """The versions that a result depends on."""
-    found = {"Python": ".".join(map(str, sys.version_info[:3]))}
-    return found | {name: version(name) for name in _VERSIONED}
 
 
 def _scene_result(scene: Scene, findings: Findings) -> SceneResult:

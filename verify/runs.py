@@ -12,8 +12,7 @@ What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exac
 depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
 """
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -21,14 +20,14 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.exact import Exact, decimal, known_digits, positive, rational, text
+from verify.exact import Exact, known_digits, positive, rational, text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
-from verify.kernel import Kernel, kernel_for
 from verify.number_system import Arithmetic
-from verify.results import RunResult, SeriesPoint, Value
+from verify.results import RunResult, Value
 from verify.schemes import get
 from verify.step_map import StepMap
+from verify.stepping import Job, Outcome, Progress
 
 DIRECT_STEPS = 20_000
 MAX_STEPS = 10**12
@@ -37,10 +36,7 @@ CLOSED_FORM = ("delta_j_max", "mse", "lambda")
 ASKED = (*CLOSED_FORM, "lambda_plain")
 _REFERENCE_DIGITS = 40
 _MORE_DIGITS = 15
-_ACCUMULATOR = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
 
-Progress = Callable[[int], None]
-State = tuple[Any, ...]
 Bounded = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
 
 
@@ -69,7 +65,7 @@ def run(
     step_map = get(scheme).step_map(hamiltonian)
     known = _proved(step_map, start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
-    job = _Job(hamiltonian, scheme, start, steps, needed, points)
+    job = Job(hamiltonian, scheme, start, steps, needed, points)
 
     own = number_systems.get(arithmetic, _working_digits(digits, steps))
     first = job.go(own, progress=progress)
@@ -150,131 +146,10 @@ def _rational_ball(ball: Any) -> tuple[Fraction, Fraction]:
     return middle, radius
 
 
-# -- running --------------------------------------------------------------------------------------
-
-
-class _Outcome:
-    """The final numbers of one run as exact rationals, or how far it got."""
-
-    def __init__(
-        self,
-        done: int,
-        values: dict[str, Fraction],
-        series: tuple[SeriesPoint, ...],
-        seconds: float,
-    ) -> None:
-        self.done, self.values, self.series, self.seconds = done, values, series, seconds
-
-
-class _Job:
-    """What is run, apart from the arithmetic it is run in."""
-
-    def __init__(
-        self,
-        hamiltonian: Hamiltonian,
-        scheme: str,
-        start: dict[str, Fraction],
-        steps: int,
-        observables: frozenset[str],
-        points: int,
-    ) -> None:
-        self.generic, self.scheme = hamiltonian.generic(), scheme
-        self.parameters, self.start = dict(hamiltonian.values), start
-        self.steps, self.observables, self.points = steps, observables, points
-
-    def go(
-        self,
-        arithmetic: Arithmetic,
-        *,
-        compensated: bool = False,
-        progress: Progress | None = None,
-    ) -> _Outcome:
-        """All steps in this arithmetic; the series only where the kernel collects extremes."""
-        observables = self.observables if not compensated else self.observables - {"extremes"}
-        kernel = kernel_for(self.generic, self.scheme, arithmetic, observables, compensated)
-        number = arithmetic.number
-        fixed = [number(self.start["h"]), *(number(self.parameters[n]) for n in kernel.parameters)]
-        state: State = tuple(number(self.start[n]) for n in ("p", "q"))
-        state += tuple(number(Fraction(x)) for x in kernel.start)
-        kernel.function(0, *fixed, *state)  # compiles, so that `seconds` is the stepping alone
-        chunk, series = arithmetic.chunk, []
-        if "extremes" in observables:
-            chunk = min(chunk, -(-self.steps // self.points))
-        begun, done = time.perf_counter(), 0
-        while done < self.steps:
-            count = min(chunk, self.steps - done)
-            after = advance(kernel, arithmetic, fixed, state, count)
-            if after is None:
-                done += _last_good(kernel, arithmetic, fixed, state, count)
-                break
-            state = after
-            if "extremes" in observables:
-                series.append(_point(kernel, arithmetic, state, done, count))
-            done += count
-            if progress:
-                progress(done)
-        seconds = time.perf_counter() - begun
-        values = self.finals(kernel, arithmetic, state) if done == self.steps else {}
-        return _Outcome(done, values, tuple(series), seconds)
-
-    def finals(self, kernel: Kernel, arithmetic: Arithmetic, state: State) -> dict[str, Fraction]:
-        raw = {n: arithmetic.exact(x) for n, x in zip(kernel.carried, state, strict=True)}
-        total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
-        result = {"p": total["p"], "q": total["q"]}
-        for name in self.observables & set(_ACCUMULATOR):
-            result[name] = total[_ACCUMULATOR[name]]
-        if "mse" in result:
-            result["mse"] /= self.steps
-        if "lambda_plain" in result:
-            result["lambda_plain"] -= 1
-        return result
-
-
-def advance(
-    kernel: Kernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
-) -> State | None:
-    """The state after `count` steps, or None where a number left the arithmetic's range."""
-    try:
-        done, *after = kernel.function(count, *fixed, *state)
-    except (ArithmeticError, ValueError, TypeError):  # mpmath: pole, log of a negative, complex
-        return None
-    if done < count or not all(arithmetic.finite(x) for x in after):
-        return None
-    return tuple(after)
-
-
-def _last_good(
-    kernel: Kernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
-) -> int:
-    """The greatest number of steps below `count` that stays in range, by bisection."""
-    good, bad = 0, count
-    while bad - good > 1:
-        middle = (good + bad) // 2
-        if advance(kernel, arithmetic, fixed, state, middle) is None:
-            bad = middle
-        else:
-            good = middle
-    return good
-
-
-def _point(
-    kernel: Kernel, arithmetic: Arithmetic, state: State, done: int, count: int
-) -> SeriesPoint:
-    at = dict(zip(kernel.carried, state, strict=True))
-
-    def pair(name: str) -> tuple[str, str]:
-        low, high = (decimal(arithmetic.exact(at[f"{name}_{end}"]), 7) for end in ("low", "high"))
-        return low, high
-
-    return SeriesPoint(first=done + 1, last=done + count, delta_j=pair("dj"), lam=pair("lam"))
-
-
 # -- bounds ---------------------------------------------------------------------------------------
 
 
-def _with_bounds(
-    job: _Job, own: Arithmetic, first: _Outcome, known: Bounded
-) -> tuple[Bounded, str]:
+def _with_bounds(job: Job, own: Arithmetic, first: Outcome, known: Bounded) -> tuple[Bounded, str]:
     """Each value with the estimate of its error, and how that was got."""
     if own.name == "float64":
         return _float64_bounds(job, own, first, known)
@@ -289,7 +164,7 @@ def _with_bounds(
 
 
 def _float64_bounds(
-    job: _Job, own: Arithmetic, first: _Outcome, known: Bounded
+    job: Job, own: Arithmetic, first: Outcome, known: Bounded
 ) -> tuple[Bounded, str]:
     if job.steps <= DIRECT_STEPS:
         reference = number_systems.get("mpmath", _working_digits(_REFERENCE_DIGITS, job.steps))

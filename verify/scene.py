@@ -110,7 +110,7 @@ class Series(Frozen):
 class Scene(Frozen):
     """See the module's text for the keys."""
 
-    name: str = ""
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", max_length=80)] = ""
     title: str = ""
     system: str | None = None
     hamiltonian: str | None = None
