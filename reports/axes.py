@@ -95,7 +95,10 @@ def offset_ticks(axis: Any, low: float, high: float, *, around_one: bool = False
         mantissa = round(x / 10.0**power, 6)
         if mantissa == 0:
             return "1" if around_one else "0"
-        digits = f"{abs(mantissa):g}" + (f"·10{superscript(power)}" if power else "")
+        digits = f"{abs(mantissa):g}"
+        if power:
+            scale = f"10{superscript(power)}"
+            digits = scale if abs(mantissa) == 1 else f"{digits}·{scale}"
         if around_one:
             return f"1 {'−' if mantissa < 0 else '+'} {digits}"
         return f"{'−' if mantissa < 0 else ''}{digits}"

@@ -24,6 +24,8 @@ class ClaimView:
         details = self.result.details
         return (
             len(details) > 2
+            and len(details[0]) > 1
+            and all(len(row) == len(details[0]) for row in details)
             and details[1][0].startswith(_PRINTED)
             and all(head.startswith("h = ") for head in details[0][1:])
         )

@@ -30,9 +30,9 @@ from reports.typography import start, superscript
 from verify.results import RunResult, SeriesPoint, Value
 
 _POINT = 1 / 72  # inch; a figure's size is given in points, which are its SVG's user units
-_WIDTH = 400
+_WIDTH = 370
 _MOST_BUCKETS = 600
-_LABEL = 0.1  # of the axis: how wide a guide's label is
+_LABEL_WIDTH, _LABEL_HEIGHT = 0.1, 0.08  # of the axes: the room for a guide's label
 _GUIDE_GAP = 0.35  # decades between a slope guide and the line that it is nearest to
 
 
@@ -79,7 +79,7 @@ def against_step_size(
         _guides(axes, plotted, guides)
         _finish(figure, axes, plotted)
         decades(axes.yaxis)
-        axes.set_title(quantity, loc="left", fontsize=11)
+        axes.set_title(quantity)
         return figure
 
     return drawn(draw, name=name, label=label)
@@ -97,7 +97,7 @@ def printed_against_computed(
             _plot(axes, line, line_style(index, len(computed)))
         _finish(figure, axes, [printed, *computed])
         whole_numbers(axes.yaxis)
-        axes.set_title("lg MSE", loc="left", fontsize=11)
+        axes.set_title("lg MSE")
         return figure
 
     return drawn(draw, name=name, label=label)
@@ -118,27 +118,35 @@ def _finish(figure: Figure, axes: Any, plotted: Sequence[Line]) -> None:
     grid_lines(axes)
     axes.margins(y=0.08)
     if len(plotted) <= MOST_STYLES + 1:
-        figure.legend(loc="outside lower center", ncols=2, handlelength=3.2, fontsize=10.5)
+        figure.legend(loc="outside lower center", ncols=2, handlelength=3.2)
 
 
 def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
-    """Straight lines of these slopes just above all points, labelled where they lie apart."""
-    points = [(lg(h), y) for line in plotted for h, y in line.points]
-    if not points:
+    """Straight lines of these slopes above all points, labelled at the end where they part."""
+    if not slopes:
         return
+    points = [(lg(h), y) for line in plotted for h, y in line.points]
     ends = min(x for x, _ in points), max(x for x, _ in points)
     heights = {s: max(y - s * x for x, y in points) + _GUIDE_GAP for s in slopes}
-    apart = [max(f) - min(f) for f in ([c + s * x for s, c in heights.items()] for x in ends)]
-    left = apart[0] >= apart[1]
+    parted = [max(at) - min(at) for at in ([c + s * x for s, c in heights.items()] for x in ends)]
+    left = parted[0] >= parted[1]
     x = ends[0] if left else ends[1]
-    clear = _LABEL * (ends[1] - ends[0]) if left else 0.0  # a rising line must not cross its label
-    for slope, height in heights.items():
-        axes.plot(ends, [slope * x + height for x in ends], color=INK, alpha=0.55, linewidth=0.9)
+    # A rising line must not cross its own label, nor the next line a label below it.
+    rise = _LABEL_WIDTH * (ends[1] - ends[0])
+    height_of_all = max(y for _, y in points) - min(y for _, y in points) + 1
+    room = _LABEL_HEIGHT * height_of_all + max(slopes) * rise
+    lowest = float("-inf")
+    for slope, height in sorted(heights.items(), key=lambda item: item[0] * x + item[1]):
+        base = max(slope * x + height, lowest)
+        axes.plot(
+            ends, [base + slope * (e - x) for e in ends], color=INK, alpha=0.55, linewidth=0.9
+        )
         axes.annotate(
             "∝ h" if slope == 1 else f"∝ h{superscript(slope)}",
-            (x, slope * (x + clear) + height), xytext=(0, 2), textcoords="offset points",
-            ha="left" if left else "right", fontsize=10.5,
+            (x, base + slope * rise * left), xytext=(0, 2), textcoords="offset points",
+            ha="left" if left else "right", fontsize=11,
         )  # fmt: skip
+        lowest = base + room
 
 
 # -- over time ------------------------------------------------------------------------------------
@@ -160,7 +168,7 @@ def over_time(run: RunResult, *, name: str, label: str) -> Markup:
             zip(all_axes, panels, strict=True)
         ):
             _panel(axes, edges, band, SERIES[2 if title == "Λ" else 0], around_one)
-            axes.set_title(f"({'abc'[index]}) {title}", loc="left", fontsize=11)
+            axes.set_title(f"({'abc'[index]}) {title}")
         axes.set_xlim(edges[0], edges[-1])
         time_axis(axes)
         return figure

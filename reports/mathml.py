@@ -1,40 +1,40 @@
 """Formula text (as `verify.formula.to_text` prints it) → MathML Core, by a small printer.
 
 The text is read by the whitelist parser and never evaluated. What that parser refuses (a formula
-longer than its limit, say) is shown as it is written. Sums go by ascending powers of h, then by
-degree; a factor of h leads its product, sums and functions close it: −(h²/2) p (1 + 3q²).
+longer than its limit, say) is shown as it is written. In which order sums and products go is said
+in `reports.terms`.
 """
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import sympy
 from markupsafe import Markup, escape
 
+from reports.terms import Term, factor_key, terms_of
 from verify.errors import InputError
 from verify.formula import FUNCTIONS, parse
 
 Expr = Any  # sympy.Expr, which has no type stubs
 
-LONGEST_SHOWN = 2000  # characters of a formula that is shown as text
+LONGEST_SHOWN = 600  # characters of a formula that is shown as text
 _STACKED_FROM = 4  # terms from which a sum is set one term a line
 
 _NAMES = {"log": "ln", "atan": "arctan"}
-_GREEK = dict(
-    zip(
-        "alpha beta gamma delta epsilon zeta eta theta iota kappa lamda mu nu xi omicron rho sigma"
-        " tau upsilon phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split(),
-        "αβγδεζηθικλμνξορστυφχψωΓΔΘΛΞΠΣΦΨΩ",
-        strict=True,
-    )
-)
+_GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
+    "eta": "η", "theta": "θ", "iota": "ι", "kappa": "κ", "lamda": "λ", "mu": "μ", "nu": "ν",
+    "xi": "ξ", "omicron": "ο", "rho": "ρ", "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ",
+    "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
+    "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω",
+}  # fmt: skip
 _TIMES = "<mo>\u2062</mo>"
 _TIMES_THIN = '<mo lspace="0.17em" rspace="0">\u2062</mo>'  # before a function's name
 _APPLY = '<mo lspace="0" rspace="0">\u2061</mo>'
 _APPLY_THIN = '<mo lspace="0" rspace="0.17em">\u2061</mo>'  # where no parenthesis follows
-_INNER = ("p", "q")
+_OPEN, _CLOSE = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
+_SLASH = '<mo lspace="0" rspace="0">/</mo>'
 
 
 # -- what the pages ask for -----------------------------------------------------------------------
@@ -50,13 +50,15 @@ def equation(left: str, text: str) -> Markup:
     """`left` = formula as a display; `left` is markup, see `NAMED`; a long sum is stacked."""
     expression = read(text)
     if expression is None:
-        return _math(Markup(f"{left}<mo>=</mo>")) + plain(text)
-    terms = _terms(expression)
+        return _math(f"{left}<mo>=</mo>") + plain(text)
+    terms = terms_of(expression)
     if len(terms) < _STACKED_FROM:
         return _math(f"{left}<mo>=</mo>{_sum(expression)}", display=True)
     rows = []
     for index, term in enumerate(terms):
         sign = _sign(term, first=index == 0)
+        if index:  # a line that goes on from the one above, not one that starts with a sign
+            sign = sign.replace("<mo>", '<mo form="infix">')
         start = f"{left}<mo>=</mo>" if index == 0 else ""
         body = f"<mrow>{sign}{_product(term)}</mrow>"
         rows.append(
@@ -80,9 +82,10 @@ def matrix(left: str, rows: Sequence[Sequence[str]]) -> Markup | None:
 
 NAMED = {
     "H": "<mi>H</mi>",
-    "H(p, q)": "<mrow><mi>H</mi><mo>(</mo><mi>p</mi><mo>,</mo><mi>q</mi><mo>)</mo></mrow>",
-    "p′": "<msup><mi>p</mi><mo>′</mo></msup>",
-    "q′": "<msup><mi>q</mi><mo>′</mo></msup>",
+    "H(p, q)": f"<mrow><mi>H</mi>{_OPEN}<mi>p</mi><mo>,</mo><mi>q</mi>{_CLOSE}</mrow>",
+    # A text font's prime is raised already; math fonts differ in theirs.
+    "p′": '<mrow><mi>p</mi><mtext class="prime">′</mtext></mrow>',
+    "q′": '<mrow><mi>q</mi><mtext class="prime">′</mtext></mrow>',
     "J": "<mi>J</mi>",
     "ΔJ": '<mrow><mi mathvariant="normal">Δ</mi><mi>J</mi></mrow>',
 }
@@ -100,7 +103,7 @@ def order_equation(leading: str, order: int) -> Markup | None:
         return None
     h = sympy.Symbol("h", real=True)
     body = _sum(h**order * expression)
-    rest = f"<mi>O</mi><mo>(</mo>{_power_of_h(order + 1)}<mo>)</mo>"
+    rest = f"<mi>O</mi>{_OPEN}{_power_of_h(order + 1)}{_CLOSE}"
     return _math(f"{NAMED['ΔJ']}<mo>=</mo><mrow>{body}<mo>+</mo>{rest}</mrow>", display=True)
 
 
@@ -148,84 +151,29 @@ def _row(content: str) -> str:
 # -- sums -----------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Term:
-    """coefficient · factors / divisors, the coefficient rational and not yet signed."""
-
-    coefficient: Expr
-    factors: tuple[Expr, ...] = ()
-    divisors: tuple[Expr, ...] = ()
-
-    @property
-    def negative(self) -> bool:
-        return bool(self.coefficient < 0)
-
-
 def _sum(expression: Expr) -> str:
     parts = []
-    for index, term in enumerate(_terms(expression)):
+    for index, term in enumerate(terms_of(expression)):
         parts += [_sign(term, first=index == 0), _product(term)]
     return _row("".join(parts)) if len(parts) > 2 or parts[0] else parts[1]
 
 
-def _sign(term: _Term, *, first: bool) -> str:
+def _sign(term: Term, *, first: bool) -> str:
     if term.negative:
         return "<mo>−</mo>"
     return "" if first else "<mo>+</mo>"
 
 
-def _terms(expression: Expr) -> list[_Term]:
-    """The sum's terms in reading order."""
-    keyed = sorted(((_sort_key(t), t) for t in sympy.Add.make_args(expression)), key=lambda x: x[0])
-    terms = [(key[0], _term(t)) for key, t in keyed]
-    lowest = [term for power, term in terms if power == terms[0][0]]
-    if lowest[0].negative:  # −1 + q² reads better as q² − 1
-        lowest.sort(key=lambda term: term.negative)
-    return [*lowest, *(term for _, term in terms[len(lowest) :])]
-
-
-def _sort_key(term: Expr) -> tuple[Any, ...]:
-    powers = {str(b): e for b, e in _powers(term) if b.is_Symbol}
-    others = [b for b, _ in _powers(term) if not b.is_Symbol and not b.is_number]
-    degree = sum(powers.get(name, 0) for name in _INNER)
-    inner = tuple(-powers.get(name, 0) for name in _INNER)
-    return powers.get("h", 0), bool(others), degree, inner, str(term)
-
-
-def _powers(term: Expr) -> list[tuple[Expr, Expr]]:
-    return [f.as_base_exp() for f in sympy.Mul.make_args(term)]
-
-
-def _term(expression: Expr) -> _Term:
-    """The term with the rational content, and the sign, of its sums drawn to the front."""
-    coefficient, factors, divisors = sympy.S.One, [], []
-    for factor in sympy.Mul.make_args(expression):
-        base, exponent = factor.as_base_exp()
-        if factor.is_Rational:
-            coefficient *= factor
-        elif factor.is_Add:
-            content, rest = factor.primitive()
-            if all(t.could_extract_minus_sign() for t in rest.args):
-                content, rest = -content, -rest
-            coefficient *= content
-            factors.append(rest)
-        elif exponent.is_Rational and exponent < 0 and base is not sympy.E:
-            divisors.append(base**-exponent)
-        else:
-            factors.append(factor)
-    return _Term(coefficient, tuple(factors), tuple(divisors))
-
-
 # -- products -------------------------------------------------------------------------------------
 
 
-def _product(term: _Term) -> str:
+def _product(term: Term) -> str:
     """The term without its sign."""
     size = abs(term.coefficient)
-    factors = sorted(term.factors, key=_factor_key)
+    factors = sorted(term.factors, key=factor_key)
     if term.divisors:
-        above, below = _joined(size.p, factors), _joined(size.q, sorted(term.divisors, key=_factor_key))
-        return f"<mfrac>{above}{below}</mfrac>"
+        below = _joined(size.q, sorted(term.divisors, key=factor_key))
+        return f"<mfrac>{_joined(size.p, factors)}{below}</mfrac>"
     if size.q == 1:
         return _joined(size.p, factors)
     # Over a bare number stand the powers of h, else those of all symbols: (h³/2) p sin q, δq⁴/4.
@@ -234,18 +182,6 @@ def _product(term: _Term) -> str:
     rest = [f for f in factors if f not in over]
     fraction = f"<mfrac>{_joined(size.p, over)}<mn>{size.q}</mn></mfrac>"
     return _joined(1, rest, before=fraction)
-
-
-def _factor_key(factor: Expr) -> tuple[Any, ...]:
-    base, _ = factor.as_base_exp()
-    name = str(base)
-    if base.is_number:
-        kind = 4 if base is sympy.E else 0
-    elif base.is_Symbol:
-        kind = 1 if name == "h" else 3 if name in _INNER else 2
-    else:
-        kind = 4 if base.is_Add else 5
-    return kind, name
 
 
 def _joined(number: int, factors: Iterable[Expr], *, before: str = "") -> str:
@@ -292,7 +228,7 @@ def _power(factor: Expr) -> str:
 def _exponent(value: Expr) -> str:
     if value.is_Integer:
         return f"<mn>{value}</mn>"
-    return f"<mrow><mn>{value.p}</mn><mo>/</mo><mn>{value.q}</mn></mrow>"
+    return f"<mrow><mn>{value.p}</mn>{_SLASH}<mn>{value.q}</mn></mrow>"
 
 
 def _atom(base: Expr) -> str:
@@ -318,17 +254,29 @@ def _call(function: Expr, power: str) -> str:
 
 
 def _bracketed(expression: Expr) -> str:
-    return f"<mrow><mo>(</mo>{_sum(expression)}<mo>)</mo></mrow>"
+    """In brackets; they grow only where a fraction or a root needs it, not for an exponent."""
+    inside = _sum(expression)
+    if any(tall in inside for tall in ("<mfrac>", "<msqrt>", "<mroot>")):
+        return f"<mrow><mo>(</mo>{inside}<mo>)</mo></mrow>"
+    return f"<mrow>{_OPEN}{inside}{_CLOSE}</mrow>"
+
+
+def is_greek(text: str) -> bool:
+    """Whether a name stands for a Greek letter, with an index or without."""
+    return _parts(text)[0] in _GREEK
 
 
 def identifier(text: str) -> str:
     """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript."""
-    stem, below = text, ""
-    match = re.fullmatch(r"([A-Za-z]+)_?([0-9]+)|([A-Za-z]+)_([A-Za-z0-9]+)", text)
-    if match:
-        stem, below = match[1] or match[3], match[2] or match[4]
+    stem, below = _parts(text)
     letter = f"<mi>{escape(_GREEK.get(stem, stem))}</mi>"
     if not below:
         return letter
     tag = "mn" if below.isdigit() else "mi"
     return f"<msub>{letter}<{tag}>{escape(_GREEK.get(below, below))}</{tag}></msub>"
+
+
+def _parts(text: str) -> tuple[str, str]:
+    """A name's letter and its index: omega0 → omega, 0; k_max → k, max."""
+    match = re.fullmatch(r"([A-Za-z]+)_?([0-9]+)|([A-Za-z]+)_([A-Za-z0-9]+)", text)
+    return (match[1] or match[3], match[2] or match[4]) if match else (text, "")

@@ -50,6 +50,7 @@ def _environment() -> Environment:
     )
     environment.filters.update(
         prose=typography.prose,
+        sentence=typography.sentence,
         cell=typography.cell,
         is_number=typography.is_number,
         number=typography.number,

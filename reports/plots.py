@@ -46,7 +46,9 @@ def computed(runs: Sequence[RunResult]) -> str:
 
 
 def _arithmetic(run: RunResult) -> str:
-    return run.arithmetic if run.arithmetic == "float64" else f"{run.arithmetic} ({run.digits} digits)"
+    return (
+        run.arithmetic if run.arithmetic == "float64" else f"{run.arithmetic} ({run.digits} digits)"
+    )
 
 
 # -- against the step size ------------------------------------------------------------------------
@@ -68,7 +70,7 @@ def against_step_size(
         lead = f"Cumulative total error |Λ| {span} against the step size h"
         yield Plot(
             figures.against_step_size(
-                lam, quantity="|Λ|", guides=guides, name=f"{name}-lambda", label=f"{lead}."
+                lam, quantity="|Λ|", guides=guides, name=f"lambda-of-{name}", label=f"{lead}."
             ),
             f"{lead}.",
             " ".join([_trend(lam), _bound(runs, guides), _guides(guides), computed(runs)]),
@@ -79,7 +81,7 @@ def against_step_size(
         lead = f"Ratio MSE/|Λ| {span} against the step size h"
         yield Plot(
             figures.against_step_size(
-                ratio, quantity="MSE/|Λ|", guides=guides, name=f"{name}-ratio", label=f"{lead}."
+                ratio, quantity="MSE/|Λ|", guides=guides, name=f"ratio-of-{name}", label=f"{lead}."
             ),
             f"{lead}.",
             " ".join([_trend(ratio), _guides(guides), computed(runs)]),
@@ -91,7 +93,9 @@ def _trend(plotted: Sequence["Line"]) -> str:
     steps = [[b - a for (_, a), (_, b) in pairwise(line.points)] for line in plotted]
     rising = sum(all(s > 0 for s in line) for line in steps)
     falling = sum(all(s < 0 for s in line) for line in steps)
-    every = "The line" if len(steps) == 1 else f"Each of the {len(steps)} lines (one an initial value)"
+    every = (
+        "The line" if len(steps) == 1 else f"Each of the {len(steps)} lines (one an initial value)"
+    )
     if rising == len(steps):
         return f"{every} rises with h."
     if falling == len(steps):
@@ -107,7 +111,9 @@ def _bound(runs: Sequence[RunResult], guides: Sequence[int]) -> str:
     if not slopes:
         return ""
     low, high = f"{slopes[0][0]:.2f}", f"{slopes[-1][0]:.2f}"
-    seen = f"The measured slope is {low}" if low == high else f"The measured slopes are {low} … {high}"
+    seen = (
+        f"The measured slope is {low}" if low == high else f"The measured slopes are {low} … {high}"
+    )
     proved = f"; proved is Λ = O({_h(guides[0])}) for h → 0" if guides else ""
     return f"{seen.replace('-', '−')}{proved}."
 
@@ -129,19 +135,19 @@ def over_time(run: RunResult, *, name: str) -> Plot:
 
     lead = f"h = {run.step_size} from {start(run)}: (a) det J, (b) ΔJ and (c) Λ over time"
     bucket = max(point.last - point.first + 1 for point in figures.merged(run.series))
-    seen = [
-        f"{label} = {_few(run.values[key].value)}"
-        for key, label in (("delta_j_max", "max |ΔJ|"), ("lambda", "at the end Λ"))
-        if key in run.values
-    ]
-    left = ""
+    seen = ""
+    if {"delta_j_max", "lambda"} <= set(run.values):
+        top, end = (_few(run.values[key].value) for key in ("delta_j_max", "lambda"))
+        seen = f" The greatest |ΔJ| is {top}; at the end Λ is {end}."
     if run.status == "left range":
-        left = f" The run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
-    caption = (
-        f"Each band reaches from the least to the greatest value within {whole(bucket)} steps."
-        f"{' ' + '; '.join(seen) + '.' if seen else ''}{left} {computed([run])}"
-    )
-    return Plot(figures.over_time(run, name=name, label=f"{lead}."), f"{lead}.", _capital(caption))
+        seen = f" The run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
+    band = "Each level is one step."
+    if bucket > 1:
+        band = (
+            f"Each band reaches from the least to the greatest value within {whole(bucket)} steps."
+        )
+    caption = f"{band}{seen} {computed([run])}"
+    return Plot(figures.over_time(run, name=name, label=f"{lead}."), f"{lead}.", caption)
 
 
 def _few(text: str) -> str:
@@ -150,10 +156,6 @@ def _few(text: str) -> str:
     if not is_decimal(text) or digits <= _MOST_SHOWN or Decimal(text) == 0:
         return number(text)
     return number(f"{Decimal(text):.{_MOST_SHOWN - 1}e}")
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 # -- a printed table ------------------------------------------------------------------------------
@@ -196,4 +198,4 @@ def _gap(printed: "Line", lines: Sequence["Line"]) -> str:
 
 
 def _named(claim: ClaimView) -> str:
-    return f"{_capital(claim.named)}." if claim.named else ""
+    return f"{claim.named[0].upper()}{claim.named[1:]}." if claim.named else ""

@@ -1,4 +1,4 @@
-"""A scene as the page shows it: its schemes, each with proof, criteria, figures and table of runs."""
+"""A scene as the page shows it: its schemes, each with proof, criteria, figures and runs."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class RunTable:
     count: int
     shown: int
     computed: str
-    all_exact: bool
+    proved: tuple[str, ...]  # the columns that a proof gave, for all runs
 
 
 @dataclass(frozen=True)
@@ -80,11 +80,11 @@ def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> 
         symbols=tuple(n for n in names if n not in scene.parameters),
         floors=_floors(scene),
         tables=tuple(
-            TableView(claim, plots.table(claim, name=f"{anchor}-table-{index}"))
+            TableView(claim, plots.table(claim, name=f"table-{index}-of-{anchor}"))
             for index, claim in enumerate(tables)
         ),
         schemes=tuple(
-            _scheme_view(scene, proof, f"{anchor}-scheme-{index}")
+            _scheme_view(scene, proof, f"scheme-{index}-of-{anchor}")
             for index, proof in enumerate(scene.proofs)
         ),
     )
@@ -106,9 +106,10 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         leading=leading,
         plots=tuple(plots.against_step_size(runs, scene, proof, name=anchor)),
         series=tuple(
-            plots.over_time(run, name=f"{anchor}-time-{index}") for index, run in enumerate(series)
+            plots.over_time(run, name=f"time-{index}-of-{anchor}")
+            for index, run in enumerate(series)
         ),
-        runs=_run_table(runs) if runs else None,
+        runs=_run_table(runs),
     )
 
 
@@ -128,17 +129,19 @@ def _floors(scene: SceneResult) -> str:
     return f"Where T/h is not a whole number, N is T/h rounded down: {shown}."
 
 
-def _run_table(runs: Sequence[RunResult]) -> RunTable:
+def _run_table(runs: Sequence[RunResult]) -> RunTable | None:
     names = [n for n in _COLUMNS if any(n in run.values for run in runs)]
+    failed = any(run.status == "left range" for run in runs)
+    if not names and not failed:
+        return None
     shown = runs[:MOST_ROWS]
-    exact = all(set(names) <= set(run.exact) for run in runs)
     return RunTable(
-        columns=tuple(_COLUMNS[n] for n in names),
+        columns=tuple(_COLUMNS[n] for n in names) or ("outcome",),
         groups=tuple(_groups(shown, names)),
         count=len(runs),
         shown=len(shown),
         computed=plots.computed(runs),
-        all_exact=exact and bool(names),
+        proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),
     )
 
 

@@ -23,11 +23,15 @@ _HREF = "{http://www.w3.org/1999/xlink}href"
 _PLACES = 1  # decimals of a coordinate: a tenth of a point is less than a pixel
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 _UNWANTED = {"font", "font-family", "font-style", "font-variant", "font-weight", "font-stretch"}
-_RC = {
+_RC: Any = {
     "svg.fonttype": "none",
     "svg.hashsalt": "areaproof",
     "font.family": "DejaVu Sans",
-    "font.size": 11,
+    "font.size": 12,
+    "axes.titlesize": 12,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 12,
+    "legend.fontsize": 11,
     "text.color": INK,
     "axes.edgecolor": INK,
     "axes.labelcolor": INK,

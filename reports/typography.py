@@ -58,7 +58,8 @@ def value(found: Value) -> Markup:
 
 def start(run: RunResult) -> str:
     """A run's initial value."""
-    return f"q₀ = {run.q}, p₀ = {run.p}".replace("-", "−")
+    q, p = number(run.q), number(run.p)
+    return f"q₀{NBSP}={NBSP}{q}, p₀{NBSP}={NBSP}{p}"
 
 
 def listed(items: Iterable[str]) -> str:
@@ -79,6 +80,13 @@ def prose(text: str) -> Markup:
     return Markup("").join([*parts, _sentence(text[rest:])])
 
 
+def sentence(text: str) -> Markup:
+    """Prose as a sentence of its own: with a capital, unless it opens with a name, and a stop."""
+    if re.match(r"[a-z]{2,}[ ,]", text):
+        text = text[0].upper() + text[1:]
+    return prose(text if text.endswith((".", "!", "?")) else f"{text}.")
+
+
 def cell(text: str) -> Markup:
     """A table's cell: a number, or a short text."""
     if _PLAIN_NUMBER.fullmatch(text):
@@ -96,7 +104,19 @@ def _interval(match: re.Match[str]) -> Markup:
 
 
 def _power(match: re.Match[str]) -> Markup:
+    if match[2] == "1":
+        return escape(match[1])
     return Markup("{}{}").format(match[1], superscript(int(match[2])))
+
+
+def _equals(match: re.Match[str]) -> Markup:
+    """`q₀ = 0.1` stays on one line; a parameter before the sign is set as a symbol."""
+    known = match[1] is not None and mathml.is_greek(match[1])
+    return Markup("{}{}={}").format(mathml.name(match[1]) if known else match[1] or "", NBSP, NBSP)
+
+
+def _kept_together(match: re.Match[str]) -> Markup:
+    return Markup('<span class="nowrap">{}</span>').format(match[0])
 
 
 def _indexed(match: re.Match[str]) -> Markup:
@@ -108,6 +128,8 @@ def _number_in_text(match: re.Match[str]) -> Markup:
 
 
 _RULES: list[tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]] = [
+    (re.compile(r"\b(?:([A-Za-z]\w*)|(?<=\w)) = (?=-?[0-9])"), _equals),
+    (re.compile(r"\w+/\|\w+\|"), _kept_together),
     (re.compile(rf"\[(-?{_NUMBER}) \+/- ({_NUMBER})\]"), _interval),
     (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b"), _power),
     (re.compile(r"(?<![A-Za-z])((?:ΔJ|[pqzJ]))_(k|N)\b"), _indexed),

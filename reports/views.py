@@ -4,7 +4,9 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from reports import plots
 from reports.claim_view import Anchors, ClaimView, Contrast, contrasts
+from reports.plots import Plot
 from reports.scene_view import SceneView, scene_view
 from reports.typography import listed, superscript
 from verify.results import ProofResult, Report
@@ -16,6 +18,7 @@ class Highlight:
     """The most telling refutation."""
 
     claim: ClaimView
+    plot: Plot | None
     contrasts: tuple[Contrast, ...]
     same_row: tuple[ClaimView, ...]  # other refuted tables that print the very same row
 
@@ -33,7 +36,8 @@ class PageView:
 
 def page_view(report: Report) -> PageView:
     anchors = Anchors()
-    scene_anchors = {s.name: anchors.take("system", s.name) for s in report.scenes}
+    own = [anchors.take("system", scene.name) for scene in report.scenes]
+    scene_anchors = {s.name: anchor for s, anchor in zip(report.scenes, own, strict=True)}
     titles = {s.name: s.title for s in report.scenes}
     claims = tuple(
         ClaimView(
@@ -52,11 +56,9 @@ def page_view(report: Report) -> PageView:
         highlight=_highlight(refuted),
         scenes=tuple(
             scene_view(
-                scene,
-                scene_anchors[scene.name],
-                [c for c in claims if c.result.scene == scene.name and c.is_table],
+                scene, anchor, [c for c in claims if c.result.scene == scene.name and c.is_table]
             )
-            for scene in report.scenes
+            for scene, anchor in zip(report.scenes, own, strict=True)
         ),
     )
 
@@ -109,4 +111,6 @@ def _highlight(refuted: Sequence[ClaimView]) -> Highlight | None:
     tables = [c for c in refuted if c.is_table]
     claim = next(iter(tables), refuted[0])
     same = tuple(c for c in tables if c is not claim and c.printed == claim.printed)
-    return Highlight(claim, tuple(contrasts(claim)) if claim.is_table else (), same)
+    if not claim.is_table:
+        return Highlight(claim, None, (), ())
+    return Highlight(claim, plots.table(claim, name="highlight"), tuple(contrasts(claim)), same)

@@ -16,6 +16,11 @@ class InputError(ValueError):
 
 def _short(value: object) -> str:
     """The value as one short line, however long or many-lined the user's text was."""
-    text = value if isinstance(value, str) else repr(value)
+    try:
+        text = value if isinstance(value, str) else repr(value)
+    except ValueError:  # an integer beyond Python's limit of printed digits
+        text = f"a {type(value).__name__} of very many digits"
     text = " ".join(text.split())
+    # Control characters would reach the user's terminal.
+    text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:200])
     return f"{text[:77]}…" if len(text) > 78 else text

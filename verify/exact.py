@@ -9,6 +9,8 @@ import warnings
 from decimal import Decimal
 from fractions import Fraction
 
+import gmpy2
+
 from verify.errors import InputError
 
 Exact = int | str | float | Decimal | Fraction
@@ -61,10 +63,11 @@ def _from_float(value: float, name: str) -> Fraction:
     if value != value or value in (float("inf"), float("-inf")):
         raise InputError(name, value, "not a finite number")
     exact = Fraction(value)
-    if exact != Fraction(repr(value)):
+    shown = repr(float(value))  # numpy's floats print as np.float64(…)
+    if exact != Fraction(shown):
         warnings.warn(
-            f"{name}={value!r} is a binary float, taken by its exact value, which is not "
-            f"{value!r}; write it as a string, '{value!r}', to mean the decimal",
+            f"{name}={shown} is a binary float, taken by its exact value, which is not "
+            f"{shown}; write it as a string, '{shown}', to mean the decimal",
             stacklevel=3,
         )
     return exact
@@ -90,14 +93,19 @@ def decimal(value: Fraction, digits: int) -> str:
     """`value` rounded half-even to `digits` significant digits, in scientific notation."""
     if value == 0:
         return "0"
-    exponent = magnitude(value)
-    scaled = abs(value) / Fraction(10) ** (exponent - digits + 1)
-    mantissa = str(round(scaled))
-    if len(mantissa) > digits:  # 9.99… rounded up to 10
-        mantissa, exponent = mantissa[:digits], exponent + 1
+    units, exponent = _rounded(value, digits)
+    mantissa = gmpy2.mpz(abs(units)).digits()  # str() stops at 4300 digits
+    exponent += len(mantissa) - 1
+    mantissa = mantissa[:digits]  # 9.99… rounded up to 10 has one more
     sign = "-" if value < 0 else ""
     point = f".{mantissa[1:]}" if digits > 1 else ""
     return f"{sign}{mantissa[0]}{point}e{exponent:+03d}"
+
+
+def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
+    """(units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits` digits."""
+    exponent = magnitude(value) - digits + 1
+    return round(value / Fraction(10) ** exponent), exponent
 
 
 def magnitude(value: Fraction) -> int:
@@ -120,12 +128,13 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
     if value == 0 and bound == 0:
         return "0", "0"
     digits = most
-    if value == 0 or (bound > 0 and 2 * bound > abs(value)):
-        return "0", upper(abs(value) + bound)
     if bound > 0:
-        digits = max(1, min(most, magnitude(value) - magnitude(2 * bound)))
-    printed = decimal(value, digits)
-    return printed, upper(bound + abs(value - Fraction(printed)))
+        known = magnitude(value) - magnitude(2 * bound) if value else 0
+        if known < 1:
+            return "0", upper(abs(value) + bound)
+        digits = min(most, known)
+    units, exponent = _rounded(value, digits)
+    return decimal(value, digits), upper(bound + abs(value - units * Fraction(10) ** exponent))
 
 
 def upper(bound: Fraction) -> str:

@@ -6,7 +6,9 @@ parameter name), exact numbers, + − * / ** (also written ^), `pi`, and the fun
 """
 
 import ast
+import operator
 import re
+import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -36,8 +38,17 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
 NOT_SMOOTH = frozenset(
     {"abs", "Abs", "fabs", "sign", "sgn", "floor", "ceil", "round", "trunc", "max", "min"}
 )
-RESERVED = frozenset({"p", "q", "h", "t", "pi", *FUNCTIONS, *NOT_SMOOTH})
+_NOT_NUMBERS = frozenset({"nan", "NaN", "inf", "Inf", "infinity", "Infinity", "oo"})
+RESERVED = frozenset({"p", "q", "h", "t", "pi", *FUNCTIONS, *NOT_SMOOTH, *_NOT_NUMBERS})
+_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo, sympy.AccumBounds)
 _NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
+_CHAINS = ((ast.Add, ast.Sub), (ast.Mult, ast.Div))
+_APPLY: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 
 
@@ -47,10 +58,15 @@ def symbol(name: str) -> sympy.Symbol:
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]
-    """sympy's text form, but for e, which would read back as a parameter named E."""
+    """sympy's text form, but for e (a parameter named E?) and for powers that are exponentials."""
 
     def _print_Exp1(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
         return "exp(1)"
+
+    def _print_Pow(self, expr: sympy.Expr, rational: bool = False) -> str:  # noqa: N802
+        if expr.exp.is_Rational:
+            return str(super()._print_Pow(expr, rational))
+        return f"exp({self._print(expr.exp * sympy.log(expr.base))})"
 
 
 def to_text(expression: sympy.Expr) -> str:
@@ -83,23 +99,41 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
     if not text.isascii():
         raise InputError(source, text, "has a character outside ASCII; write delta for δ")
     line = " ".join(text.replace("^", "**").split())
+    if "#" in line or not line.isprintable():
+        raise InputError(source, text, "is not a formula: a character in it is not allowed")
     try:
-        tree = ast.parse(line, mode="eval").body
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Python's own remarks on the text, such as '1if'
+            tree = ast.parse(line, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise InputError(source, text, "not a formula; allowed: + - * / ** and functions") from None
     known = None if names is None else frozenset(names)
     result = _Reader(source, text, line, known).read(tree, 0)
-    return _checked(result, source, text)
+    return checked(result, source, text)
 
 
-def _checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
-    if result.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
-        raise InputError(source, text, "divides by zero, or is not finite")
-    if result.has(sympy.I):
-        raise InputError(source, text, "is not real")
+def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
+    """The expression itself, where it is finite, real, smooth and of bounded size."""
+    if result.has(*_INFINITE):
+        raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
     if result.has(*_NOT_SMOOTH_NODES):
         raise InputError(source, text, "is not smooth: the root of an even power is |x|")
+    for number in result.atoms(sympy.Rational):
+        if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
+            raise InputError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
+    for power in result.atoms(sympy.Pow):
+        if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
+            _check_power(power.base, power.exp, source, text)
+    if result.has(sympy.I) or any(f.args[0].is_negative for f in result.atoms(sympy.log)):
+        raise InputError(source, text, "is not real, so it is not defined")
     return result
+
+
+def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
+    if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
+        raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
+    if exponent.q != 1 and base.is_negative:
+        raise InputError(source, text, f"is not defined: the root of {base} < 0")
 
 
 class _Reader:
@@ -127,7 +161,7 @@ class _Reader:
                 return self.operation(node, depth)
             case ast.Call():
                 return self.call(node, depth)
-        shown = ast.get_source_segment(self.line, node) or type(node).__name__
+        shown = (ast.get_source_segment(self.line, node) or type(node).__name__)[:60]
         raise self.fail(f"{shown!r} is not allowed; allowed: + - * / ** and functions")
 
     def number(self, node: ast.Constant) -> sympy.Expr:
@@ -161,40 +195,56 @@ class _Reader:
             raise self.fail(f"{name} takes one argument")
         argument = self.read(node.args[0], depth + 1)
         # sympy sums and simplifies as it builds: infinities must not get into it.
+        if name == "exp" and argument.has(sympy.log):
+            return self.finite(self.exponential(argument))
         value = self.finite(FUNCTIONS[name](argument))
         # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 
+    def exponential(self, argument: sympy.Expr) -> sympy.Expr:
+        """exp of a sum with logarithms: sympy makes powers of them, whose exponents have limits."""
+        result = sympy.S.One
+        for term in sympy.Add.make_args(argument):
+            logs = [f for f in sympy.Mul.make_args(term) if isinstance(f, sympy.log)]
+            if len(logs) == 1 and (term / logs[0]).is_Rational:
+                result *= self.power(logs[0].args[0], term / logs[0])
+            else:
+                result *= sympy.exp(term)
+        return result
+
     def operation(self, node: ast.BinOp, depth: int) -> sympy.Expr:
-        left, right = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
-        match node.op:
-            case ast.Add():
-                return self.finite(left + right)
-            case ast.Sub():
-                return self.finite(left - right)
-            case ast.Mult():
-                return self.finite(left * right)
-            case ast.Div():
-                if right.is_zero:
-                    raise self.fail("division by zero")
-                return self.finite(left / right)
-            case ast.Pow():
-                return self.power(left, right)
-        raise self.fail("an operator is not allowed; allowed: + - * / **")
+        """A chain of + and −, or of * and /, read from its left end: its length is no depth."""
+        if isinstance(node.op, ast.Pow):
+            base, exponent = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
+            return self.power(base, exponent)
+        kinds = next((kinds for kinds in _CHAINS if isinstance(node.op, kinds)), None)
+        if kinds is None:
+            raise self.fail("an operator is not allowed; allowed: + - * / **")
+        chain, first = [node], node.left
+        while isinstance(first, ast.BinOp) and isinstance(first.op, kinds):
+            chain.append(first)
+            first = first.left
+        # −a/b reads back as −(a/b), as it is printed.
+        minus = ast.Mult in kinds
+        if minus and isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
+            first = first.operand
+        else:
+            minus = False
+        value = self.read(first, depth + 1)
+        for step in reversed(chain):
+            right = self.read(step.right, depth + 1)
+            if isinstance(step.op, ast.Div) and right.is_zero:
+                raise self.fail("division by zero")
+            value = _APPLY[type(step.op)](value, right)
+        return self.finite(-value if minus else value)
 
     def power(self, base: sympy.Expr, exponent: sympy.Expr) -> sympy.Expr:
         if not exponent.is_Rational:
-            raise self.fail(f"exponent {exponent} must be a rational number; write exp(x*log(y))")
-        if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
-            raise self.fail(f"exponent {exponent} beyond ±{MAX_EXPONENT}")
+            raise self.fail(f"exponent {exponent} must be a rational number; or exp(x*log(y))")
+        _check_power(base, exponent, self.source, self.text)
         if base.is_zero and exponent <= 0:
             raise self.fail("division by zero" if exponent < 0 else "0**0 is not defined")
-        result = self.finite(base**exponent)
-        if result.is_Pow and result.exp.is_Rational and abs(result.exp) > MAX_EXPONENT:
-            raise self.fail(f"exponent {result.exp} beyond ±{MAX_EXPONENT}")
-        return result
+        return self.finite(base**exponent)
 
     def finite(self, value: sympy.Expr) -> sympy.Expr:
-        if value.is_Rational and max(value.p.bit_length(), value.q.bit_length()) > MAX_NUMBER_BITS:
-            raise self.fail(f"a number in it has more than {MAX_NUMBER_BITS} bits")
-        return _checked(value, self.source, self.text)
+        return checked(value, self.source, self.text)

@@ -4,6 +4,7 @@
 sines (and of all exponentials) decide together over which basis they are expanded.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -11,7 +12,7 @@ import flint
 import sympy
 
 from verify.errors import InputError
-from verify.ring import Poly, Ring
+from verify.ring import Poly, Ring, RingFullError
 
 MAX_TERMS = 20000
 _MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
@@ -28,12 +29,24 @@ def embed(expressions: Sequence[sympy.Expr], variables: Sequence[str]) -> tuple[
     Raises InputError where an expression divides by zero, or grows beyond `MAX_TERMS` terms.
     """
     levels = _levels(expressions)
-    room = 6 * sum(len(level) for level in levels) + 2 * len(list(variables))
-    room += 2 * sum(len(e.atoms(sympy.Pow)) for e in expressions)
-    builder = _Builder(Ring(variables, room))
-    for level in levels:
-        builder.functions(level)
-    return builder.ring, [builder.element(e) for e in expressions]
+    powers = {power for e in expressions for power in e.atoms(sympy.Pow)}
+    room = 6 * sum(len(level) for level in levels) + 4 * len(powers) + 2 * len(variables)
+    builder = _Builder(Ring(variables, room), _root_degrees(powers))
+    try:
+        for level in levels:
+            builder.functions(level)
+        return builder.ring, [builder.element(e) for e in expressions]
+    except RingFullError as error:
+        raise InputError("formula", str(expressions[0]), f"is too involved: {error}") from None
+
+
+def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
+    """For each base under a root, the degree of one root that all its roots are powers of."""
+    degrees: dict[sympy.Expr, int] = {}
+    for power in powers:
+        if power.exp.is_Rational:
+            degrees[power.base] = math.lcm(degrees.get(power.base, 1), int(power.exp.q))
+    return degrees
 
 
 def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
@@ -42,7 +55,10 @@ def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
 
     def visit(node: sympy.Expr) -> int:
         inner = max((visit(a) for a in node.args), default=0)
-        if isinstance(node, (*_TRIGONOMETRIC, *_EXPONENTIAL, *_OTHER)):
+        if _is_exponential_power(node):
+            inner = visit(sympy.log(node.base)) + 1
+            depth[node] = inner
+        elif isinstance(node, (*_TRIGONOMETRIC, *_EXPONENTIAL, *_OTHER)):
             inner += 1
             depth[node] = inner
         return inner
@@ -56,20 +72,32 @@ def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
     ]
 
 
+def _is_exponential_power(node: sympy.Expr) -> bool:
+    """Whether node is u**v as sympy writes exp(v log u), with v not a rational number."""
+    return bool(node.is_Pow and not isinstance(node, sympy.exp) and not node.exp.is_Rational)
+
+
+def _argument(function: sympy.Expr) -> sympy.Expr:
+    if _is_exponential_power(function):
+        return function.exp * sympy.log(function.base)
+    return function.args[0] if function.args else sympy.S.One  # e is exp(1)
+
+
 class _Builder:
     """Holds the ring while its generators are made, and what each expression became."""
 
-    def __init__(self, ring: Ring) -> None:
+    def __init__(self, ring: Ring, root_degrees: dict[sympy.Expr, int]) -> None:
         self.ring = ring
+        self.root_degrees = root_degrees
         self.known: dict[sympy.Expr, Poly] = {}
-        self.roots: list[tuple[Poly, int, Poly]] = []
 
     # -- functions ----------------------------------------------------------------------------
 
     def functions(self, level: Sequence[sympy.Expr]) -> None:
         """Generators for one level of functions, whose arguments are elements by now."""
         self.family([f for f in level if isinstance(f, _TRIGONOMETRIC)], self.circle)
-        self.family([f for f in level if isinstance(f, _EXPONENTIAL)], self.exponential)
+        exponentials = [f for f in level if isinstance(f, _EXPONENTIAL) or f.is_Pow]
+        self.family(exponentials, self.exponential)
         for function in level:
             if isinstance(function, _OTHER):
                 self.other(function)
@@ -83,7 +111,7 @@ class _Builder:
         if not functions:
             return
         ring = self.ring
-        arguments = [self.element(f.args[0] if f.args else sympy.S.One) for f in functions]
+        arguments = [self.element(_argument(f)) for f in functions]
         basis, multiples = _lattice(ring, arguments)
         values = [
             make(b, [f for f, row in zip(functions, multiples, strict=True) if row[k]])
@@ -106,18 +134,20 @@ class _Builder:
             return even
         if isinstance(function, sympy.sin | sympy.sinh):
             return odd
-        if isinstance(function, sympy.exp | type(sympy.E)):
+        if isinstance(function, sympy.exp | type(sympy.E)) or function.is_Pow:
             return self.ring.reduce(even + odd)
         return self.ring.multiply(odd, self.inverse(even, function))
 
     def circle(self, b: Poly, _: list[sympy.Expr]) -> Callable[[int], tuple[Poly, Poly]]:
         """cos b and sin b; returns k ↦ (cos kb, sin kb)."""
         ring, expression = self.ring, self.ring.expression(b)
-        c = ring.add("cos", sympy.cos(expression), b)
-        s = ring.add("sin", sympy.sin(expression), b)
-        ring.relate(s, 2, s**2 + c**2 - 1)
-        ring.set_gradient(c, -s, b)
-        ring.set_gradient(s, c, b)
+        c, s = ring.find("cos", b), ring.find("sin", b)
+        if c is None or s is None:
+            c = ring.add("cos", sympy.cos(expression), b)
+            s = ring.add("sin", sympy.sin(expression), b)
+            ring.relate(s, 2, s**2 + c**2 - 1)
+            ring.set_gradient(c, -s, b)
+            ring.set_gradient(s, c, b)
         return lambda k: self.multiple(c, s, k, -1)
 
     def exponential(
@@ -128,15 +158,18 @@ class _Builder:
         Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
         """
         ring, expression = self.ring, self.ring.expression(b)
-        if any(isinstance(f, _HYPERBOLIC) for f in functions):
+        c, s, e = (ring.find(kind, b) for kind in ("cosh", "sinh", "exp"))
+        if any(isinstance(f, _HYPERBOLIC) for f in functions) and c is None:
             c = ring.add("cosh", sympy.cosh(expression), b)
             s = ring.add("sinh", sympy.sinh(expression), b)
             ring.relate(s, 2, s**2 - c**2 + 1)
             ring.set_gradient(c, s, b)
             ring.set_gradient(s, c, b)
+        if c is not None:
             return lambda k: self.multiple(c, s, k, 1)
-        e = ring.add("exp", sympy.exp(expression), b)
-        ring.set_gradient(e, e, b)
+        if e is None:
+            e = ring.add("exp", sympy.exp(expression), b)
+            ring.set_gradient(e, e, b)
         return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
 
     def multiple(self, c: Poly, s: Poly, k: int, sign: int) -> tuple[Poly, Poly]:
@@ -150,6 +183,10 @@ class _Builder:
     def other(self, function: sympy.Expr) -> None:
         ring, u = self.ring, self.element(function.args[0])
         kind = "log" if isinstance(function, sympy.log) else "atan"
+        same = ring.find(kind, u)
+        if same is not None:
+            self.known[function] = same
+            return
         outer = self.inverse(u if kind == "log" else ring.reduce(u * u + 1), function)
         generator = ring.add(kind, function, u)
         ring.set_gradient(generator, outer, u)
@@ -194,23 +231,24 @@ class _Builder:
         n, degree = int(node.exp.p), int(node.exp.q)
         if degree == 1:
             return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
-        root = self.root(base, degree, node)
+        finest = self.root_degrees[node.base]
+        root = self.root(base, finest, node)
+        n *= finest // degree
         if n < 0:
-            # 1/R = R^(degree−1) / u keeps the one inverse that the derivative needs anyway.
-            inverse = self.ring.multiply(root ** (degree - 1), self.inverse(base, node))
+            # 1/R = R^(finest−1) / u keeps the one inverse that the derivative needs anyway.
+            inverse = self.ring.multiply(root ** (finest - 1), self.inverse(base, node))
             return self.repeated(inverse, -n, node)
         return self.repeated(root, n, node)
 
     def root(self, u: Poly, degree: int, node: sympy.Expr) -> Poly:
-        for known, n, root in self.roots:
-            if n == degree and known == u:
-                return root
         ring = self.ring
+        same = ring.find("root", u, degree)
+        if same is not None:
+            return same
         inverse = self.inverse(u, node)
         root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
         ring.relate(root, degree, root**degree - u)
         ring.set_gradient(root, ring.multiply(root, inverse) / degree, u)
-        self.roots.append((u, degree, root))
         return root
 
     def repeated(self, base: Poly, n: int, node: sympy.Expr) -> Poly:

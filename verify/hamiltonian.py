@@ -8,7 +8,7 @@ import sympy
 
 from verify.errors import InputError
 from verify.exact import Exact, rational
-from verify.formula import parameter_name, parse, symbol
+from verify.formula import MAX_EXPONENT, checked, parameter_name, parse, symbol
 from verify.generators import embed
 from verify.ring import Poly, Ring
 
@@ -45,15 +45,20 @@ class Hamiltonian:
             if value is not None:
                 given[name] = rational(value, f"parameter {name}")
         result = Hamiltonian(self.expression, tuple(sorted(given.items())))
-        if result.exact.has(sympy.nan, sympy.zoo, sympy.oo, sympy.I):
-            shown = ", ".join(f"{n}={v}" for n, v in result.values)
-            raise InputError("parameter", shown, f"H = {self.expression} is not defined there")
+        shown = ", ".join(f"{n}={v}" for n, v in result.values)
+        for power in self.expression.atoms(sympy.Pow):  # before sympy computes 2**(10**300)
+            exponent = power.exp.subs(result._put())
+            if exponent.is_Rational and abs(exponent) > MAX_EXPONENT:
+                raise InputError("parameter", shown, f"makes an exponent beyond ±{MAX_EXPONENT}")
+        checked(result.exact, "parameter", shown)
         return result
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """All parameter names, with or without a value."""
-        return tuple(sorted(s.name for s in self.expression.free_symbols if s.name not in "pq"))
+        return tuple(
+            sorted(s.name for s in self.expression.free_symbols if s.name not in ("p", "q"))
+        )
 
     @property
     def symbols(self) -> tuple[str, ...]:
@@ -63,9 +68,10 @@ class Hamiltonian:
 
     @property
     def exact(self) -> sympy.Expr:
-        return self.expression.subs(
-            {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
-        )
+        return self.expression.subs(self._put())
+
+    def _put(self) -> dict[sympy.Symbol, sympy.Rational]:
+        return {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
 
     def generic(self) -> "Hamiltonian":
         """H with its parameters as symbols, but for those of value 0, whose terms vanish.

@@ -18,20 +18,23 @@ Functions of sums are expanded over a basis of the lattice that their arguments 
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import product as cartesian
+from itertools import islice
 from typing import Any
 
 import flint
 import sympy
 
+from verify.enclosure import enclose, points
 from verify.formula import symbol
 
 Poly = Any  # flint.fmpq_mpoly, which has no type stubs
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
+_MOST_FACTORS = 4
+_FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
 
 
@@ -58,6 +61,10 @@ class Decision:
     enclosure: str = ""
 
 
+class RingFullError(Exception):
+    """More generators are needed than the ring was made for."""
+
+
 class Ring:
     """The ring of the given variables with room for `room` generators; see `generators.embed`."""
 
@@ -75,7 +82,6 @@ class Ring:
         self._by_index = {g.index: g for g in self.generators}
         self._relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
-        self._inverses: list[tuple[Poly, Poly]] = []
 
     # -- elements -----------------------------------------------------------------------------
 
@@ -133,7 +139,9 @@ class Ring:
 
         The caller sees to it that no generator in x depends on that variable.
         """
-        at = self.room + self.variables.index(name)
+        return self._split(x, self.room + self.variables.index(name))
+
+    def _split(self, x: Poly, at: int) -> dict[int, Poly]:
         split: dict[int, dict[tuple[int, ...], Any]] = {}
         for monomial, coefficient in x.to_dict().items():
             rest = (*monomial[:at], 0, *monomial[at + 1 :])
@@ -169,12 +177,19 @@ class Ring:
         """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
         count = len(self.generators) - len(self.variables)
         if count >= self.room:
-            raise RuntimeError(f"the ring has room for {self.room} generators only")
+            raise RingFullError(f"more than {self.room} functions and denominators are needed")
         index = self.room - 1 - count
         generator = Generator(index, kind, expression, argument, degree)
         self.generators.append(generator)
         self._by_index[index] = generator
         return self._gens[index]
+
+    def find(self, kind: str, argument: Poly, degree: int = 1) -> Poly | None:
+        """The generator of that kind for that argument, where there is one."""
+        for g in self.generators:
+            if g.kind == kind and g.degree == degree and g.argument == argument:
+                return self._gens[g.index]
+        return None
 
     def relate(self, generator: Poly, power: int, relation: Poly) -> None:
         """relation = 0, used where `generator` occurs with at least that power."""
@@ -187,24 +202,25 @@ class Ring:
         self._gradients[self._gens.index(generator)] = gradient
 
     def inverse(self, u: Poly) -> Poly:
-        """1/u, by the inverses of the irreducible factors of u.
+        """1/u, by the inverses of the irreducible factors of u (of u itself, if they are many).
 
         Raises ZeroDivisionError where u is zero, or cannot be shown not to be.
         """
         if self.decide(u).zero is not False:
             raise ZeroDivisionError
         content, factors = u.factor()
+        if len(factors) > _MOST_FACTORS:
+            content, factors = u.leading_coefficient(), [(u / u.leading_coefficient(), 1)]
         result = self.context.constant(1 / content)
         for factor, power in factors:
             result = self.multiply(result, self._inverse_of_irreducible(factor) ** int(power))
         return result
 
     def _inverse_of_irreducible(self, u: Poly) -> Poly:
-        for known, inverse in self._inverses:
-            if known == u:
-                return inverse
+        known = self.find("inverse", u)
+        if known is not None:
+            return known
         w = self.add("inverse", 1 / self.expression(u), u)
-        self._inverses.append((u, w))
         self.relate(w, 1, w * u - 1)
         self.set_gradient(w, -(w**2), u)
         return w
@@ -214,91 +230,40 @@ class Ring:
     def decide(self, x: Poly) -> Decision:
         """Whether x is the zero function; see the module's contract."""
         x = self.reduce(x)
-        if self.clear_inverses(x) == 0:
+        if x == 0:
             return Decision(True)
         names = [str(g.expression) for g in self.used(x) if g.kind == "variable"]
+        # A point usually tells at once; clearing denominators can be long work.
+        found = self._witness(x, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
+        if found is None and self.clear_inverses(x) == 0:
+            return Decision(True)
         for precision in _PRECISIONS:
-            for point in _points(names):
-                value = self.enclose(x, point, precision)
-                if value is not None and not value.contains(0):
-                    return Decision(False, point, value.str(12))
-        return Decision(None)
+            found = found or self._witness(x, points(names), precision)
+        return found or Decision(None)
+
+    def _witness(
+        self, x: Poly, at: Iterable[dict[str, Fraction]], precision: int
+    ) -> Decision | None:
+        for point in at:
+            value = enclose(self, x, point, precision)
+            if value is not None and not value.contains(0):
+                return Decision(False, point, value.str(12))
+        return None
 
     def clear_inverses(self, x: Poly) -> Poly:
         """x times the powers of denominators that remove every inverse, in normal form."""
         for g in reversed([g for g in self.generators if g.kind == "inverse"]):
-            highest = int(x.degrees()[g.index])
-            if not highest:
-                continue
-            total = self.zero
-            for monomial, coefficient in x.to_dict().items():
-                rest = (*monomial[: g.index], 0, *monomial[g.index + 1 :])
-                missing = highest - int(monomial[g.index])
-                total += self.context.from_dict({rest: coefficient}) * g.argument**missing
-            x = self.reduce(total)
+            parts = self._split(x, g.index)
+            highest = max(parts, default=0)
+            if highest:
+                total = self.zero
+                for power in range(highest + 1):  # Horner's rule in the denominator
+                    total = self.reduce(total * g.argument) if power else total
+                    total += parts.get(power, self.zero)
+                x = self.reduce(total)
         return x
-
-    def enclose(self, x: Poly, point: dict[str, Fraction], precision: int) -> Any:
-        """A ball (flint.arb) that contains x at the point, or None where x is not defined.
-
-        Leaves flint's global context as it was.
-        """
-        with flint.ctx.workprec(precision):
-            values: dict[int, Any] = {}
-            for g in self.used(x):
-                if g.kind == "variable":
-                    at = point[str(g.expression)]
-                    values[g.index] = flint.arb(flint.fmpq(at.numerator, at.denominator))
-                elif g.kind == "pi":
-                    values[g.index] = flint.arb.pi()
-                else:
-                    values[g.index] = _BALLS[g.kind](_at(g.argument, values), g.degree)
-                if not values[g.index].is_finite():
-                    return None
-            return _at(x, values)
-
-
-_BALLS: dict[str, Callable[[Any, int], Any]] = {
-    "sin": lambda x, _: x.sin(),
-    "cos": lambda x, _: x.cos(),
-    "exp": lambda x, _: x.exp(),
-    "sinh": lambda x, _: x.sinh(),
-    "cosh": lambda x, _: x.cosh(),
-    "log": lambda x, _: x.log(),
-    "atan": lambda x, _: x.atan(),
-    "root": lambda x, n: x.root(n),
-    "inverse": lambda x, _: 1 / x,
-}
-
-
-def _at(x: Poly, values: dict[int, Any]) -> Any:
-    total = flint.arb(0)
-    for monomial, coefficient in x.to_dict().items():
-        term = flint.arb(coefficient)
-        for index, power in enumerate(monomial):
-            if power:
-                term *= values[index] ** int(power)
-        total += term
-    return total
 
 
 def rational_of(value: Any) -> sympy.Rational:
     """A flint rational as sympy's."""
     return sympy.Rational(int(value.numer()), int(value.denom()))
-
-
-def _points(names: Sequence[str]) -> list[dict[str, Fraction]]:
-    """A few rational points, small and without a pattern that a formula could share.
-
-    Both signs of every variable are tried (up to 4 variables) since a root or a logarithm may be
-    defined on one side only.
-    """
-    primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
-    size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(len(names))]
-    signs = list(cartesian((1, -1), repeat=min(len(names), 4))) or [()]
-    points = []
-    for scale in (Fraction(1), Fraction(1, 16), Fraction(9, 4)):
-        for sign in signs:
-            full = (*sign, *(1 for _ in names[len(sign) :]))
-            points.append({n: scale * s * v for n, s, v in zip(names, full, size, strict=True)})
-    return points

@@ -19,6 +19,7 @@ from typing import Any
 import flint
 
 from verify import arithmetic as number_systems
+from verify.enclosure import enclose
 from verify.errors import InputError
 from verify.exact import Exact, known_digits, positive, rational, text
 from verify.formula import to_text
@@ -131,7 +132,7 @@ def _proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     if any(step.ring.depends(step.delta_j, name) for name in ("p", "q")):
         return {}
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()
-    delta_j = step.ring.enclose(step.delta_j, {"h": h}, bits)
+    delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)
     if delta_j is None:
         return {}
     with flint.ctx.workprec(bits):

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import sympy
 
+from verify.errors import InputError
 from verify.formula import parse, symbol
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
@@ -82,6 +83,8 @@ class StepMap:
         `q_next` may also use p_next, and then stands for the composition. Raises InputError.
         """
         names = ("p", "q", "h", *hamiltonian.parameters)
+        if "p_next" in names:
+            raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
         values = dict(hamiltonian.values)
         put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in values.items()}
         p1 = parse(p_next, names, source="p_next")

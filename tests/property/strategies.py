@@ -97,7 +97,10 @@ def plain(text: str) -> sympy.Expr:
 
 
 def lie_step(hamiltonian: sympy.Expr, eta: int) -> tuple[sympy.Expr, sympy.Expr]:
-    """Eq. 2–5 of the paper to the letter: two operators, each applied to the one before."""
+    """Eq. 2–5 of the paper to the letter: two operators, each applied to the one before.
+
+    Every derivative is expanded, for sympy's would else grow beyond what it can evaluate.
+    """
     h_p, minus_h_q = hamiltonian.diff(P), -hamiltonian.diff(Q)
 
     def l_hp(y: sympy.Expr) -> sympy.Expr:
@@ -111,7 +114,8 @@ def lie_step(hamiltonian: sympy.Expr, eta: int) -> tuple[sympy.Expr, sympy.Expr]
     for n in range(1, eta + 1):
         p_next += H**n / math.factorial(n) * l_p
         q_next += H**n / math.factorial(n) * l_q
-        l_p, l_q = l_hq(l_p) + l_hp(l_p), l_hp(l_q) + l_hq(l_q)  # Eq. 4
+        l_p = sympy.expand(l_hq(l_p) + l_hp(l_p))  # Eq. 4
+        l_q = sympy.expand(l_hp(l_q) + l_hq(l_q))
     return p_next, q_next
 
 
@@ -122,14 +126,39 @@ def plain_delta_j(p_next: sympy.Expr, q_next: sympy.Expr) -> sympy.Expr:
 
 def evaluate(expression: sympy.Expr, point: Mapping[str, Fraction], digits: int = 60) -> Any:
     """The value at a point by mpmath; complex or not finite where it is not defined."""
-    symbols = [sympy.Symbol(name, real=True) for name in point]
-    function = sympy.lambdify(symbols, expression, "mpmath")
+    known: dict[sympy.Expr, Any] = {}
+
+    def value(node: sympy.Expr) -> Any:
+        if node not in known:
+            known[node] = _apply(node, [value(argument) for argument in node.args])
+        return known[node]
+
     with mpmath.workdps(digits):
-        arguments = [mpmath.mpf(v.numerator) / v.denominator for v in point.values()]
+        for name, at in point.items():
+            known[sympy.Symbol(name, real=True)] = mpmath.mpf(at.numerator) / at.denominator
         try:
-            return mpmath.mpmathify(function(*arguments))
+            return value(expression)
         except (ZeroDivisionError, OverflowError, ValueError):
             return mpmath.nan
+
+
+_CONSTANTS = {sympy.pi: lambda: +mpmath.pi, sympy.E: lambda: +mpmath.e}
+
+
+def _apply(node: sympy.Expr, arguments: list[Any]) -> Any:
+    if node.is_Rational:
+        return mpmath.mpf(int(node.p)) / int(node.q)
+    if node in _CONSTANTS:
+        return _CONSTANTS[node]()
+    if node.is_Add:
+        return mpmath.fsum(arguments)
+    if node.is_Mul:
+        return mpmath.fprod(arguments)
+    if node.is_Pow:
+        return mpmath.power(*arguments)
+    if not node.is_Function:
+        return mpmath.nan
+    return getattr(mpmath, node.func.__name__)(*arguments)
 
 
 def is_real(value: Any) -> bool:

@@ -21,6 +21,7 @@ from tests.property.strategies import (
     points,
     polynomials,
 )
+from verify.enclosure import enclose
 from verify.errors import InputError
 from verify.formula import parse
 from verify.generators import embed
@@ -230,7 +231,7 @@ def test_a_derivative_is_the_one_of_sympy_to_30_digits(
 def test_an_enclosure_contains_the_value(text: str, point: dict[str, Fraction]) -> None:
     expression, ring, x = embedded(text)
     value = evaluate(expression, point)
-    ball = ring.enclose(x, {**point, "h": Fraction(1), "b": Fraction(1)}, 128)
+    ball = enclose(ring, x, {**point, "h": Fraction(1), "b": Fraction(1)}, 128)
     assume(is_real(value) and ball is not None)
     # What mpmath rounds, at 60 digits, is far below the ball's own radius or this margin.
     margin = flint.arb(0, 1e-35) * (1 + abs(ball))

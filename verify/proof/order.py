@@ -11,6 +11,7 @@ from fractions import Fraction
 import sympy
 
 from verify.errors import InputError
+from verify.formula import checked
 from verify.generators import embed
 from verify.ring import Decision, Poly, Ring
 from verify.scheme import Scheme
@@ -86,8 +87,10 @@ class Expansion:
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
         value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
-        if value.has(sympy.zoo, sympy.nan, sympy.oo, -sympy.oo):
-            raise InputError("map", str(value), "the map is not smooth in h at h = 0")
+        try:
+            checked(value, "map", str(value))
+        except InputError as error:
+            raise InputError("map", error.value, "is not smooth in h at h = 0") from None
         ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
         return ring, x
 

@@ -1,0 +1,91 @@
+"""An expression as terms in reading order: what a formula's printer needs to know of algebra.
+
+Sums go by ascending powers of h, then by degree in p and q; a factor of h leads its product, sums
+and functions close it: −(h²/2) p (1 + 3q²).
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import sympy
+
+Expr = Any  # sympy.Expr, which has no type stubs
+
+_INNER = ("p", "q")
+
+
+@dataclass(frozen=True)
+class Term:
+    """coefficient · factors / divisors, the coefficient rational and not yet signed."""
+
+    coefficient: Expr
+    factors: tuple[Expr, ...] = ()
+    divisors: tuple[Expr, ...] = ()
+
+    @property
+    def negative(self) -> bool:
+        return bool(self.coefficient < 0)
+
+
+def terms_of(expression: Expr) -> list[Term]:
+    """The sum's terms in reading order."""
+    keyed = sorted(((_sort_key(t), t) for t in sympy.Add.make_args(expression)), key=lambda x: x[0])
+    terms = [(key[0], _term(t)) for key, t in keyed]
+    lowest = [term for power, term in terms if power == terms[0][0]]
+    if lowest[0].negative:  # −1 + q² reads better as q² − 1
+        lowest.sort(key=lambda term: term.negative)
+    return [*lowest, *(term for _, term in terms[len(lowest) :])]
+
+
+def _sort_key(term: Expr) -> tuple[Any, ...]:
+    powers = {str(b): e for b, e in _powers(term) if b.is_Symbol}
+    others = [b for b, _ in _powers(term) if not b.is_Symbol and not b.is_number]
+    degree = sum(powers.get(name, 0) for name in _INNER)
+    inner = tuple(-powers.get(name, 0) for name in _INNER)
+    return powers.get("h", 0), bool(others), degree, inner, str(term)
+
+
+def _powers(term: Expr) -> list[tuple[Expr, Expr]]:
+    return [f.as_base_exp() for f in sympy.Mul.make_args(term)]
+
+
+def _term(expression: Expr) -> Term:
+    """The term with the rational content, and the sign, of its sums drawn to the front."""
+    coefficient, factors, divisors = sympy.S.One, [], []
+    for factor in sympy.Mul.make_args(expression):
+        base, exponent = factor.as_base_exp()
+        if factor.is_Rational:
+            coefficient *= factor
+        elif factor.is_Add:
+            content, rest = _primitive(factor, sympy.S.One)
+            coefficient *= content
+            factors.append(rest)
+        elif exponent.is_Rational and exponent < 0 and base is not sympy.E:
+            content, rest = _primitive(base, exponent)
+            coefficient *= content**exponent
+            divisors.append(rest**-exponent)
+        else:
+            factors.append(factor)
+    return Term(coefficient, tuple(factors), tuple(divisors))
+
+
+def _primitive(base: Expr, exponent: Expr) -> tuple[Expr, Expr]:
+    """A sum's rational content, with the sign where all its terms are negative, and the rest."""
+    if not base.is_Add or not exponent.is_Integer:
+        return sympy.S.One, base
+    content, rest = base.primitive()
+    if all(t.could_extract_minus_sign() for t in rest.args):
+        return -content, -rest
+    return content, rest
+
+
+def factor_key(factor: Expr) -> tuple[Any, ...]:
+    base, _ = factor.as_base_exp()
+    name = str(base)
+    if base.is_number:
+        kind = 4 if base is sympy.E else 0
+    elif base.is_Symbol:
+        kind = 1 if name == "h" else 3 if name in _INNER else 2
+    else:
+        kind = 4 if base.is_Add else 5
+    return kind, name

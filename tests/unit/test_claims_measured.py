@@ -1,0 +1,137 @@
+"""Claims about numbers, on runs built by hand: true, false, and too uncertain to tell.
+
+Each kind has a true instance, planted falsehoods, and values whose balls straddle what they are
+compared with.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+
+from tests.unit.by_hand import STARTS, STEP_SIZES, Given, made_findings, made_proof, made_scene
+from verify.claims import (
+    Claim,
+    CriteriaClaim,
+    Findings,
+    LessClaim,
+    MagnitudeClaim,
+    MonotoneClaim,
+    SpreadClaim,
+    TableClaim,
+    check_claims,
+    load_claims,
+)
+from verify.errors import InputError
+from verify.execute import Store, execute
+from verify.plan import plan_scenes
+from verify.results import ClaimResult
+from verify.verdict import Verdict
+
+MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED
+COMMON = {"id": "c", "source": "s", "statement": "t", "scene": "made", "scheme": "lie2"}
+H = [Fraction(h) for h in STEP_SIZES]
+FLAT: dict[str, Given] = {"mse": "1e-20", "lambda": "-1e-5", "delta_j_max": "1e-9"}
+Values = Callable[[Fraction, int], dict[str, Given]]
+
+
+def check(claim: Claim, values: Values, **scene: Any) -> ClaimResult:
+    findings = made_findings(made_scene(**scene), values)
+    (found,) = check_claims([claim], findings)
+    return found
+
+
+def one_changed(at: tuple[Fraction, int], name: str, given: Given, base: Values) -> Values:
+    """`base` with one value of one run changed."""
+
+    def values(h: Fraction, k: int) -> dict[str, Given]:
+        return {**base(h, k), name: given} if (h, k) == at else base(h, k)
+
+    return values
+
+
+LAST = (H[-1], len(STARTS) - 1)  # where a mistake is put: at the last run of all
+
+
+# -- table ----------------------------------------------------------------------------------------
+
+ROW = ["-19.3010", "-18.1234", "-17.0000", "-16.5229", "-15.9999", "-15.0001"]
+
+
+def table(printed: list[str], step_sizes: list[Fraction] = H) -> TableClaim:
+    return TableClaim(**COMMON, kind="table", step_sizes=tuple(step_sizes), printed=tuple(printed))
+
+
+def as_in_row(share: Fraction = Fraction(0), bound: Any = 0) -> Values:
+    """MSE with lg MSE = the printed number + share of its last unit, and a bound on the MSE."""
+
+    def values(h: Fraction, _: int) -> dict[str, Given]:
+        lg = Fraction(ROW[H.index(h)]) + share / 10**4
+        with mpmath.workdps(40):
+            mse = mpmath.nstr(mpmath.mpf(10) ** (mpmath.mpf(lg.numerator) / lg.denominator), 35)
+        return {**FLAT, "mse": (mse, Fraction(mse) * Fraction(bound))}
+
+    return values
+
+
+@pytest.mark.parametrize("share", ["0", "0.49", "-0.49"])
+def test_a_table_is_measured_where_every_value_rounds_to_what_is_printed(share: str) -> None:
+    assert check(table(ROW), as_in_row(Fraction(share), "1e-7")).verdict is MEASURED
+
+
+@pytest.mark.parametrize("share", ["0.51", "-0.51", "1", "-1"])
+def test_a_table_is_refuted_where_values_round_to_another_digit(share: str) -> None:
+    assert check(table(ROW), as_in_row(Fraction(share), "1e-7")).verdict is REFUTED
+
+
+@pytest.mark.parametrize(("share", "bound"), [("0.499", "1e-4"), ("0.501", "1e-4"), ("0", "0.01")])
+def test_a_table_is_undecided_where_a_ball_rounds_to_two_decimals(share: str, bound: str) -> None:
+    assert check(table(ROW), as_in_row(Fraction(share), bound)).verdict is UNDECIDED
+
+
+@pytest.mark.parametrize("place", range(len(ROW)))
+@pytest.mark.parametrize("digit", [-1, -2, -3, -4, -6])
+def test_a_table_with_one_digit_changed_is_refuted(place: int, digit: int) -> None:
+    entry = ROW[place]
+    changed = str((int(entry[digit]) + 1) % 10)
+    wrong = [*ROW]
+    wrong[place] = entry[:digit] + changed + entry[len(entry) + digit + 1 :]
+    assert wrong[place] != entry
+    assert len(wrong[place]) == len(entry)
+    found = check(table(wrong), as_in_row())
+    assert found.verdict is REFUTED
+    assert f"{len(STARTS)} of {len(STARTS) * len(H)} entries are wrong" in found.evidence
+
+
+@pytest.mark.parametrize("given", ["1e-14", ("0", "1e-10"), ("1.1e-15", "1e-15")])
+def test_one_run_that_differs_keeps_a_table_from_being_measured(given: Given) -> None:
+    found = check(table(ROW), one_changed(LAST, "mse", given, as_in_row()))
+    assert found.verdict is (REFUTED if given == "1e-14" else UNDECIDED)
+
+
+def test_the_papers_row_is_refuted_and_named_as_one_over_n() -> None:
+    row = ["-7.3010", "-7.0000", "-6.6990", "-6.5229", "-6.3979", "-6.3010"]
+    found = check(table(row), as_in_row())
+    assert found.verdict is REFUTED
+    assert "lg(1/N)" in found.evidence
+    assert "lg(1/N)" not in check(table([*row[:5], "-6.3011"]), as_in_row()).evidence
+    shown = {cell for line in found.details for cell in line}
+    assert set(row) | set(ROW) <= shown, "printed and computed values stand side by side"
+
+
+def test_a_table_row_from_our_own_runs_is_measured_and_refuted_with_a_digit_changed() -> None:
+    scene = made_scene(step_sizes=("0.05", "0.1"), starts=(("1.5", "0"),))
+    grid = scene.grid.model_copy(update={"time": Fraction(5)})  # type: ignore[union-attr]
+    scene = scene.model_copy(update={"grid": grid})
+    findings = Findings({"made": scene}, execute(plan_scenes([scene]), Store(None), workers=1))
+    runs = findings.runs(scene, "lie2")
+    row = [f"{mpmath.log10(mpmath.mpf(r.values['mse'].value)):.4f}" if False else
+           mpmath.nstr(mpmath.log10(r.values["mse"].value), 30) for r in runs]  # fmt: skip
+    printed = [f"{Fraction(x):.4f}" if hasattr(Fraction, "__format__") else x for x in row]
+    claim = table(printed, [Fraction(r.step_size) for r in runs])
+    assert check_claims([claim], findings)[0].verdict is MEASURED
+    wrong = table([printed[0], printed[1][:-1] + str((int(printed[1][-1]) + 1) % 10)],
+                  list(claim.step_sizes))  # fmt: skip
+    assert check_claims([wrong], findings)[0].verdict is REFUTED

@@ -1,0 +1,64 @@
+"""The page's figures: inline, themed, told apart without colour, and nothing left behind."""
+
+import re
+from typing import Any
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+
+from reports.figures import merged
+from reports.page import render
+from tests.unit.test_report_page import page_of, real
+from verify.results import SeriesPoint
+
+
+def figures(page: str) -> list[Any]:
+    found = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+    return [ElementTree.fromstring(svg) for svg in found]  # noqa: S314 - our own page
+
+
+def test_figures_are_inline_images_that_follow_the_theme() -> None:
+    found = figures(page_of("real"))
+    # The highlight, the table, |Λ| and MSE/|Λ| over h, and one series.
+    assert len(found) == 5
+    ids = [e.get("id") for svg in found for e in svg.iter() if e.get("id")]
+    assert ids
+    assert len(ids) == len(set(ids))
+    for svg in found:
+        assert svg.get("role") == "img"
+        assert svg.get("aria-label") == svg[0].text
+        assert svg[0].tag == "title"
+        assert "viewBox" in svg.attrib
+        assert not {"width", "height"} & set(svg.attrib)
+        texts = [e for e in svg.iter() if e.tag == "text"]
+        assert texts
+        assert all(e.get("fill") == "currentColor" for e in texts)
+        assert not [e for e in svg.iter() if e.tag in ("style", "metadata", "image")]
+        own = {e.get("id") for e in svg.iter()}
+        for e in svg.iter():
+            for target in (e.get("href", "#"), e.get("clip-path", "url(#)")[4:-1]):
+                assert target == "#" or target[1:] in own
+
+
+def test_lines_differ_by_more_than_colour() -> None:
+    plot = figures(page_of("real"))[2]
+    lines = [e for e in plot.iter() if e.get("style", "").startswith("stroke: var(--series")]
+    assert len({e.get("style") for e in lines}) == 2
+    assert len({e.get("stroke-dasharray") for e in lines if e.tag == "path"}) == 2
+
+
+def test_drawing_leaves_matplotlib_as_it_was() -> None:
+    with mpl.rc_context({"font.size": 7, "svg.fonttype": "path"}):
+        before = dict(mpl.rcParams)
+        render(real())
+        assert dict(mpl.rcParams) == before
+
+
+def test_neighbouring_buckets_are_put_together_with_their_extremes() -> None:
+    points = [
+        SeriesPoint(first=i, last=i, delta_j=(f"-{i}e-9", f"{i}e-9"), lam=("0", str(i)))
+        for i in range(1, 6)
+    ]
+    assert merged(points, 5) == points
+    whole = merged(points, 1)
+    assert whole == [SeriesPoint(first=1, last=5, delta_j=("-5e-9", "5e-9"), lam=("0", "5"))]

@@ -1,0 +1,292 @@
+"""The page: well-formed, escaped, self-contained, the same each time, and without empty parts."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import cache
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reports.page import render, write
+from reports.typography import number
+from verify.claims import Claim, MonotoneClaim, TableClaim
+from verify.execute import Store
+from verify.report import make_report
+from verify.results import (
+    ClaimResult,
+    ProofResult,
+    Provenance,
+    Report,
+    RunResult,
+    SceneResult,
+    Value,
+)
+from verify.scene import scene_from
+from verify.verdict import Verdict
+
+EVIL = '<script>alert("x")</script>'
+VOID = {"meta", "br", "link", "img", "hr", "input"}
+
+# -- small reports --------------------------------------------------------------------------------
+
+
+def proof(**changes: Any) -> ProofResult:
+    own: dict[str, Any] = {
+        "hamiltonian": "p**2/2 + a*q**4/4", "parameters": {}, "scheme": "lie2",
+        "verdict": Verdict.PROVED, "reason": "shown", "order": 3, "leading": "3*a*p*q",
+        "delta_j": "3*a*h**3*p*q", "area_preserving": False, "convergence_order": 2,
+        "witness": {"p": "1/2"}, "enclosure": "[0.5 +/- 1e-10]", "p_next": "p - h*a*q**3",
+        "q_next": "q + h*p", "jacobian": (("1", "-3*a*h*q**2"), ("h", "1")), "seconds": 0.1,
+    }  # fmt: skip
+    return ProofResult.model_validate(own | changes)
+
+
+def run(**changes: Any) -> RunResult:
+    own: dict[str, Any] = {
+        "hamiltonian": "p**2/2", "parameters": {}, "scheme": "lie2", "arithmetic": "float64",
+        "digits": 17, "step_size": "0.01", "steps": 100, "q": "1", "p": "-0.5",
+        "status": "finished", "failed_step": None, "error_kind": "estimated",
+        "values": {"lambda": Value(value="-1.23e-05", bound="4.00e-08")},
+        "error_method": "a rerun", "exact": (), "series": (), "seconds": 0.1,
+    }  # fmt: skip
+    return RunResult.model_validate(own | changes)
+
+
+def scene(**changes: Any) -> SceneResult:
+    own: dict[str, Any] = {
+        "name": "mine", "title": "My oscillator", "hamiltonian": "p**2/2 + a*q**4/4",
+        "parameters": {}, "source": "mine", "time": None, "proofs": (proof(),), "criteria": (),
+        "runs": (), "series": (),
+    }  # fmt: skip
+    return SceneResult.model_validate(own | changes)
+
+
+def claim(**changes: Any) -> ClaimResult:
+    own: dict[str, Any] = {
+        "id": "eq-1", "source": "Eq. 1", "statement": "It is so.", "scene": "mine",
+        "verdict": Verdict.PROVED, "evidence": "it is",
+    }  # fmt: skip
+    return ClaimResult.model_validate(own | changes)
+
+
+def report(scenes: tuple[SceneResult, ...] = (), **changes: Any) -> Report:
+    made = Provenance(
+        command="verify report mine.toml", versions={"Python": "3"}, machine="one", seconds=1.0,
+        kept=0, computed=1,
+    )  # fmt: skip
+    own: dict[str, Any] = {
+        "title": "Mine",
+        "claims": (),
+        "scenes": scenes,
+        "left_out": (),
+        "provenance": made,
+    }
+    return Report.model_validate(own | changes)
+
+
+@cache
+def real() -> Report:
+    """A tiny scene through the real pipeline: grid, series, a wrong table and a true claim."""
+    common = {"source": "Table 9", "statement": "A table.", "scene": "duffing", "scheme": "lie2"}
+    tiny = scene_from(
+        {
+            "name": "duffing", "title": "Duffing", "system": "duffing", "parameters": {"delta": 1},
+            "schemes": ["lie2", "symplectic-euler"], "criteria": [1, 2, 3, 4],
+            "grid": {
+                "time": "0.2", "step_sizes": ["0.01", "0.02", "0.03"],
+                "initial_values": [{"q": "1", "p": "0"}, {"q": "0", "p": "-1.5"}],
+                "observables": ["delta_j_max", "mse", "lambda", "lambda_plain"],
+            },
+            "series": [{"step_size": "0.01", "time": "1", "initial_value": {"q": "1", "p": "0"}}],
+        },
+        "duffing",
+    )  # fmt: skip
+    claims: list[Claim] = [
+        TableClaim.model_validate(
+            common | {"id": "table-9", "kind": "table", "step_sizes": ["0.01", "0.02"],
+                      "printed": ["-1.3010", "-1.0000"]}
+        ),
+        MonotoneClaim.model_validate(
+            common | {"id": "grows", "source": "Figure 9", "kind": "monotone", "quantity": "mse",
+                      "direction": "increases"}
+        ),
+    ]  # fmt: skip
+    return make_report("Tiny", [tiny], claims, Store(None), command="verify report", workers=1)
+
+
+# -- reading a page -------------------------------------------------------------------------------
+
+
+class Reader(HTMLParser):
+    """All elements with their attributes; AssertionError where tags do not match."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[str] = []
+        self.feed(page)
+        self.close()
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        assert len(attrs) == len(dict(attrs)), f"an attribute twice: {attrs}"
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open, f"</{tag}> closes nothing"
+        assert self.open.pop() == tag, f"</{tag}>"
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(data)
+
+    def all(self, name: str) -> list[str]:
+        return [a[name] or "" for _, a in self.elements if name in a]
+
+    def headings(self) -> list[str]:
+        return [tag for tag, _ in self.elements if re.fullmatch("h[1-6]", tag)]
+
+
+REPORTS: dict[str, Callable[[], Report]] = {
+    "real": real,
+    "proof only": lambda: report((scene(),)),
+    "nothing": report,
+    "names twice": lambda: report((scene(), scene()), claims=(claim(), claim())),
+    "ragged details": lambda: report(
+        claims=(claim(verdict=Verdict.REFUTED, details=(("a", "h = 1"), ("printed",), (), ("b",))),)
+    ),
+    "left range": lambda: report(
+        (scene(runs=(run(status="left range", failed_step=7, values={}),)),)
+    ),
+    "undecided": lambda: report(
+        (scene(proofs=(proof(verdict=Verdict.UNDECIDED, order=None, area_preserving=None),)),)
+    ),
+}
+
+
+@cache
+def page_of(name: str) -> str:
+    return render(REPORTS[name]())
+
+
+@pytest.mark.parametrize("name", REPORTS)
+def test_the_page_is_well_formed_and_its_links_lead_somewhere(name: str) -> None:
+    reader = Reader(page_of(name))
+    ids = reader.all("id")
+    assert len(ids) == len(set(ids))
+    for target in reader.all("href"):
+        assert target == "results.json" or target.removeprefix("#") in ids, target
+    levels = [int(h[1]) for h in reader.headings()]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(b - a <= 1 for a, b in pairwise(levels))
+    assert all("scope" in a for tag, a in reader.elements if tag == "th")
+
+
+@pytest.mark.parametrize("name", REPORTS)
+def test_the_page_needs_nothing_from_outside(name: str) -> None:
+    page = page_of(name)
+    reader = Reader(page)
+    for tag, attributes in reader.elements:
+        assert tag not in ("script", "link", "img", "iframe", "object", "embed")
+        for key, text in attributes.items():
+            assert not re.search(r"https?:|//", text or ""), (tag, key, text)
+            assert not key.startswith("on")
+    assert "@import" not in page
+    assert not re.search(r"url\((?!#)", page)
+
+
+def test_what_others_wrote_stays_text() -> None:
+    evil = report(
+        (
+            scene(
+                name=EVIL, title=EVIL, hamiltonian=EVIL, parameters={EVIL: EVIL}, source=EVIL,
+                proofs=(proof(scheme=EVIL, reason=EVIL, leading=EVIL, delta_j=EVIL, p_next=EVIL,
+                              jacobian=((EVIL, EVIL), (EVIL, EVIL)), witness={EVIL: EVIL}),),
+                runs=(run(scheme=EVIL, error_method=EVIL),),
+            ),
+        ),
+        title=EVIL,
+        claims=(claim(id=EVIL, source=EVIL, statement=EVIL, scene=EVIL, evidence=EVIL,
+                      verdict=Verdict.REFUTED, details=((EVIL, EVIL), (EVIL, EVIL))),),
+        left_out=((EVIL, EVIL),),
+    )  # fmt: skip
+    reader = Reader(render(evil))
+    assert "script" not in {tag for tag, _ in reader.elements}
+    assert "".join(reader.texts).count(EVIL) > 15
+
+
+def test_every_claim_has_an_anchor_and_links_to_it() -> None:
+    claims = tuple(claim(id=name) for name in ("eq-1", "eq-1-title", "a b", "a b", "”><b>", ""))
+    reader = Reader(render(report((scene(),), claims=claims)))
+    anchors = [i for i in reader.all("id") if i.startswith("claim-")]
+    assert len(anchors) == len(claims)
+    assert "claim-eq-1" in anchors
+    assert {f"#{a}" for a in anchors} <= set(reader.all("href"))
+
+
+def test_the_same_report_gives_the_same_page(tmp_path: Path) -> None:
+    page = write(real(), tmp_path)
+    assert page == tmp_path / "index.html"
+    assert page.read_text(encoding="utf-8") == page_of("real")
+    assert Report.model_validate_json((tmp_path / "results.json").read_text()) == real()
+
+
+def test_what_a_report_lacks_is_not_shown() -> None:
+    page = render(report((scene(),)))
+    ids = Reader(page).all("id")
+    assert not {"verdicts", "evidence", "left-out", "refuted"} & set(ids)
+    assert not re.search(r"<svg|<table|<details|Parameters:|T =", page)
+
+
+def test_a_proof_is_shown_without_matplotlib() -> None:
+    code = (
+        "import sys; from tests.unit.test_report_page import page_of; page_of('proof only');"
+        "assert not {'matplotlib', 'reports.figures'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
+
+
+# -- what the page says ---------------------------------------------------------------------------
+
+
+def test_the_page_of_a_real_scene_says_what_was_found() -> None:
+    text = " ".join(" ".join(Reader(page_of("real")).texts).replace("\xa0", " ").split())
+    assert "Of 2 claims, 1 is measured and 1 refuted." in text
+    assert "The most telling refutation: Table 9" in text
+    assert "h = 0.03 gives N = 6" in text  # 0.2/0.03 is not whole
+    assert "Computed in float64 with N = 6 … 20 steps" in text
+    runs = real().scenes[0].runs
+    for value in (v for r in runs for name, v in r.values.items() if name not in "pq"):
+        shown = number(value.value).replace("\xa0", " ")
+        assert re.search(rf"(?<![\d.]){re.escape(shown)}(?![\d.])", text), shown
+
+
+def test_a_run_that_left_the_range_says_where() -> None:
+    page = render(report((scene(runs=(run(status="left range", failed_step=7, values={}),)),)))
+    assert "left the range of float64 at step 7" in page
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "sentence"),
+    [
+        ("PP", "All 2 claims are proved."),
+        ("R", "The one claim is refuted."),
+        ("PRR", "Of 3 claims, 1 is proved and 2 refuted."),
+        ("PPEMRU", "Of 6 claims, 2 are proved, 1 enclosed, 1 measured, 1 refuted and 1 undecided."),
+    ],
+)
+def test_the_finding_counts_the_verdicts(verdicts: str, sentence: str) -> None:
+    letters = {v[0]: v for v in Verdict}
+    claims = tuple(claim(id=str(i), verdict=letters[v]) for i, v in enumerate(verdicts))
+    assert sentence in render(report((), claims=claims))

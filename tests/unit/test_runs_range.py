@@ -1,0 +1,245 @@
+"""Runs at their edges: orbits that leave the range, thinned series, memory, and what is compiled.
+
+The oracles are plain Python loops over the paper's formulas.
+"""
+
+import math
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from mpmath.ctx_mp import MPContext
+
+from verify import arithmetic
+from verify.arithmetic.mpmath import ESCAPE_BITS
+from verify.hamiltonian import Hamiltonian
+from verify.results import RunResult
+from verify.runs import ASKED, CLOSED_FORM, run
+
+DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4")
+PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
+HENON = Hamiltonian.parse("p**2/2 + q**2/2 - q**3/3")
+
+
+def duffing_steps(q: Any, p: Any, h: Any) -> Iterator[tuple[Any, Any, Any]]:
+    """(p, q) after each step of lie2 with δ = 1 (Eq. 19), and the step's ΔJ."""
+    while True:
+        dj = 3 * h * h * h * p * q + h * h * h * h * (1 + 3 * q * q) * (1 + 3 * q * q) / 4
+        p, q = (
+            p - h * (q + q * q * q) - h * h / 2 * p * (1 + 3 * q * q),
+            q + h * p - h * h / 2 * (q + q * q * q),
+        )
+        yield p, q, dj
+
+
+# -- leaving the range ----------------------------------------------------------------------------
+
+ESCAPES = [(3, 0, 1), (2, 1, 1), (Fraction(5, 2), -1, Fraction(3, 4)), (40, 0, Fraction(1, 8))]
+escapes = pytest.mark.parametrize(("q", "p", "h"), ESCAPES, ids=lambda x: str(x))
+
+
+def first_step_outside(q: Any, p: Any, h: Any, inside: Callable[[Any], bool]) -> int:
+    steps = duffing_steps(q, p, h)
+    return next(k for k, (p, q, _) in enumerate(steps, 1) if not (inside(p) and inside(q)))
+
+
+def duffing_run(name: str, steps: int, *, q: Any, p: Any, h: Any, **options: Any) -> RunResult:
+    return run(DUFFING.with_values({"delta": 1}), "lie2", q=q, p=p, step_size=h, steps=steps,
+               arithmetic=name, **options)  # fmt: skip
+
+
+@escapes
+def test_float64_says_at_which_step_the_orbit_is_no_longer_finite(q: Any, p: Any, h: Any) -> None:
+    true = first_step_outside(float(q), float(p), float(h), math.isfinite)
+    assert 3 < true < 100
+    for steps in (true, true + 1, 1000, 10**7):
+        found = duffing_run("float64", steps, q=q, p=p, h=h, observables=())
+        assert (found.status, found.failed_step, found.values) == ("left range", true, {})
+    assert duffing_run("float64", true - 1, q=q, p=p, h=h, observables=()).status == "finished"
+
+
+@escapes
+def test_float64_says_at_which_step_a_sum_is_no_longer_finite(q: Any, p: Any, h: Any) -> None:
+    squares, steps = 0.0, duffing_steps(float(q), float(p), float(h))
+    for true, (p_next, q_next, dj) in enumerate(steps, 1):  # noqa: B007 - used after the loop
+        squares += dj * dj
+        if not all(map(math.isfinite, (p_next, q_next, squares))):
+            break
+    found = duffing_run("float64", 1000, q=q, p=p, h=h, observables=("mse",))
+    assert (found.status, found.failed_step) == ("left range", true)
+
+
+@escapes
+def test_mpmath_stops_an_orbit_at_the_step_that_escapes(q: Any, p: Any, h: Any) -> None:
+    context = MPContext()
+    context.prec = 150
+    most = context.ldexp(1, ESCAPE_BITS)
+    start = (context.mpf(Fraction(x).numerator) / Fraction(x).denominator for x in (q, p, h))
+    true = first_step_outside(*start, lambda x: abs(x) < most)
+    assert 3 < true < 100
+    for steps in (true, true + 1, 5000):
+        found = duffing_run("mpmath", steps, q=q, p=p, h=h)
+        assert (found.status, found.failed_step, found.values) == ("left range", true, {})
+    assert duffing_run("mpmath", true - 1, q=q, p=p, h=h).status == "finished"
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+@pytest.mark.parametrize(
+    "text",
+    ["p**2/2 + q*sqrt(q)", "p**2/2 + q*log(q)", "p**2/2 + q**(4/3)", "p**2/2 + 1/q**2 + q"],
+    ids=["square-root", "logarithm", "cube-root", "pole"],
+)
+def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
+    name: str, text: str
+) -> None:
+    h, q, p = 0.1, 1.0, -1.0
+    found = run(Hamiltonian.parse(text), "lie1", q=1, p=-1, step_size="0.1", steps=60,
+                arithmetic=name)  # fmt: skip
+    force = {
+        "p**2/2 + q*sqrt(q)": lambda q: 1.5 * math.sqrt(q),
+        "p**2/2 + q*log(q)": lambda q: math.log(q) + 1,
+        "p**2/2 + q**(4/3)": lambda q: 4 / 3 * (q ** (1 / 3) if q >= 0 else math.nan),
+        "p**2/2 + 1/q**2 + q": lambda q: 1 - 2 / q**3,
+    }[text]
+    outside = None
+    for k in range(1, 61):
+        try:
+            p, q = p - h * force(q), q + h * p
+        except (ValueError, ZeroDivisionError):
+            p = math.nan
+        if not math.isfinite(p):
+            outside = k
+            break
+    assert found.failed_step == outside
+    assert found.status == ("left range" if outside else "finished")
+
+
+CHAOTIC = {"q": "0.01", "p": "-0.5", "step_size": 1, "steps": 1000}
+
+
+@pytest.mark.parametrize(("name", "digits"), [("float64", 17), ("mpmath", 2)])
+def test_an_orbit_whose_escape_depends_on_rounding_is_given_no_digit(
+    name: str, digits: int
+) -> None:
+    exact = run(HENON, "symplectic-euler", **CHAOTIC, arithmetic="mpmath", digits=400)
+    assert exact.status == "left range"
+    assert exact.failed_step is not None
+    assert exact.failed_step < 800
+    found = run(HENON, "symplectic-euler", **CHAOTIC, arithmetic=name, digits=digits)
+    # Beyond that step |q| is squared at every step: no finite bound around a bounded value can hold.
+    assert found.status == "left range" or Fraction(found.values["q"].bound) > 10**300
+
+
+# -- series ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+@pytest.mark.parametrize(
+    ("steps", "points"),
+    [(1, 2), (2, 2), (7, 3), (100, 7), (101, 600), (600, 600), (9001, 2), (9001, 600)],
+)
+def test_a_series_covers_every_step_once_in_at_most_so_many_points(
+    name: str, steps: int, points: int
+) -> None:
+    found = duffing_run(name, steps, q=1, p=0, h=Fraction(1, 100), points=points)
+    covered = [k for point in found.series for k in range(point.first, point.last + 1)]
+    assert covered == list(range(1, steps + 1))
+    assert len(found.series) <= points
+
+
+def test_a_long_series_in_float64_has_at_most_so_many_points() -> None:
+    found = duffing_run("float64", 9_000_000, q=1, p=0, h=Fraction(1, 1000), points=2)
+    assert len(found.series) <= 2
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+@pytest.mark.parametrize(("steps", "points"), [(50, 50), (1000, 13), (1000, 999)])
+def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
+    name: str, steps: int, points: int
+) -> None:
+    found = duffing_run(name, steps, q=Fraction(3, 2), p=0, h=Fraction(1, 20), points=points)
+    lam, loop, all_dj = 0.0, duffing_steps(1.5, 0.0, 0.05), []
+    for point in found.series:
+        lams, djs = [], []
+        for _ in range(point.first, point.last + 1):
+            dj = next(loop)[2]
+            lam = lam + dj + lam * dj
+            lams.append(lam)
+            djs.append(dj)
+        all_dj += djs
+        for (low, high), true in ((point.delta_j, djs), (point.lam, lams)):
+            assert float(low) == pytest.approx(min(true), rel=1e-6, abs=1e-14)
+            assert float(high) == pytest.approx(max(true), rel=1e-6, abs=1e-14)
+    assert min(all_dj) < 0 < max(all_dj), "else least and greatest could be mixed up unseen"
+    assert float(found.values["lambda"].value) == pytest.approx(lam, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+def test_points_do_not_change_the_values(name: str) -> None:
+    plain = duffing_run(name, 5000, q=1, p=0, h=Fraction(1, 100), observables=ASKED)
+    thinned = duffing_run(name, 5000, q=1, p=0, h=Fraction(1, 100), observables=ASKED, points=40)
+    assert plain.values == thinned.values
+    assert (plain.series, len(thinned.series)) == ((), 40)
+
+
+# -- memory and compilation -----------------------------------------------------------------------
+
+MEMORY = """
+import resource, tracemalloc
+from verify import Hamiltonian, run
+duffing = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
+def peak(steps):
+    tracemalloc.start()
+    run(duffing, "lie2", q="1.5", p=0, step_size="0.001", steps=steps, points=600)
+    own = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+peak(200_000)  # compiles
+print(*peak(200_000), *peak(20_000_000))
+"""
+
+
+def test_memory_does_not_grow_with_the_number_of_steps() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", MEMORY], capture_output=True, text=True, check=True
+    )
+    own, resident, own_of_many, resident_of_many = map(int, done.stdout.split())
+    assert own_of_many <= 1.1 * own
+    assert resident_of_many <= 1.1 * resident
+
+
+def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # An H of this test's own, so that no other test has compiled its kernel.
+    fresh = Hamiltonian.parse("p**2/2 + a*q**2/2 + b*q**6/96 + 71*q**2/1931")
+    compiled, made = [], arithmetic.get("float64", 17)
+
+    def get(name: str, digits: int) -> Any:
+        return made if name == "float64" else _get(name, digits)
+
+    def count(*args: Any) -> Any:
+        compiled.append(compile_one(*args))
+        return compiled[-1]
+
+    _get, compile_one = arithmetic.get, made.compile
+    object.__setattr__(made, "compile", count)
+    monkeypatch.setattr(arithmetic, "get", get)
+    for h in ("0.01", "0.02", "1/7", "3e-3"):
+        for a, b in ((1, 1), ("1/3", -2), (-1, "0.5")):
+            run(
+                fresh.with_values({"a": a, "b": b}), "lie3", q="0.1", p="0.2", step_size=h, steps=50
+            )
+    assert len(compiled) == 1
+    assert len(compiled[0].signatures) == 1, "numba compiled it for one set of types"
+    run(fresh.with_values({"a": 1, "b": 0}), "lie3", q=1, p=0, step_size="0.1", steps=50)
+    assert len(compiled) == 2, "a vanishing term has a kernel of its own"
+
+
+def test_the_observables_asked_for_are_those_that_come_back() -> None:
+    for asked in ((), ("mse",), ("lambda", "mse"), CLOSED_FORM, ASKED):
+        found = duffing_run("float64", 10, q=1, p=0, h=Fraction(1, 10), observables=asked)
+        assert set(found.values) == {"p", "q", *asked}

@@ -1,0 +1,82 @@
+"""Enclosing a ring element at a rational point by ball arithmetic, and points to look at."""
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import flint
+
+if TYPE_CHECKING:
+    from verify.ring import Ring
+
+_FAR_POINTS = 200
+
+
+def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) -> Any:
+    """A ball (flint.arb) that contains x at the point, or None where x is not defined.
+
+    Leaves flint's global context as it was.
+    """
+    with flint.ctx.workprec(precision):
+        values: dict[int, Any] = {}
+        for g in ring.used(x):
+            if g.kind == "variable":
+                at = point[str(g.expression)]
+                values[g.index] = flint.arb(flint.fmpq(at.numerator, at.denominator))
+            elif g.kind == "pi":
+                values[g.index] = flint.arb.pi()
+            else:
+                values[g.index] = _BALLS[g.kind](_at(g.argument, values), g.degree)
+            if not values[g.index].is_finite():
+                return None
+        return _at(x, values)
+
+
+_BALLS: dict[str, Callable[[Any, int], Any]] = {
+    "sin": lambda x, _: x.sin(),
+    "cos": lambda x, _: x.cos(),
+    "exp": lambda x, _: x.exp(),
+    "sinh": lambda x, _: x.sinh(),
+    "cosh": lambda x, _: x.cosh(),
+    "log": lambda x, _: x.log(),
+    "atan": lambda x, _: x.atan(),
+    "root": lambda x, n: x.root(n),
+    "inverse": lambda x, _: 1 / x,
+}
+
+
+def _at(x: Any, values: dict[int, Any]) -> Any:
+    total = flint.arb(0)
+    for monomial, coefficient in x.to_dict().items():
+        term = flint.arb(coefficient)
+        for index, power in enumerate(monomial):
+            if power:
+                term *= values[index] ** int(power)
+        total += term
+    return total
+
+
+def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
+    """Rational points to look for a witness at: small ones first, then ever farther ones.
+
+    Without a pattern that a formula could share, and of both signs, since a root or a logarithm
+    may be defined on one side only, or far out; the same points in every call.
+    """
+    primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
+    size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(len(names))]
+    signs = list(product((1, -1), repeat=min(len(names), 4))) or [()]
+    for scale in (Fraction(1), Fraction(1, 16)):
+        for sign in signs:
+            full = (*sign, *(1 for _ in names[len(sign) :]))
+            yield {n: scale * s * v for n, s, v in zip(names, full, size, strict=True)}
+    state = 12345
+    for count in range(_FAR_POINTS):
+        point = {}
+        for name in names:
+            state = (1103515245 * state + 12345) % 2**31
+            reach = 2 + 10 * count // _FAR_POINTS  # up to 2^reach, and down to 2^−reach
+            scale = Fraction(2) ** (state // 4096 % (2 * reach) - reach + 1)
+            value = Fraction(state % 4096 + 1, 4096) * scale
+            point[name] = value if state >> 29 & 1 else -value
+        yield point
