@@ -1,1 +1,1 @@
-"""Turns results into pages; computes nothing itself. `paper/` holds the paper's scenes and claims."""
+"""Turns results into pages and computes nothing itself; `paper/` holds the paper as data."""

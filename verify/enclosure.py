@@ -27,13 +27,13 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
             elif g.kind == "pi":
                 values[g.index] = flint.arb.pi()
             else:
-                values[g.index] = _BALLS[g.kind](_at(g.argument, values), g.degree)
+                values[g.index] = BALLS[g.kind](_at(g.argument, values), g.degree)
             if not values[g.index].is_finite():
                 return None
         return _at(x, values)
 
 
-_BALLS: dict[str, Callable[[Any, int], Any]] = {
+BALLS: dict[str, Callable[[Any, int], Any]] = {
     "sin": lambda x, _: x.sin(),
     "cos": lambda x, _: x.cos(),
     "exp": lambda x, _: x.exp(),

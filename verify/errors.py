@@ -13,6 +13,10 @@ class InputError(ValueError):
         self.problem = problem
         super().__init__(f"{name}={_short(value)}: {problem}")
 
+    def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
+        """As a worker process sends it: by its three parts, not by its message."""
+        return type(self), (self.name, _short(self.value), self.problem)
+
 
 def _short(value: object) -> str:
     """The value as one short line, however long or many-lined the user's text was."""

@@ -15,6 +15,7 @@ from typing import Any
 import sympy
 from sympy.printing.str import StrPrinter
 
+from verify.constants import within_reach
 from verify.errors import InputError
 from verify.exact import rational
 
@@ -124,7 +125,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     for power in result.atoms(sympy.Pow):
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             _check_power(power.base, power.exp, source, text)
-    if result.has(sympy.I) or any(f.args[0].is_negative for f in result.atoms(sympy.log)):
+    if result.has(sympy.I) or any(f.args[0].is_nonpositive for f in result.atoms(sympy.log)):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
 
@@ -132,7 +133,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
 def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
-    if exponent.q != 1 and base.is_negative:
+    if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
         raise InputError(source, text, f"is not defined: the root of {base} < 0")
 
 
@@ -197,7 +198,12 @@ class _Reader:
         # sympy sums and simplifies as it builds: infinities must not get into it.
         if name == "exp" and argument.has(sympy.log):
             return self.finite(self.exponential(argument))
-        value = self.finite(FUNCTIONS[name](argument))
+        if not argument.free_symbols and not within_reach(argument):
+            raise self.fail(f"{name} of a constant that is too large, or not defined")
+        try:
+            value = self.finite(FUNCTIONS[name](argument))
+        except (ArithmeticError, AttributeError, TypeError, RecursionError):  # from within sympy
+            raise self.fail(f"{name} of that argument cannot be handled exactly") from None
         # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 

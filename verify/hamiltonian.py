@@ -1,6 +1,6 @@
 """A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -46,10 +46,8 @@ class Hamiltonian:
                 given[name] = rational(value, f"parameter {name}")
         result = Hamiltonian(self.expression, tuple(sorted(given.items())))
         shown = ", ".join(f"{n}={v}" for n, v in result.values)
-        for power in self.expression.atoms(sympy.Pow):  # before sympy computes 2**(10**300)
-            exponent = power.exp.subs(result._put())
-            if exponent.is_Rational and abs(exponent) > MAX_EXPONENT:
-                raise InputError("parameter", shown, f"makes an exponent beyond ±{MAX_EXPONENT}")
+        if any(abs(e) > MAX_EXPONENT for e in result._exponents()):  # before sympy computes them
+            raise InputError("parameter", shown, f"makes an exponent beyond ±{MAX_EXPONENT}")
         checked(result.exact, "parameter", shown)
         return result
 
@@ -69,6 +67,18 @@ class Hamiltonian:
     @property
     def exact(self) -> sympy.Expr:
         return self.expression.subs(self._put())
+
+    def _exponents(self) -> Iterator[sympy.Rational]:
+        """The rational exponents that the values make of u**v and exp(v log u)."""
+        put = self._put()
+        for power in self.expression.atoms(sympy.Pow):
+            exponent = power.exp.subs(put)
+            if exponent.is_Rational:
+                yield exponent
+        for exponential in self.expression.atoms(sympy.exp):
+            for term in sympy.Add.make_args(exponential.args[0].subs(put)):
+                if term.has(sympy.log):
+                    yield term.as_coeff_Mul()[0]
 
     def _put(self) -> dict[sympy.Symbol, sympy.Rational]:
         return {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}

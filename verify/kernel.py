@@ -89,7 +89,9 @@ class _Writer:
     def outputs(self) -> dict[str, int]:
         """Indices of the increments of p and q, of ΔJ and det J as far as they are asked for."""
         program = self.program
-        fixed = {n: program.input(n, static=True) for n in ("h", *self.parameters)}
+        # A user's parameter may be named like anything; in the source it is x0, x1, ….
+        arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(self.parameters)}
+        fixed = {n: program.input(a, static=True) for n, a in arguments.items()}
         zero = program.constant(Fraction(0))
         state = {n: program.input(n, static=False) for n in ("p", "q")}
         total = {"p": zero, "q": zero}
@@ -164,10 +166,11 @@ class _Writer:
     def assemble(self, outputs: dict[str, int], statements: list[str]) -> str:
         static, dynamic = self.values(list(outputs.values()))
         names = ", ".join(name for name, _ in self.carried)
-        arguments = ", ".join(["steps", "h", *self.parameters, names])
+        parameters = [f"x{k}" for k in range(len(self.parameters))]
+        arguments = ", ".join(["steps", "h", *parameters, names])
         if self.arithmetic.guard is not None:
             p, q = (self.arithmetic.guard.format(x=x) for x in ("p", "q"))
-            statements = [*statements, f"if not ({p} and {q}): return k + 1, {names}"]
+            statements = [*statements, f"if not ({p} and {q}): return k, {names}"]
         return "\n".join(
             [
                 f"def kernel({arguments}):",

@@ -1,10 +1,12 @@
 """What was found: frozen results, exact decimal strings, the same after a JSON round trip."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from verify.verdict import Verdict
+
+_DECIMAL = r"^-?\d+(\.\d+)?(e[+-]\d+)?$"
 
 
 class Frozen(BaseModel):
@@ -16,8 +18,8 @@ class Frozen(BaseModel):
 class Value(Frozen):
     """A decimal whose printed digits are known, with the bound of its error."""
 
-    value: str
-    bound: str
+    value: Annotated[str, Field(pattern=_DECIMAL)]
+    bound: Annotated[str, Field(pattern=_DECIMAL)]
 
 
 class ProofResult(Frozen):
@@ -53,9 +55,10 @@ class SeriesPoint(Frozen):
 class RunResult(Frozen):
     """One run of N steps of a scheme in one arithmetic.
 
-    `values` holds p, q and the observables asked for, empty where the orbit left the arithmetic's
-    range (`status` "left range", after `failed_step` steps were still in it). `error_kind` is
-    "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `exact` names
+    `values` holds p, q and the observables asked for. It is empty where the orbit left the
+    arithmetic's range (`status` "left range"; `failed_step` is the first step that was out of it),
+    and where no digit could be confirmed ("unresolved"). `error_kind`
+    is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `exact` names
     the observables that a proof gave and no run was needed for.
     """
 
@@ -68,7 +71,7 @@ class RunResult(Frozen):
     steps: int
     q: str
     p: str
-    status: Literal["finished", "left range"]
+    status: Literal["finished", "left range", "unresolved"]
     failed_step: int | None
     values: dict[str, Value]
     error_kind: Literal["enclosed", "estimated"]

@@ -85,6 +85,9 @@ def run_json(result: "RunResult") -> dict[str, Any]:
 
 
 def print_run(result: "RunResult") -> None:
+    if result.status == "unresolved":
+        click.echo(f"no digit is known: {result.error_method}")
+        return
     if result.status != "finished":
         click.echo(
             f"at step {result.failed_step} the orbit leaves the range of {result.arithmetic}, or "

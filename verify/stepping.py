@@ -16,17 +16,22 @@ from verify.schemes import get
 
 Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
+_CHECKPOINTS = 16
 ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The final numbers of a run as exact rationals, empty where it stopped before its end."""
+    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done."""
 
     done: int
-    values: dict[str, Fraction]
+    trail: tuple[dict[str, Fraction], ...]
     series: tuple[SeriesPoint, ...]
     seconds: float
+
+    @property
+    def values(self) -> dict[str, Fraction]:
+        return self.trail[-1]
 
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
@@ -74,34 +79,42 @@ class Job:
         state: State = tuple(number(self.start[n]) for n in ("p", "q"))
         state += tuple(number(Fraction(x)) for x in kernel.start)
         kernel.function(0, *fixed, *state)  # compiles, so that `seconds` is the stepping alone
-        chunk, series = arithmetic.chunk, []
-        if "extremes" in observables:
-            chunk = min(chunk, -(-self.steps // self.points))
+        sections = -(-self.steps // (self.points or _CHECKPOINTS))  # steps of a section
+        series: list[SeriesPoint] = []
+        trail: list[dict[str, Fraction]] = []
+        extremes: list[State] = []
         begun, done = time.perf_counter(), 0
         while done < self.steps:
-            count = min(chunk, self.steps - done)
+            count = min(arithmetic.chunk, sections - done % sections, self.steps - done)
             after = advance(kernel, arithmetic, fixed, state, count)
             if after is None:
                 done += _last_good(kernel, arithmetic, fixed, state, count)
                 break
             state = after
-            if "extremes" in observables:
-                series.append(_point(kernel, arithmetic, state, done, count))
+            extremes.append(state)
             done += count
+            if done % sections == 0 or done == self.steps:
+                trail.append(self.finals(kernel, arithmetic, state, done))
+                if "extremes" in observables:
+                    first = (len(trail) - 1) * sections + 1
+                    series.append(_point(kernel, arithmetic, extremes, first, done))
+                extremes.clear()
             if progress:
                 progress(done)
         seconds = time.perf_counter() - begun
-        values = self.finals(kernel, arithmetic, state) if done == self.steps else {}
-        return Outcome(done, values, tuple(series), seconds)
+        return Outcome(done, tuple(trail), tuple(series), seconds)
 
-    def finals(self, kernel: Kernel, arithmetic: Arithmetic, state: State) -> dict[str, Fraction]:
+    def finals(
+        self, kernel: Kernel, arithmetic: Arithmetic, state: State, done: int
+    ) -> dict[str, Fraction]:
+        """p, q and the observables after `done` steps, as the exact rationals that they are."""
         raw = {n: arithmetic.exact(x) for n, x in zip(kernel.carried, state, strict=True)}
         total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
         result = {"p": total["p"], "q": total["q"]}
         for name in self.observables & set(ACCUMULATORS):
             result[name] = total[ACCUMULATORS[name]]
         if "mse" in result:
-            result["mse"] /= self.steps
+            result["mse"] /= done
         if "lambda_plain" in result:
             result["lambda_plain"] -= 1
         return result
@@ -135,12 +148,14 @@ def _last_good(
 
 
 def _point(
-    kernel: Kernel, arithmetic: Arithmetic, state: State, done: int, count: int
+    kernel: Kernel, arithmetic: Arithmetic, states: Sequence[State], first: int, last: int
 ) -> SeriesPoint:
-    at = dict(zip(kernel.carried, state, strict=True))
+    """The extremes over the kernel calls that ended in these states."""
+    at = [dict(zip(kernel.carried, state, strict=True)) for state in states]
 
     def pair(name: str) -> tuple[str, str]:
-        low, high = (decimal(arithmetic.exact(at[f"{name}_{end}"]), 7) for end in ("low", "high"))
-        return low, high
+        low = min(arithmetic.exact(x[f"{name}_low"]) for x in at)
+        high = max(arithmetic.exact(x[f"{name}_high"]) for x in at)
+        return decimal(low, 7), decimal(high, 7)
 
-    return SeriesPoint(first=done + 1, last=done + count, delta_j=pair("dj"), lam=pair("lam"))
+    return SeriesPoint(first=first, last=last, delta_j=pair("dj"), lam=pair("lam"))

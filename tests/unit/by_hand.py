@@ -4,16 +4,19 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from verify.claims import Findings
+from verify.claims import Claim, Findings, check_claims
 from verify.exact import decimal, text
 from verify.plan import grid_task, key, proof_task
-from verify.results import ProofResult, RunResult, Value
+from verify.results import ClaimResult, ProofResult, RunResult, Value
 from verify.scene import Scene, scene_from
 from verify.verdict import Verdict
 
 STEP_SIZES = ("0.001", "0.002", "0.004", "0.006", "0.008", "0.01")
 STARTS = (("0.1", "0"), ("1.5", "0"), ("0", "1.5"))
+CLAIM = {"id": "c", "source": "s", "statement": "t", "scene": "made", "scheme": "lie2"}
 Given = str | int | Fraction | tuple[Any, Any]  # a value, or a value with its bound
+Values = Callable[[Fraction, int], dict[str, Given]]  # of a step size and the index of a start
+FLAT: dict[str, Given] = {"mse": "1e-20", "lambda": "-1e-5", "delta_j_max": "1e-9"}
 
 
 def value(given: Given, bound: Any = 0) -> Value:
@@ -67,7 +70,7 @@ def made_scene(
 
 def made_findings(
     scene: Scene,
-    values: Callable[[Fraction, int], dict[str, Given]],
+    values: Values,
     proof: ProofResult | None = None,
     **changes: Any,
 ) -> Findings:
@@ -79,3 +82,18 @@ def made_findings(
             at = {"q": text(start.q), "p": text(start.p), **changes}
             results[key(grid_task(scene, "lie2", h, k))] = made_run(h, values(h, k), **at)
     return Findings({scene.name: scene}, results)
+
+
+def check(claim: Claim, values: Values, **scene: Any) -> ClaimResult:
+    """The claim's result on a made scene whose runs have these values."""
+    (found,) = check_claims([claim], made_findings(made_scene(**scene), values))
+    return found
+
+
+def one_changed(at: tuple[Fraction, int], name: str, given: Given, base: Values) -> Values:
+    """`base` with one value of one run changed."""
+
+    def values(h: Fraction, k: int) -> dict[str, Given]:
+        return {**base(h, k), name: given} if (h, k) == at else base(h, k)
+
+    return values

@@ -15,10 +15,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from verify import arithmetic
+from verify.enclosure import BALLS
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
 from verify.number_system import Arithmetic
-from verify.ring import _BALLS
 from verify.runs import ASKED, run
 
 
@@ -135,7 +135,7 @@ POINTS = {
 def true_value(kind: str, x: Fraction, bits: int, degree: int = 1) -> tuple[Fraction, Fraction]:
     """The function's value and the radius of its enclosure, by flint at twice the precision."""
     with flint.ctx.workprec(2 * bits + 200):
-        ball = _BALLS[kind](flint.arb(flint.fmpq(x.numerator, x.denominator)), degree)
+        ball = BALLS[kind](flint.arb(flint.fmpq(x.numerator, x.denominator)), degree)
         parts = [flint.arb(x).man_exp() for x in (ball.mid(), ball.rad())]
     middle, radius = (Fraction(int(m)) * Fraction(2) ** int(e) for m, e in parts)
     return middle, radius
@@ -149,7 +149,7 @@ def assert_accurate(made: Arithmetic, found: Any, kind: str, x: Any, degree: int
 
 
 def test_the_points_cover_every_function_that_a_hamiltonian_can_need() -> None:
-    assert set(POINTS) | {"root", "inverse"} == set(_BALLS)
+    assert set(POINTS) | {"root", "inverse"} == set(BALLS)
 
 
 @conformance

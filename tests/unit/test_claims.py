@@ -5,8 +5,6 @@ worth is decided without `verify`: sympy derives the true map, Jacobian and ΔJ,
 at rational points (or sympy expands in h, where a claim holds up to a power of h).
 """
 
-import ast
-import copy
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -17,6 +15,7 @@ import pytest
 import sympy
 
 from tests.property.strategies import H, P, Q, evaluate, lie_step, plain, plain_delta_j
+from tests.unit.mutation import mutants
 from verify.claims import Claim, Findings, check_claims, load_claims
 from verify.errors import InputError
 from verify.execute import Store, execute
@@ -87,55 +86,6 @@ def holds(claim: Any) -> bool:
 
 
 # -- mutants --------------------------------------------------------------------------------------
-
-SWAPS = {"p": ["q"], "q": ["p"], "p_next": ["p", "q"], "delta": ["h"], "h": ["q"],
-         "sin": ["cos"], "cos": ["sin"]}  # fmt: skip
-
-
-def changes_of(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    """What can be changed at one node of a formula, each with a word for it."""
-    match node:
-        case ast.BinOp(op=ast.Add() | ast.Sub()):
-            other = copy.deepcopy(node)
-            other.op = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
-            yield "sign", other
-        case ast.BinOp(op=ast.Mult() | ast.Div()):
-            negated = ast.UnaryOp(ast.USub(), copy.deepcopy(node.left))
-            yield "sign", ast.BinOp(negated, node.op, node.right)
-        case ast.UnaryOp(op=ast.USub()):
-            yield "sign", node.operand
-        case ast.Constant(value=n):
-            yield from (("number", ast.Constant(n + d)) for d in (1, -1))
-        case ast.Name(id=name):
-            yield "power", ast.BinOp(node, ast.Pow(), ast.Constant(2))
-            yield from (("name", ast.Name(other)) for other in SWAPS.get(name, ()))
-
-
-class Replace(ast.NodeTransformer):
-    def __init__(self, old: ast.AST, new: ast.AST) -> None:
-        self.old, self.new = old, new
-
-    def visit(self, node: ast.AST) -> Any:
-        return self.new if node is self.old else self.generic_visit(node)
-
-
-def mutants(formula: str) -> list[str]:
-    """The formula with one thing in it changed, in every way."""
-    found = []
-    count = len(list(ast.walk(ast.parse(formula, mode="eval"))))
-    for index in range(count):
-        tree = ast.parse(formula, mode="eval")
-        node = list(ast.walk(tree))[index]
-        in_call = {id(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
-        for word, new in changes_of(node):
-            if id(node) in in_call and word == "power":
-                continue
-            copied = ast.parse(formula, mode="eval")
-            target = list(ast.walk(copied))[index]
-            text = ast.unparse(ast.fix_missing_locations(Replace(target, new).visit(copied)))
-            if "/ 0" not in text and text not in found:
-                found.append(text)
-    return found
 
 
 def mutated(claim: Any) -> Iterator[Any]:

@@ -6,13 +6,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.end_to_end.test_report_command import ended
 from tests.unit.test_scene import DUFFING, GRID, SERIES, load
 from verify import execute as execution
 from verify.errors import InputError
@@ -280,18 +280,6 @@ if __name__ == "__main__":
     except KeyboardInterrupt:
         sys.exit(130)
 """
-
-
-def ended(group: int, seconds: float = 10) -> bool:
-    """Whether all processes of the group end within that time."""
-    until = time.monotonic() + seconds
-    while time.monotonic() < until:
-        try:
-            os.killpg(group, 0)
-        except ProcessLookupError:
-            return True
-        time.sleep(0.05)
-    return False
 
 
 def test_an_interruption_between_two_results_ends_the_workers_at_once(tmp_path: Path) -> None:

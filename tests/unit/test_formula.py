@@ -158,7 +158,6 @@ REFUSED = {
     "remainder": ("p % q", "operator"),
     "floor division": ("p // q", "operator"),
     "matrix product": ("p @ q", "operator"),
-    "bitwise or": ("p | q", "operator"),
     "two arguments": ("sin(p, q)", "one argument"),
     "no argument": ("sin()", "one argument"),
     "keyword argument": ("sin(x=q)", "one argument"),
@@ -179,6 +178,7 @@ REFUSED = {
     "root of a negative root": ("sqrt(sqrt(2) - 2)", ""),
     "root of a negative function": ("sqrt(-1 - q**2)", ""),
     "logarithm of a negative function": ("log(-exp(q))", ""),
+    "logarithm of what is never positive": ("log(-q**2)", ""),
 }
 
 
@@ -251,6 +251,10 @@ ENDS = {
     "nested quotients": "1/(1+" * 40 + "q" + ")" * 40,
     "fine angle": "q*tan(pi/30030)",
     "large root": "q*(1e999 + 7)**(63/64)",
+    "angle beyond evaluation": "q*atan(tan(1e300))",
+    "difference beyond evaluation": "q*sqrt(exp(exp(exp(100))) - exp(exp(100)))",
+    "sign beyond evaluation": "q*log(sin(exp(exp(100))))",
+    "root beyond evaluation": "q*cos(exp(exp(30)))**(1/3)",
     "the longest name": "p**2 + q*" + "a" * 32,
     "a name inside pq": "p**2/2 + pq*q**2/2",
     "a name like a generator's": "g0_*q + g1_*sin(q)",

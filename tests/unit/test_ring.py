@@ -139,6 +139,7 @@ NOT_ZERO = [
     "exp(-1e6)*q",
     "cos(1e40)*q",
     "log(2) - 0.6931471805599453",
+    "sin(log(p*q) - log(p) - log(q)) + exp(-100)",  # a generator that is zero itself
     "p*sqrt(q - 5)",  # defined far from the origin only
     "log(q - 100)",
     "sqrt(-p - 30)",
@@ -237,6 +238,13 @@ def test_an_enclosure_contains_the_value(text: str, point: dict[str, Fraction]) 
     margin = flint.arb(0, 1e-35) * (1 + abs(ball))
     with mpmath.workdps(60), flint.ctx.workprec(256):
         assert (ball + margin).contains(flint.arb(mpmath.nstr(value, 60)))
+
+
+def test_an_enclosure_around_zero_stays_tiny() -> None:
+    ring, x = element("sin(log(2*q) - log(2) - log(q))")
+    ball = enclose(ring, x, {"q": Fraction(1)}, 128)
+    assert ball.contains(0)
+    assert ball.rad() < 1e-30
 
 
 IDENTICAL = {

@@ -20,7 +20,8 @@ from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import kernel_for
 from verify.results import RunResult
-from verify.runs import ASKED, CLOSED_FORM, DIRECT_STEPS, run
+from verify.bounds import DIRECT_STEPS
+from verify.runs import ASKED, CLOSED_FORM, run
 
 VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
 VALUES = ("lambda", "mse", "delta_j_max", "q", "p")
@@ -98,8 +99,7 @@ def duffing_loop(
             p, q = p - h * f - h2 * p * g, q + h * p - h2 * f
             if k in marks:
                 state = {"lambda": lam, "mse": mse / k, "delta_j_max": top, "q": q, "p": p}
-                exact = {n: Fraction(*x.as_integer_ratio()) for n, x in state.items()}
-                found.append(exact)
+                found.append({n: Fraction(*x.as_integer_ratio()) for n, x in state.items()})
     return found
 
 
@@ -113,8 +113,7 @@ def broken(found: RunResult, true: Loop) -> dict[str, float]:
 def test_the_loop_of_this_file_agrees_with_the_vectors() -> None:
     q, p, h = Fraction(3, 2), Fraction(0), Fraction(1, 1000)
     (found,) = duffing_loop(q, p, h, Fraction(1), [20000])
-    for name in VALUES:
-        true = Fraction(VECTORS[0][name])
+    for name, true in ((n, Fraction(VECTORS[0][n])) for n in VALUES):
         assert abs(found[name] - true) <= abs(true) / 10**30, name
 
 
@@ -190,8 +189,7 @@ def test_lambda_over_n1_and_n2_steps_composes(
     assume(whole and max(abs(whole["q"]), abs(whole["p"])) < 100)  # lie1 spirals outwards
     first = go(q, p, n1)
     second = go(first["q"], first["p"], n2)
-    small = Fraction(1, 10**45)
-    composed = (1 + first["lambda"]) * (1 + second["lambda"]) - 1
+    small, composed = Fraction(1, 10**45), (1 + first["lambda"]) * (1 + second["lambda"]) - 1
     assert abs(whole["lambda"] - composed) <= small * (1 + abs(composed))
     assert abs(whole["q"] - second["q"]) <= small * (1 + abs(second["q"]))
     assert abs(whole["p"] - second["p"]) <= small * (1 + abs(second["p"]))
@@ -290,9 +288,8 @@ BAD = {
 def test_a_bad_argument_is_named_before_anything_runs(
     monkeypatch: pytest.MonkeyPatch, bad: dict[str, Any]
 ) -> None:
-    seen = asked_of_the_kernel(monkeypatch, run_none=True)
+    seen, (name,) = asked_of_the_kernel(monkeypatch, run_none=True), bad
     good = {"q": 1, "p": 0, "step_size": "0.1", "steps": 10}
-    (name,) = bad
     with pytest.raises(InputError, match=rf"^{name.removesuffix('s')}s?=") as caught:
         run(PENDULUM, "lie2", **{**good, **bad})
     assert "\n" not in str(caught.value)

@@ -129,8 +129,19 @@ def test_an_orbit_whose_escape_depends_on_rounding_is_given_no_digit(
     assert exact.failed_step is not None
     assert exact.failed_step < 800
     found = run(HENON, "symplectic-euler", **CHAOTIC, arithmetic=name, digits=digits)
-    # Beyond that step |q| is squared at every step: no finite bound around a bounded value can hold.
+    # Beyond that step |q| is squared at every step: no bound near a bounded value holds.
     assert found.status == "left range" or Fraction(found.values["q"].bound) > 10**300
+
+
+@pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpmath", "compensated"])
+@pytest.mark.parametrize("h", ["1e-60", "1e-400"])
+def test_an_underflow_is_not_given_as_an_exact_zero(steps: int, h: str) -> None:
+    """ΔJ is about 1.5 h³, so that ΔJ², or ΔJ itself, is too small for float64, and is not 0."""
+    found = duffing_run("float64", steps, q=1, p=Fraction(1, 2), h=Fraction(h))
+    for name in CLOSED_FORM:
+        value = found.values[name]
+        assert (value.value, value.bound) != ("0", "0"), name
+        assert found.exact == ()
 
 
 # -- series ---------------------------------------------------------------------------------------
@@ -183,6 +194,35 @@ def test_points_do_not_change_the_values(name: str) -> None:
     thinned = duffing_run(name, 5000, q=1, p=0, h=Fraction(1, 100), observables=ASKED, points=40)
     assert plain.values == thinned.values
     assert (plain.series, len(thinned.series)) == ((), 40)
+
+
+# -- names ----------------------------------------------------------------------------------------
+
+# A kernel is text in which parameters stand beside its own names.
+OWN_NAMES = [
+    *(f"v{i}" for i in range(30)), "k", "dj", "lam", "mse", "top", "size", "plain", "steps", "add",
+    "total", "part", "p_rest", "dj_low", "lam_high", "kernel", "range", "escape", "cos_sin", "root",
+    "pq", "E", "I", "S", "N", "zoo", "beta", "True_", "self", "print",
+]  # fmt: skip
+
+
+def named(parameter: str, name: str) -> RunResult:
+    text = f"p**2/2 + {parameter}*q**2/2 + q**4/4 - cos(q)"
+    return run(Hamiltonian.parse(text, {parameter: "7/3"}), "lie2", q=1, p=0, step_size="0.1",
+               steps=20, arithmetic=name, observables=ASKED, points=3)  # fmt: skip
+
+
+@pytest.mark.parametrize("parameter", OWN_NAMES)
+def test_the_name_of_a_parameter_does_not_change_what_is_found(parameter: str) -> None:
+    found, expected = named(parameter, "mpmath"), named("a", "mpmath")
+    assert expected.status == "finished"
+    assert (found.status, found.values) == ("finished", expected.values)
+    assert found.series == expected.series
+
+
+@pytest.mark.parametrize("parameter", ["v5", "k", "lam", "steps", "range"])
+def test_the_name_of_a_parameter_does_not_change_what_float64_finds(parameter: str) -> None:
+    assert named(parameter, "float64").values == named("a", "float64").values
 
 
 # -- memory and compilation -----------------------------------------------------------------------

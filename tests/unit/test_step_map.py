@@ -259,6 +259,13 @@ def test_the_proof_of_a_users_map_is_the_one_by_hand(
     assert sympy.simplify(proof.leading - plain(leading)) == 0
 
 
+def test_a_loss_that_cannot_be_decided_is_undecided_and_not_proved() -> None:
+    hidden = "(1 + h**3*(log(q**2) - 2*log(q)))"
+    proof = proof_of(f"(p - h*q)*{hidden}", "q + h*p_next")
+    assert (proof.verdict, proof.area_preserving) == (Verdict.UNDECIDED, None)
+    assert (proof.order, proof.convergence_order) == (None, 1)
+
+
 def test_an_error_that_hides_beyond_every_looked_at_order_is_not_proved_away() -> None:
     proof = proof_of("p*cos(h) - q*sin(h)", "q*cos(h) + p*sin(h) + h**40*q")
     assert proof.area_preserving is not True

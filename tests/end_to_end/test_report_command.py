@@ -1,0 +1,202 @@
+"""`verify report` on a user's own scene: what it writes, keeps, and does when it is interrupted."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.end_to_end.test_command_line import RUN, SCENE, apart, arguments, here
+from verify.results import Report
+
+VERIFY = Path(sys.executable).with_name("verify")
+# 9 tasks: six runs of half a second or more, a series, two proofs; symplectic Euler is not run.
+LONG = SCENE.replace("p**2/2 + q**4/4", "p**2/2 - cos(q)").replace(
+    'steps = 200\nstep_sizes = [0.01, "1/30", 0.05, 0.1]',
+    "steps = 3000000\nstep_sizes = [0.001, 0.002, 0.003]",
+)
+
+
+def findings(folder: Path) -> Any:
+    """The report's results without what tells of the call that made them."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {k: plain(v) for k, v in value.items() if k not in ("seconds", "provenance")}
+        return [plain(v) for v in value] if isinstance(value, list) else value
+
+    return plain(json.loads((folder / "results.json").read_text()))
+
+
+def provenance(folder: Path) -> Any:
+    return Report.model_validate_json((folder / "results.json").read_text()).provenance
+
+
+def kept(folder: Path) -> list[Path]:
+    return sorted((folder / "kept").glob("*.json"))
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> str:
+    path = tmp_path / "mine.toml"
+    path.write_text(SCENE)
+    return str(path)
+
+
+# -- what is written ------------------------------------------------------------------------------
+
+
+def test_a_report_of_a_users_scene_is_a_page_and_its_results(
+    capsys: pytest.CaptureFixture[str], scene: str, tmp_path: Path
+) -> None:
+    folder = tmp_path / "out" / "deep"
+    status, out, err = here(capsys, "report", scene, "-o", str(folder))
+    assert (status, err) == (0, "")
+    assert "criterion 1" in out
+    assert {f.name for f in folder.iterdir()} == {"index.html", "results.json", "kept"}
+    page = (folder / "index.html").read_text()
+    assert "<script>alert(1)" not in page, "the title is escaped"
+    assert "&lt;script&gt;alert(1)" in page
+    report = Report.model_validate_json((folder / "results.json").read_text())
+    (found,) = report.scenes
+    assert len(found.proofs) == 2
+    assert (len(found.runs), len(found.series), len(found.criteria)) == (8, 1, 8)
+    assert len(kept(folder)) == report.provenance.computed == 2 + 8 + 1
+
+
+def test_a_report_in_json_is_one_object_with_its_claims(
+    capsys: pytest.CaptureFixture[str], scene: str, tmp_path: Path
+) -> None:
+    status, out, err = here(capsys, "report", scene, "-o", str(tmp_path / "out"), "--json")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert out.count("\n") == 1
+    assert found["claims"] == []
+    assert len(found["scenes"][0]["runs"]) == 8
+
+
+def test_a_report_again_takes_up_what_is_kept_and_finds_the_same(
+    capsys: pytest.CaptureFixture[str], scene: str, tmp_path: Path
+) -> None:
+    folder = tmp_path / "out"
+    here(capsys, "report", scene, "-o", str(folder))
+    first = findings(folder)
+    kept(folder)[0].write_text("damaged")
+    here(capsys, "report", scene, "-o", str(folder))
+    assert (provenance(folder).kept, provenance(folder).computed) == (10, 1)
+    assert findings(folder) == first
+
+
+def test_an_orbit_that_leaves_the_range_does_not_end_the_report(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "wild.toml"
+    path.write_text(SCENE.replace("q**4/4", "q**4").replace("0.1]", "2]"))
+    status, _, err = here(capsys, "report", str(path), "-o", str(tmp_path / "out"))
+    assert (status, err) == (0, "")
+    runs = (
+        Report.model_validate_json((tmp_path / "out" / "results.json").read_text()).scenes[0].runs
+    )
+    assert "left range" in {run.status for run in runs}
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_a_map_with_a_pole_at_h_0_is_bad_input(tmp_path: Path, workers: str) -> None:
+    path = tmp_path / "pole.toml"
+    path.write_text(SCENE.replace('"symplectic-euler"', '"p_next = p + q*sqrt(h); q_next = q"'))
+    done = apart("report", str(path), "-o", str(tmp_path / "out"), "--workers", workers)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert "not smooth in h" in done.stderr
+
+
+# -- interruption ---------------------------------------------------------------------------------
+
+
+@contextmanager
+def started(*given: str) -> Iterator["subprocess.Popen[str]"]:
+    """The command in a process group of its own, as a terminal starts it."""
+    process = subprocess.Popen([VERIFY, *given], start_new_session=True, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
+    try:
+        yield process
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+def ended(group: int, seconds: float = 5) -> bool:
+    """Whether all processes of the group end within that time."""
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def interrupt(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
+    """Ctrl-C: SIGINT to the whole group; what the command then says."""
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert ended(process.pid), "a worker goes on after the interruption"
+    # click ends the line on which a terminal shows ^C.
+    return process.returncode, out, err.removesuffix("\n")
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the long scene's report, made in one go by one process."""
+    folder = tmp_path_factory.mktemp("uninterrupted")
+    (folder / "long.toml").write_text(LONG)
+    done = apart("report", "long.toml", "-o", "out", "--workers", "1", cwd=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder / "out"
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_an_interrupted_report_goes_on_from_what_it_kept(
+    tmp_path: Path, uninterrupted: Path, workers: str
+) -> None:
+    path, folder = tmp_path / "long.toml", tmp_path / "out"
+    path.write_text(LONG)
+    call = ["report", str(path), "-o", str(folder), "--workers", workers]
+    with started(*call) as process:
+        until = time.monotonic() + 60
+        while not kept(folder) and time.monotonic() < until:
+            assert process.poll() is None
+            time.sleep(0.02)
+        time.sleep(0.1)
+        status, out, err = interrupt(process)
+    assert (status, out) == (130, "")
+    finished = len(kept(folder))
+    assert 1 <= finished < 9
+    assert err.startswith("interrupted: ")
+    assert err.count("\n") == 1
+    assert f"{finished} of 9 tasks are kept" in err
+    assert {f.name for f in folder.iterdir()} == {"kept"}
+    assert {f.suffix for f in (folder / "kept").iterdir()} == {".json"}, "no temporary file is left"
+    done = apart(*call)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert provenance(folder).kept == finished
+    assert findings(folder) == findings(uninterrupted)
+
+
+@pytest.mark.parametrize("digits", [None, "30"], ids=["float64", "mpmath"])
+def test_an_interrupted_run_says_nothing_and_ends_with_130(digits: str | None) -> None:
+    changes = {"steps": "100000000000", "digits": digits}
+    with started(*arguments("run", RUN, **changes), "--json") as process:
+        time.sleep(3)
+        assert process.poll() is None
+        status, out, err = interrupt(process)
+    assert (status, out, err) == (130, "", "")

@@ -1,0 +1,125 @@
+"""Imports go downwards only, and light commands stay light: read from the source."""
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+VERIFY = ROOT / "verify"
+MODULES = sorted(VERIFY.rglob("*.py"))
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+NAMES = {name_of(path): path for path in MODULES}
+every_module = pytest.mark.parametrize("path", MODULES, ids=map(name_of, MODULES))
+
+
+def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
+    """Statements that run on import: not in functions, nor under `if TYPE_CHECKING`."""
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            waiting += node.orelse
+            continue
+        if isinstance(node, ast.stmt):
+            yield node
+        waiting += ast.iter_child_nodes(node)
+
+
+def imported(path: Path, everywhere: bool = False) -> set[str]:
+    """The modules that a file imports: at module level, or everywhere in it."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found: set[str] = set()
+    for node in ast.walk(tree) if everywhere else at_module_level(tree):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: a relative import"
+            assert node.module is not None
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            modules = inner & set(NAMES)
+            # `from verify import x` imports the module x where there is one, else the package.
+            found |= modules or {node.module}
+    return found
+
+
+def roots(names: set[str]) -> set[str]:
+    return {name.partition(".")[0] for name in names}
+
+
+ABOVE = {"reports", "reference", "tests"}
+
+
+@every_module
+def test_verify_imports_nothing_that_stands_above_it(path: Path) -> None:
+    allowed = {"reports", "reference"} if name_of(path) == "verify.cli" else set()
+    assert not roots(imported(path)) & ABOVE
+    assert roots(imported(path, everywhere=True)) & ABOVE <= allowed
+
+
+def test_the_reports_compute_nothing_themselves() -> None:
+    heavy = {"numba", "mpmath", "gmpy2", "flint", "verify.runs", "verify.kernel", "verify.stepping"}
+    for path in sorted((ROOT / "reports").rglob("*.py")):
+        assert not imported(path, everywhere=True) & heavy, path
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    edges = {name: imported(path) & set(NAMES) - {name} for name, path in NAMES.items()}
+    done: set[str] = set()
+
+    def visit(name: str, above: tuple[str, ...]) -> None:
+        assert name not in above, " → ".join([*above[above.index(name) :], name])
+        if name not in done:
+            for other in sorted(edges[name]):
+                visit(other, (*above, name))
+            done.add(name)
+
+    for name in edges:
+        visit(name, ())
+    assert sum(map(len, edges.values())) > 50, "the edges were read"
+
+
+LIGHT = [
+    "verify",
+    "verify.cli",
+    "verify.show",
+    "verify.errors",
+    "verify.progress",
+    "verify.verdict",
+]
+SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2"}
+
+
+@pytest.mark.parametrize("name", LIGHT)
+def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
+    seen, waiting = set(), [name]
+    while waiting:
+        module = waiting.pop()
+        if module not in seen and module in NAMES:
+            seen.add(module)
+            names = imported(NAMES[module])
+            assert not roots(names) & SLOW, f"{name} imports {module}, which imports {names}"
+            waiting += names
+
+
+@every_module
+def test_numba_numpy_and_matplotlib_are_imported_only_where_they_are_used(path: Path) -> None:
+    assert not roots(imported(path)) & {"numba", "numpy", "matplotlib"}
+
+
+@every_module
+def test_only_what_is_declared_is_imported(path: Path) -> None:
+    declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
+                "matplotlib", "jinja2", "markupsafe", "verify", "reports", "reference"}  # fmt: skip
+    names = roots(imported(path, everywhere=True))
+    assert names - set(sys.stdlib_module_names) <= declared
