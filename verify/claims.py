@@ -8,9 +8,9 @@ for the checks; a claim's verdict always comes with evidence.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError, model_validator
 
 from verify.criteria import judge
 from verify.errors import InputError
@@ -60,8 +60,14 @@ class TableClaim(_Claim):
     """lg MSE as printed, for each step size; every initial value of the grid has this row."""
 
     kind: Literal["table"]
-    step_sizes: tuple[StepSize, ...]
-    printed: tuple[str, ...]
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
+    printed: tuple[Annotated[str, Field(pattern=r"^-?\d{1,20}(\.\d{1,40})?$")], ...]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if len(self.printed) != len(self.step_sizes):
+            raise InputError("printed", len(self.printed), f"give {len(self.step_sizes)} values")
+        return self
 
 
 Quantity = Literal["mse", "abs_lambda", "mse_over_lambda", "delta_j_max"]
@@ -99,7 +105,7 @@ class MagnitudeClaim(_Claim):
 
     kind: Literal["magnitude"]
     step_size: StepSize
-    exponents: dict[Quantity, int]
+    exponents: Annotated[dict[Quantity, int], Field(min_length=1)]
     quantifier: Literal["some", "every"]
 
 
@@ -107,7 +113,9 @@ class CriteriaClaim(_Claim):
     """The scheme satisfies these criteria."""
 
     kind: Literal["criteria"]
-    numbers: tuple[Annotated[int, Field(ge=1, le=4)], ...]
+    numbers: Annotated[
+        tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...], Field(min_length=1)
+    ]
 
 
 Claim = Annotated[
@@ -138,6 +146,9 @@ class Findings:
         return self.scenes[name]
 
     def proof(self, scene: Scene, scheme: str) -> ProofResult:
+        if scheme not in scene.schemes:
+            known = ", ".join(scene.schemes)
+            raise InputError("claim.scheme", scheme, f"is not in scene {scene.name}: {known}")
         result = self.results[key(proof_task(scene, scheme))]
         assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's
         return result
@@ -170,6 +181,10 @@ def load_claims(path: Path) -> list[Claim]:
             claims.append(_CLAIMS.validate_python(table))
         except ValidationError as error:
             raise one_line(error, f"{path.name}: claim {name}") from None
+    names = [claim.id for claim in claims]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{path.name}: claim.id", name, "stands twice; each claim has its own")
     return claims
 
 

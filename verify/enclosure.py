@@ -33,6 +33,13 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
         return _at(x, values)
 
 
+def _power(x: Any, n: int) -> Any:
+    # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
+    # and is then undefined around 0.
+    half = _power(x, n // 2) if n > 1 else flint.arb(1)
+    return half * half * x if n % 2 else half * half
+
+
 BALLS: dict[str, Callable[[Any, int], Any]] = {
     "sin": lambda x, _: x.sin(),
     "cos": lambda x, _: x.cos(),
@@ -52,7 +59,7 @@ def _at(x: Any, values: dict[int, Any]) -> Any:
         term = flint.arb(coefficient)
         for index, power in enumerate(monomial):
             if power:
-                term *= values[index] ** int(power)
+                term *= _power(values[index], int(power))
         total += term
     return total
 

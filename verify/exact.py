@@ -18,6 +18,7 @@ Exact = int | str | float | Decimal | Fraction
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
 _MAX_EXPONENT = 1000
 _MAX_LENGTH = 1000
+_MAX_BITS = 8000
 
 
 def rational(value: Exact, name: str = "number") -> Fraction:
@@ -34,7 +35,10 @@ def rational(value: Exact, name: str = "number") -> Fraction:
         return _from_text(str(value), name)
     if isinstance(value, float):
         return _from_float(value, name)
-    return Fraction(value)
+    exact = Fraction(value)
+    if max(exact.numerator.bit_length(), exact.denominator.bit_length()) > _MAX_BITS:
+        raise InputError(name, value, f"has more than {_MAX_BITS} bits")
+    return exact
 
 
 def positive(value: Exact, name: str) -> Fraction:

@@ -7,10 +7,11 @@ UNDECIDED. A printed decimal is true where the value's whole ball rounds to it.
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import pairwise, product
+from typing import Any
 
 import flint
 
-from verify.balls import Ball, ball, fixed, lg, precision, rational_ball, shown
+from verify.balls import Ball, ball, bounds, fixed, lg, precision, rational_ball, scientific, shown
 from verify.claims import (
     Findings,
     LessClaim,
@@ -32,6 +33,12 @@ QUANTITIES: dict[str, Callable[[RunResult], Ball]] = {
     "mse_over_lambda": lambda run: ball(run.values["mse"]) / abs(ball(run.values["lambda"])),
     "delta_j_max": lambda run: ball(run.values["delta_j_max"]),
 }
+_NEEDS = {
+    "mse": ("mse",),
+    "abs_lambda": ("lambda",),
+    "mse_over_lambda": ("mse", "lambda"),
+    "delta_j_max": ("delta_j_max",),
+}
 LABELS = {
     "mse": "MSE",
     "abs_lambda": "|Λ|",
@@ -40,12 +47,40 @@ LABELS = {
 }
 
 
-def _rows(claim: object, findings: Findings) -> tuple[Scene, list[list[RunResult]]]:
-    """The grid's runs: one row an initial value, its runs by increasing step size."""
-    scene = findings.scene(claim.scene)  # type: ignore[attr-defined]
-    runs = findings.runs(scene, claim.scheme)  # type: ignore[attr-defined]
+class _NoValue(Exception):  # noqa: N818 - no error, an answer
+    """A run that the claim needs ended without values; the message says which and how."""
+
+
+def _decided(check: Callable[[Any, Findings], ClaimResult]) -> Callable[..., ClaimResult]:
+    """The check, with UNDECIDED where a run that it needs has no values."""
+
+    def checked(claim: Any, findings: Findings) -> ClaimResult:
+        try:
+            with precision():
+                return check(claim, findings)
+        except _NoValue as reason:
+            return result(claim, Verdict.UNDECIDED, str(reason))
+
+    return checked
+
+
+def _rows(claim: Any, findings: Findings, *quantities: str) -> tuple[Scene, list[list[RunResult]]]:
+    """The grid's runs: one row an initial value, its runs by increasing step size.
+
+    Raises InputError where the scene does not run what the claim speaks of, and _NoValue where a
+    run ended without values.
+    """
+    scene = findings.scene(claim.scene)
+    runs = findings.runs(scene, claim.scheme)
     if not runs or scene.grid is None:
-        raise InputError("claim", claim.id, "its scene has no runs of that scheme")  # type: ignore[attr-defined]
+        raise InputError("claim", claim.id, "its scene has no runs of that scheme")
+    needed = [o for quantity in quantities for o in _NEEDS[quantity]]
+    for run in runs:
+        if run.status != "finished":
+            why = f"left the range at step {run.failed_step}" if run.failed_step else run.status
+            raise _NoValue(f"the run from {_start(run)} with h = {run.step_size} {why}")
+        if missing := [name for name in needed if name not in run.values]:
+            raise InputError("claim", claim.id, f"its scene does not observe {missing[0]}")
     width = len(scene.grid.step_sizes)
     rows = [runs[i : i + width] for i in range(0, len(runs), width)]
     return scene, [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
@@ -56,22 +91,22 @@ def _start(run: RunResult) -> str:
 
 
 def check_table(claim: TableClaim, findings: Findings) -> ClaimResult:
-    scene, rows = _rows(claim, findings)
+    scene, rows = _rows(claim, findings, "mse")
     details = [["initial value", *(f"h = {text(h)}" for h in claim.step_sizes)]]
     details.append(["printed, for all", *claim.printed])
     verdicts: list[bool | None] = []
-    lowest = highest = None
-    with precision():
-        for row in rows:
-            by_h = {Fraction(run.step_size): run for run in row}
-            values = [lg(ball(_at(by_h, h, claim).values["mse"])) for h in claim.step_sizes]
-            verdicts += [_rounds_to(v, p) for v, p in zip(values, claim.printed, strict=True)]
-            details.append([_start(row[0]), *(fixed(v, 4) for v in values)])
-            for v in values:
-                lowest = v if lowest is None or v < lowest else lowest
-                highest = v if highest is None or v > highest else highest
-        seen = f"computed lg MSE lies between {fixed(lowest, 2)} and {fixed(highest, 2)}"
-        names = _identities(claim, rows[0], scene.grid.time if scene.grid else None)
+    values: list[Ball] = []
+    for row in rows:
+        by_h = {Fraction(run.step_size): run for run in row}
+        own = [lg(ball(_at(by_h, h, claim).values["mse"])) for h in claim.step_sizes]
+        verdicts += [_rounds_to(v, p) for v, p in zip(own, claim.printed, strict=True)]
+        details.append([_start(row[0]), *(fixed(v, 4) for v in own)])
+        values += own
+    known = sorted((v for v in values if v.is_finite()), key=_middle)
+    seen = "no computed lg MSE is known"
+    if known:
+        seen = f"computed lg MSE lies between {fixed(known[0], 2)} and {fixed(known[-1], 2)}"
+    names = _identities(claim, rows[0], scene.grid.time if scene.grid else None)
     wrong = verdicts.count(False)
     if wrong:
         named = f"; the printed row is {' = '.join(names)} to all its digits" if names else ""
@@ -132,23 +167,29 @@ def _factor(name: str, exponent: int) -> str:
 
 
 def check_spread(claim: SpreadClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings)
-    quantity = QUANTITIES[claim.quantity]
+    _, rows = _rows(claim, findings, claim.quantity)
     details = [["step size", "least", "greatest", "factor"]]
     verdicts: list[bool | None] = []
     worst = Fraction(0)
-    with precision():
-        for column in zip(*rows, strict=True):
-            values = [quantity(run) for run in column]
-            low, high = min(values, key=_middle), max(values, key=_middle)
-            factor = high / low
-            details.append([column[0].step_size, shown(low), shown(high), shown(factor, 3)])
-            allowed = rational_ball(claim.factor)
-            verdicts.append(True if factor < allowed else False if factor > allowed else None)
-            worst = max(worst, _middle(factor))
+    for column in zip(*rows, strict=True):
+        values = [QUANTITIES[claim.quantity](run) for run in column]
+        ends = [bounds(v) if v.is_finite() else None for v in values]
+        known = [e for e in ends if e is not None and e[0] > 0]
+        if len(known) < len(values):
+            verdicts.append(None)
+            details.append([column[0].step_size, "unknown", "unknown", "unknown"])
+            continue
+        # The factor is surely reached, and surely not passed, whatever the values are inside.
+        reached = max(low for low, _ in known) / min(high for _, high in known)
+        passed = max(high for _, high in known) / min(low for low, _ in known)
+        holds = passed <= claim.factor
+        verdicts.append(None if not holds and reached <= claim.factor else holds)
+        low, high = min(values, key=_middle), max(values, key=_middle)
+        details.append([column[0].step_size, shown(low), shown(high), shown(high / low, 3)])
+        worst = max(worst, reached)
     evidence = (
         f"{LABELS[claim.quantity]} varies over the initial values by a factor of up to "
-        f"{float(worst):.2g} at one step size (allowed here: {text(claim.factor)})"
+        f"{scientific(worst, 2)} at one step size (allowed here: {text(claim.factor)})"
     )
     return result(claim, _all(verdicts), evidence, details)
 
@@ -159,9 +200,10 @@ def _middle(x: Ball) -> Fraction:
 
 
 def _all(verdicts: Sequence[bool | None]) -> Verdict:
+    """REFUTED by one False; MEASURED where there is something to measure and all is True."""
     if False in verdicts:
         return Verdict.REFUTED
-    return Verdict.UNDECIDED if None in verdicts else Verdict.MEASURED
+    return Verdict.UNDECIDED if None in verdicts or not verdicts else Verdict.MEASURED
 
 
 def _table(rows: Sequence[Sequence[RunResult]], quantity: str) -> list[list[str]]:
@@ -171,59 +213,63 @@ def _table(rows: Sequence[Sequence[RunResult]], quantity: str) -> list[list[str]
 
 
 def check_monotone(claim: MonotoneClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings)
+    _, rows = _rows(claim, findings, claim.quantity)
     quantity, sign = QUANTITIES[claim.quantity], 1 if claim.direction == "increases" else -1
     label = LABELS[claim.quantity]
     verdicts: list[bool | None] = []
     counterexamples = []
-    with precision():
-        for row in rows:
-            for one, two in pairwise(row):
-                gap = sign * (quantity(two) - quantity(one))
-                verdicts.append(True if gap > 0 else False if gap < 0 else None)
-                if gap < 0:
-                    counterexamples.append(
-                        f"{_start(one)}: from h = {one.step_size} to {two.step_size}, {label} goes "
-                        f"from {shown(quantity(one), 4)} to {shown(quantity(two), 4)}"
-                    )
-        details = _table(rows, claim.quantity)
+    for row in rows:
+        for one, two in pairwise(row):
+            gap = sign * (quantity(two) - quantity(one))
+            verdicts.append(_sign(gap))
+            if gap < 0:
+                counterexamples.append(
+                    f"{_start(one)}: from h = {one.step_size} to {two.step_size}, {label} goes "
+                    f"from {shown(quantity(one), 4)} to {shown(quantity(two), 4)}"
+                )
+    details = _table(rows, claim.quantity)
+    total = f"{len(verdicts)} neighbouring pairs"
     if counterexamples:
-        count = f"{len(counterexamples)} of {len(verdicts)} neighbouring pairs go the other way"
-        return result(claim, Verdict.REFUTED, f"{count}; {counterexamples[0]}", details)
-    evidence = f"{label} {claim.direction} between all {len(verdicts)} neighbouring step sizes"
+        evidence = f"{len(counterexamples)} of {total} go the other way; {counterexamples[0]}"
+    elif _all(verdicts) is Verdict.UNDECIDED:
+        evidence = f"{verdicts.count(None)} of {total} of step sizes are not told apart"
+    else:
+        evidence = f"{label} {claim.direction} between all {total} of step sizes"
     return result(claim, _all(verdicts), evidence, details)
 
 
+def _sign(x: Ball) -> bool | None:
+    """Whether x is positive (True) or negative (False); None where its ball holds 0."""
+    return True if x > 0 else False if x < 0 else None
+
+
 def check_less(claim: LessClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings)
+    _, rows = _rows(claim, findings, claim.quantity, claim.than)
     one, two = QUANTITIES[claim.quantity], QUANTITIES[claim.than]
-    with precision():
-        gaps = [two(run) - one(run) for row in rows for run in row]
-        verdicts = [True if g > 0 else False if g < 0 else None for g in gaps]
-        ratios = [one(run) / two(run) for row in rows for run in row]
-        largest = max(map(_middle, ratios))
+    runs = [run for row in rows for run in row]
+    verdicts = [_sign(two(run) - one(run)) for run in runs]
+    ratios = [r for r in (one(run) / two(run) for run in runs) if r.is_finite()]
+    largest = shown(max(ratios, key=_middle), 2) if ratios else "unknown"
     evidence = (
-        f"{LABELS[claim.quantity]} is at most {float(largest):.2g} times {LABELS[claim.than]} "
-        f"in {len(gaps)} runs"
+        f"{LABELS[claim.quantity]} is at most {largest} times {LABELS[claim.than]} "
+        f"in {len(ratios)} of {len(runs)} runs"
     )
     return result(claim, _all(verdicts), evidence)
 
 
 def check_magnitude(claim: MagnitudeClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings)
     names = list(claim.exponents)
+    _, rows = _rows(claim, findings, *names)
     details = [["initial value", *(f"{LABELS[n]} (about 10^{claim.exponents[n]}?)" for n in names)]]
     holds: list[bool | None] = []
-    half = Fraction(1, 2)
-    with precision():
-        for row in rows:
-            runs = [r for r in row if Fraction(r.step_size) == claim.step_size]
-            if not runs:
-                raise InputError(f"claim {claim.id}", text(claim.step_size), "is not in the grid")
-            values = {name: QUANTITIES[name](runs[0]) for name in names}
-            off = [abs(lg(values[n]) - claim.exponents[n]) - rational_ball(half) for n in names]
-            holds.append(_every([True if x < 0 else False if x > 0 else None for x in off]))
-            details.append([_start(row[0]), *(shown(values[n], 4) for n in names)])
+    for row in rows:
+        runs = [r for r in row if Fraction(r.step_size) == claim.step_size]
+        if not runs:
+            raise InputError(f"claim {claim.id}", text(claim.step_size), "is not in the grid")
+        values = {name: QUANTITIES[name](runs[0]) for name in names}
+        off = [abs(lg(values[n]) - claim.exponents[n]) for n in names]
+        holds.append(_every([_sign(rational_ball(Fraction(1, 2)) - x) for x in off]))
+        details.append([_start(row[0]), *(shown(values[n], 4) for n in names)])
     yes = [details[i + 1][0] for i, h in enumerate(holds) if h is True]
     no = [details[i + 1][0] for i, h in enumerate(holds) if h is False]
     evidence = f"holds for {_list(yes)}; does not hold for {_list(no)}"
@@ -245,9 +291,9 @@ def _list(names: Sequence[str]) -> str:
 
 
 CHECKS = {
-    TableClaim: check_table,
-    SpreadClaim: check_spread,
-    MonotoneClaim: check_monotone,
-    LessClaim: check_less,
-    MagnitudeClaim: check_magnitude,
+    TableClaim: _decided(check_table),
+    SpreadClaim: _decided(check_spread),
+    MonotoneClaim: _decided(check_monotone),
+    LessClaim: _decided(check_less),
+    MagnitudeClaim: _decided(check_magnitude),
 }

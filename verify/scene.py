@@ -41,6 +41,7 @@ Number = Annotated[
 StepSize = Annotated[
     Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
 ]
+_MAX_DEPTH = 12
 Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
 
 
@@ -97,6 +98,9 @@ class Series(Frozen):
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
             raise InputError("series", "time, steps", "give one of the two")
+        if not 1 <= self.count <= MAX_STEPS:
+            problem = f"makes {self.count} steps; allowed: 1 … {MAX_STEPS}"
+            raise InputError("step_size", text(self.step_size), problem)
         return self
 
     @property
@@ -104,7 +108,7 @@ class Series(Frozen):
         if self.steps is not None:
             return self.steps
         assert self.time is not None  # noqa: S101 - the validator above
-        return max(1, self.time // self.step_size)
+        return self.time // self.step_size
 
 
 class Scene(Frozen):
@@ -116,7 +120,7 @@ class Scene(Frozen):
     hamiltonian: str | None = None
     parameters: dict[str, Number] = Field(default_factory=dict)
     schemes: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
-    criteria: tuple[Annotated[int, Field(ge=1, le=4)], ...] = ()
+    criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
     grid: Grid | None = None
     series: tuple[Series, ...] = ()
 
@@ -145,6 +149,8 @@ def load_scene(path: Path) -> Scene:
 
 def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
     """The scene from a mapping, as TOML gives it."""
+    if not _shallow(data):
+        raise InputError("scene", source, f"is nested deeper than {_MAX_DEPTH}")
     try:
         scene = Scene.model_validate(dict(data))
     except ValidationError as error:
@@ -156,13 +162,25 @@ def read_toml(path: Path) -> dict[str, Any]:
     """The file's content with its decimals kept as text, so that they stay exact."""
     try:
         content = path.read_bytes().decode()
-        return tomllib.loads(content, parse_float=str)
+        data = tomllib.loads(content, parse_float=str)
     except OSError as error:
         raise InputError("file", str(path), error.strerror or "cannot be read") from None
     except UnicodeDecodeError:
         raise InputError("file", str(path), "is not UTF-8 text") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
         raise InputError("file", str(path), f"is not TOML: {error}") from None
+    if not _shallow(data):
+        raise InputError("file", str(path), f"is nested deeper than {_MAX_DEPTH}")
+    return data
+
+
+def _shallow(data: Any) -> bool:
+    level = [data]
+    for _ in range(_MAX_DEPTH):
+        level = [x for v in level if isinstance(v, dict) for x in v.values()] + [
+            x for v in level if isinstance(v, list) for x in v
+        ]
+    return not level
 
 
 def one_line(error: ValidationError, source: str) -> InputError:

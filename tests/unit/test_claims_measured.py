@@ -59,7 +59,8 @@ def test_a_spread_is_undecided_where_any_of_its_balls_reaches_beyond(place: int)
 )  # fmt: skip
 def test_a_spread_with_an_unknown_value_is_undecided(quantity: str, unknown: str) -> None:
     values = one_changed(LAST, unknown, ("0", "1e-3"), spreading)
-    assert check(spread(2, quantity), values).verdict is UNDECIDED
+    # MSE/|Λ| spreads by the product of what its parts do.
+    assert check(spread(4, quantity), values).verdict is UNDECIDED
 
 
 # -- monotone -------------------------------------------------------------------------------------

@@ -8,9 +8,18 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.property.strategies import evaluate, formulas, is_real, outcome, plain, points
+from tests.property.strategies import (
+    NAMES,
+    evaluate,
+    formulas,
+    is_real,
+    outcome,
+    plain,
+    points,
+)
 from verify.errors import InputError
 from verify.formula import parse, symbol, to_text
+from verify.generators import embed
 from verify.hamiltonian import Hamiltonian
 
 P, Q = symbol("p"), symbol("q")
@@ -289,7 +298,12 @@ def test_what_is_printed_reads_back_as_the_same_expression(text: str) -> None:
         expression = parse(text)
     except InputError:
         return
-    assert parse(to_text(expression)) == expression
+    again = parse(to_text(expression))
+    if again == expression:
+        return
+    # sympy spreads a minus sign or a factor over a sum as it builds: then equal, not the same.
+    ring, (gap,) = embed([again - expression], NAMES)
+    assert ring.decide(gap).zero is True
 
 
 @given(text=st.text(alphabet="pq019.e+-*/^()sincoxlgqrt ,_[]:=#'\"\\\n", max_size=40))

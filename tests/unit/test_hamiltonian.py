@@ -166,6 +166,12 @@ def test_a_large_parameter_is_taken_or_refused_in_bounded_time(text: str, value:
     assert work in ("done", "InputError")
 
 
+@pytest.mark.parametrize("text", ["(p + q + a + b + c)**64", "(exp(p) + exp(q) + a + b)**64"])
+def test_growth_beyond_bounds_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match="terms"):
+        Hamiltonian.parse(text).field()
+
+
 # -- named systems ----------------------------------------------------------------------------
 
 FILES = sorted(m.name for m in pkgutil.iter_modules(systems.__path__))

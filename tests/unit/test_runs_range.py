@@ -130,7 +130,8 @@ def test_an_orbit_whose_escape_depends_on_rounding_is_given_no_digit(
     assert exact.failed_step < 800
     found = run(HENON, "symplectic-euler", **CHAOTIC, arithmetic=name, digits=digits)
     # Beyond that step |q| is squared at every step: no bound near a bounded value holds.
-    assert found.status == "left range" or Fraction(found.values["q"].bound) > 10**300
+    assert found.status in ("left range", "unresolved")
+    assert not found.values
 
 
 @pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpmath", "compensated"])
