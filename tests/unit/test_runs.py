@@ -16,11 +16,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from verify.bounds import DIRECT_STEPS
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import kernel_for
 from verify.results import RunResult
-from verify.bounds import DIRECT_STEPS
 from verify.runs import ASKED, CLOSED_FORM, run
 
 VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
