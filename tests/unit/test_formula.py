@@ -13,14 +13,12 @@ from tests.property.strategies import (
     evaluate,
     formulas,
     is_real,
-    outcome,
     plain,
     points,
 )
 from verify.errors import InputError
 from verify.formula import parse, symbol, to_text
 from verify.generators import embed
-from verify.hamiltonian import Hamiltonian
 
 P, Q = symbol("p"), symbol("q")
 HALF, THIRD = sympy.Rational(1, 2), sympy.Rational(1, 3)
@@ -241,43 +239,6 @@ def test_an_escape_sequence_does_not_reach_the_terminal() -> None:
 def test_a_long_flat_sum_is_not_deeply_nested() -> None:
     text = " + ".join(f"q**{n % 60 + 1}/{n + 1}" for n in range(100))
     assert parse(text) == plain(text)
-
-
-ENDS = {
-    "logarithm times a googol": "exp(log(3)*1e999)",
-    "logarithm of 2, often": "exp(1e9*log(2))",
-    "logarithm of q, often": "exp(1e9*log(q))",
-    "coefficient in steps": "((((1e999*q)**64)**64)**64)**64",
-    "power in steps": "(((q**64)**64)**64)**64",
-    "binomial in steps": "((1 + q)**64)**64",
-    "trinomial in steps": "((1 + p + q)**64)**64",
-    "multiple angle": "sin(q) + sin(16*q)**64",
-    "large multiple angle": "sin(64*q)**64",
-    "four functions": "(exp(q) + exp(p) + sin(q) + cos(p))**64",
-    "tangents": "tan(16*q)**64 + tan(15*q)",
-    "many factors": "1/(q**60 - 1) + 1/(p**60 - 1)",
-    "nested functions": "sin(" * 55 + "q" + ")" * 55,
-    "nested quotients": "1/(1+" * 40 + "q" + ")" * 40,
-    "fine angle": "q*tan(pi/30030)",
-    "large root": "q*(1e999 + 7)**(63/64)",
-    "angle beyond evaluation": "q*atan(tan(1e300))",
-    "difference beyond evaluation": "q*sqrt(exp(exp(exp(100))) - exp(exp(100)))",
-    "sign beyond evaluation": "q*log(sin(exp(exp(100))))",
-    "root beyond evaluation": "q*cos(exp(exp(30)))**(1/3)",
-    "the longest name": "p**2 + q*" + "a" * 32,
-    "a name inside pq": "p**2/2 + pq*q**2/2",
-    "a name like a generator's": "g0_*q + g1_*sin(q)",
-}
-
-
-@pytest.mark.parametrize("text", ENDS.values(), ids=ENDS.keys())
-def test_a_hamiltonian_is_taken_or_refused_in_bounded_time(text: str) -> None:
-    assert outcome(lambda: Hamiltonian.parse(text).field()) in ("done", "InputError")
-
-
-@pytest.mark.parametrize("text", ["q*tan(q + pi/2)", "exp(pi*log(q))", "q*exp(sqrt(2)*log(p))"])
-def test_what_the_parser_takes_the_ring_takes(text: str) -> None:
-    Hamiltonian.parse(text).field()
 
 
 @given(text=formulas(), point=points("p", "q", "a"))

@@ -159,8 +159,17 @@ def test_a_bad_parameter_is_refused_at_once(
     assert fragment in str(info.value)
 
 
-@pytest.mark.parametrize("value", ["1e300", "-1e9", "1e-300"])
-@pytest.mark.parametrize("text", ["p*exp(a*log(q))", "p*exp(a*log(2))", "p*cos(a*q)*cos(q)"])
+LARGE = [
+    "p*exp(a*log(q))",
+    "p*exp(a*log(2))",
+    "p*cos(a*q)*cos(q)",
+    "q*atan(tan(a))",
+    "q*log(sin(exp(exp(a))))",
+]
+
+
+@pytest.mark.parametrize("value", ["1e300", "-1e9", "1e-300", "100"])
+@pytest.mark.parametrize("text", LARGE)
 def test_a_large_parameter_is_taken_or_refused_in_bounded_time(text: str, value: str) -> None:
     work = outcome(lambda: Hamiltonian.parse(text, {"a": value}).field())
     assert work in ("done", "InputError")
@@ -170,6 +179,46 @@ def test_a_large_parameter_is_taken_or_refused_in_bounded_time(text: str, value:
 def test_growth_beyond_bounds_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="terms"):
         Hamiltonian.parse(text).field()
+
+
+# -- what must end ---------------------------------------------------------------------------
+
+
+ENDS = {
+    "logarithm times a googol": "exp(log(3)*1e999)",
+    "logarithm of 2, often": "exp(1e9*log(2))",
+    "logarithm of q, often": "exp(1e9*log(q))",
+    "coefficient in steps": "((((1e999*q)**64)**64)**64)**64",
+    "power in steps": "(((q**64)**64)**64)**64",
+    "binomial in steps": "((1 + q)**64)**64",
+    "trinomial in steps": "((1 + p + q)**64)**64",
+    "multiple angle": "sin(q) + sin(16*q)**64",
+    "large multiple angle": "sin(64*q)**64",
+    "four functions": "(exp(q) + exp(p) + sin(q) + cos(p))**64",
+    "tangents": "tan(16*q)**64 + tan(15*q)",
+    "many factors": "1/(q**60 - 1) + 1/(p**60 - 1)",
+    "nested functions": "sin(" * 55 + "q" + ")" * 55,
+    "nested quotients": "1/(1+" * 40 + "q" + ")" * 40,
+    "fine angle": "q*tan(pi/30030)",
+    "large root": "q*(1e999 + 7)**(63/64)",
+    "angle beyond evaluation": "q*atan(tan(1e300))",
+    "difference beyond evaluation": "q*sqrt(exp(exp(exp(100))) - exp(exp(100)))",
+    "sign beyond evaluation": "q*log(sin(exp(exp(100))))",
+    "root beyond evaluation": "q*cos(exp(exp(30)))**(1/3)",
+    "the longest name": "p**2 + q*" + "a" * 32,
+    "a name inside pq": "p**2/2 + pq*q**2/2",
+    "a name like a generator's": "g0_*q + g1_*sin(q)",
+}
+
+
+@pytest.mark.parametrize("text", ENDS.values(), ids=ENDS.keys())
+def test_a_hamiltonian_is_taken_or_refused_in_bounded_time(text: str) -> None:
+    assert outcome(lambda: Hamiltonian.parse(text).field()) in ("done", "InputError")
+
+
+@pytest.mark.parametrize("text", ["q*tan(q + pi/2)", "exp(pi*log(q))", "q*exp(sqrt(2)*log(p))"])
+def test_what_the_parser_takes_the_ring_takes(text: str) -> None:
+    Hamiltonian.parse(text).field()
 
 
 # -- named systems ----------------------------------------------------------------------------
