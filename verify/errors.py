@@ -23,7 +23,7 @@ def _short(value: object) -> str:
     try:
         text = value if isinstance(value, str) else repr(value)
     except ValueError:  # an integer beyond Python's limit of printed digits
-        text = f"a {type(value).__name__} of very many digits"
+        text = f"(a {type(value).__name__} of very many digits)"
     text = " ".join(text.split())
     # Control characters would reach the user's terminal.
     text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:200])

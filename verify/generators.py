@@ -245,6 +245,9 @@ class _Builder:
         same = ring.find("root", u, degree)
         if same is not None:
             return same
+        _, factors = u.factor()
+        if math.gcd(degree, *(int(n) for _, n in factors)) > 1 and factors:
+            raise InputError("formula", str(node), "is not smooth: the root of a power is |x|")
         inverse = self.inverse(u, node)
         root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
         ring.relate(root, degree, root**degree - u)
@@ -267,7 +270,8 @@ class _Builder:
         try:
             return self.ring.inverse(u)
         except ZeroDivisionError:
-            raise InputError("formula", str(node), "division by zero") from None
+            problem = "division by zero, or by what cannot be shown not to vanish"
+            raise InputError("formula", str(node), problem) from None
 
 
 def _lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:

@@ -113,6 +113,15 @@ def test_no_operation_occurs_twice(pipelined: bool, one: Polynomial, two: Polyno
             assert op.kind == "add" or 1 not in constants, op
 
 
+def test_a_sum_and_a_product_are_one_operation_in_either_order() -> None:
+    program = Program()
+    x, y = (program.input(n, static=False) for n in STATE)
+    assert program.add(x, y) == program.add(y, x)
+    assert program.mul(x, y) == program.mul(y, x)
+    assert program.add(x, program.neg(y)) != program.add(y, program.neg(x))
+    assert len(program.ops) == 2 + 2 + 2 + 2  # inputs, sum and product, negatives, differences
+
+
 @settings(max_examples=50, deadline=None)
 @given(st.booleans(), polynomials)
 def test_a_polynomial_evaluated_again_adds_nothing(pipelined: bool, polynomial: Polynomial) -> None:

@@ -5,6 +5,7 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -39,7 +40,7 @@ class Proof:
     leading: sympy.Expr
     area_preserving: bool | None
     convergence_order: int | None
-    step_map: StepMap = field(repr=False)
+    step_map: StepMap = field(repr=False, compare=False)
     witness: dict[str, Fraction] = field(default_factory=dict)
     enclosure: str = ""
 
@@ -64,6 +65,9 @@ class Leading:
     power: int | None
     coefficient: sympy.Expr
     decision: Decision
+
+
+_VANISHES = Leading(None, sympy.S.Zero, Decision(True))
 
 
 class Expansion:
@@ -95,14 +99,20 @@ class Expansion:
         return ring, x
 
     def leading(self) -> Leading:
-        for n in range(self.length):
-            ring, x = self.coefficient(n)
-            decision = ring.decide(x)
-            if decision.zero is not True:
-                return Leading(n, ring.factored(x), decision)
-        if self.polynomial:
-            return Leading(None, sympy.S.Zero, Decision(True))
-        return Leading(self.length, sympy.S.Zero, Decision(None))
+        found = _first(self.coefficient, self.length)
+        if found is None and not self.polynomial:
+            return Leading(self.length, sympy.S.Zero, Decision(None))
+        return found or _VANISHES
+
+
+def _first(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
+    """The first of the coefficients that is not shown to vanish; None where all are."""
+    for n in range(length):
+        ring, x = coefficient(n)
+        decision = ring.decide(x)
+        if decision.zero is not True:
+            return Leading(n, ring.factored(x), decision)
+    return None
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
@@ -124,12 +134,13 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
 
 
 def _leading_of_delta_j(step_map: StepMap) -> Leading:
-    if step_map.preserves_area:
-        return Leading(None, sympy.S.Zero, Decision(True))
     step = step_map.flat
-    if step.preserves_area:
-        return Leading(None, sympy.S.Zero, Decision(True))
-    return Expansion(step.ring, step.delta_j).leading()
+    if step_map.preserves_area or step.preserves_area:
+        return _VANISHES
+    if step.degree is None:
+        return Expansion(step.ring, step.delta_j).leading()
+    found = _first(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
+    return found or _VANISHES
 
 
 @dataclass(frozen=True)
@@ -179,6 +190,8 @@ def _verdict(
     claimed = scheme.order if scheme else 1
     if convergence.misses(claimed):
         known = f"agrees with the exact flow up to h^{convergence.order}"
+        if convergence.order == -1:
+            known = "agrees with the exact flow not even at h = 0"
         if not convergence.decided:
             return Verdict.UNDECIDED, f"the map {known}; whether further is not decided"
         if scheme:
