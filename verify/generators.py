@@ -6,17 +6,15 @@ sines (and of all exponentials) decide together over which basis they are expand
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import flint
 import sympy
 
 from verify.errors import InputError
+from verify.lattice import lattice
 from verify.ring import Poly, Ring, RingFullError
 
 MAX_TERMS = 20000
-_MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
-
 _TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
 _EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
 _OTHER = (sympy.log, sympy.atan)
@@ -112,7 +110,7 @@ class _Builder:
             return
         ring = self.ring
         arguments = [self.element(_argument(f)) for f in functions]
-        basis, multiples = _lattice(ring, arguments)
+        basis, multiples = lattice(ring, arguments)
         values = [
             make(b, [f for f, row in zip(functions, multiples, strict=True) if row[k]])
             for k, b in enumerate(basis)
@@ -272,51 +270,3 @@ class _Builder:
         except ZeroDivisionError:
             problem = "division by zero, or by what cannot be shown not to vanish"
             raise InputError("formula", str(node), problem) from None
-
-
-def _lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
-    """A basis of the lattice the arguments span, and each argument as integers over it.
-
-    Arguments are vectors of rational coefficients over their monomials; the basis is the Hermite
-    normal form of their integer multiples. Where a multiple would be large (sin(100 q) beside
-    sin(q)) each argument is a basis element of its own: nothing wrong can follow, only an
-    identity may go unseen.
-    """
-    terms = [a.to_dict() for a in arguments]
-    monomials = sorted({m for t in terms for m in t}, reverse=True)
-    common = 1
-    for t in terms:
-        for value in t.values():
-            common = int(flint.fmpz(common).lcm(value.denom()))
-    rows = [[int(t.get(m, 0) * common) for m in monomials] for t in terms]
-    basis = [r for r in _rows(flint.fmpz_mat(rows).hnf()) if any(r)]
-    multiples = [_coordinates(row, basis) for row in rows]
-    if any(abs(k) > _MAX_MULTIPLE for row in multiples for k in row):
-        distinct = [a for k, a in enumerate(arguments) if a not in arguments[:k]]
-        return distinct, [[int(a == b) for b in distinct] for a in arguments]
-    for k, vector in enumerate(basis):
-        if all(row[k] <= 0 for row in multiples):  # exp(−q²) by itself, not by 1/exp(q²)
-            basis[k] = [-v for v in vector]
-            multiples = [[*row[:k], -row[k], *row[k + 1 :]] for row in multiples]
-    elements = [
-        ring.context.from_dict(
-            {m: flint.fmpq(v, common) for m, v in zip(monomials, vector, strict=True) if v}
-        )
-        for vector in basis
-    ]
-    return elements, multiples
-
-
-def _rows(matrix: Any) -> list[list[int]]:
-    return [[int(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())]
-
-
-def _coordinates(row: list[int], basis: list[list[int]]) -> list[int]:
-    """Integers k with Σ kᵢ basisᵢ = row, for a basis in echelon form that spans it."""
-    rest, result = list(row), []
-    for vector in basis:
-        pivot = next(j for j, v in enumerate(vector) if v)
-        k = rest[pivot] // vector[pivot]
-        rest = [r - k * v for r, v in zip(rest, vector, strict=True)]
-        result.append(k)
-    return result

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+import mpmath
 import pytest
 
 from tests.unit.by_hand import STEP_SIZES, Given, made_proof, made_run
@@ -141,6 +142,22 @@ def test_lambda_that_tends_to_a_constant_is_not_measured_to_vanish() -> None:
 def test_an_mse_of_order_h_is_not_measured_to_be_of_higher_order() -> None:
     judged = judge(3, OPEN, runs_of(mse=lambda h: h * (1 + h)))
     assert judged.verdict is not MEASURED, judged.evidence
+
+
+@pytest.mark.parametrize("excess", ["0.05", "0.09"])
+@pytest.mark.parametrize(("number", "name", "least"), [(3, "mse", 1), (4, "lam", 0)])
+def test_a_slope_a_little_above_what_is_asked_for_refutes_nothing(
+    number: int, name: str, least: int, excess: str
+) -> None:
+    """h^1.05 is of higher order than h: to say that it is not would be false."""
+
+    def shape(h: Fraction) -> Given:
+        with mpmath.workdps(30):
+            base = mpmath.mpf(h.numerator) / h.denominator
+            return mpmath.nstr(base ** (least + mpmath.mpf(excess)), 25)
+
+    judged = judge(number, OPEN, runs_of(**{name: shape}))
+    assert judged.verdict in (MEASURED, UNDECIDED), judged.evidence
 
 
 @pytest.mark.parametrize("number", [3, 4])

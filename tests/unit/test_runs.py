@@ -80,6 +80,7 @@ def test_float64_contains_the_true_value_and_knows_many_digits(case: dict[str, A
 
 
 Loop = dict[str, Fraction]
+START = Fraction(3, 2), Fraction(0), Fraction(1, 1000)  # q, p, h
 
 
 def duffing_loop(
@@ -111,16 +112,14 @@ def broken(found: RunResult, true: Loop) -> dict[str, float]:
 
 
 def test_the_loop_of_this_file_agrees_with_the_vectors() -> None:
-    q, p, h = Fraction(3, 2), Fraction(0), Fraction(1, 1000)
-    (found,) = duffing_loop(q, p, h, Fraction(1), [20000])
+    (found,) = duffing_loop(*START, Fraction(1), [20000])
     for name, true in ((n, Fraction(VECTORS[0][n])) for n in VALUES):
         assert abs(found[name] - true) <= abs(true) / 10**30, name
 
 
 def test_estimated_bounds_hold_for_many_steps() -> None:
-    q, p, h = Fraction(3, 2), Fraction(0), Fraction(1, 1000)
-    counts = [100_000, 1_000_000]
-    for count, true in zip(counts, duffing_loop(q, p, h, Fraction(1), counts), strict=True):
+    (q, p, h), counts = START, [100_000, 1_000_000]
+    for count, true in zip(counts, duffing_loop(*START, Fraction(1), counts), strict=True):
         found = run(DUFFING.with_values({"delta": 1}), "lie2", q=q, p=p, step_size=h, steps=count)
         assert not broken(found, true), f"N = {count}"
         assert min(digits_of(found.values[n].value) for n in CLOSED_FORM) >= 6
