@@ -31,6 +31,7 @@ Status = Literal["finished", "left range", "unresolved"]
 _REFERENCE_DIGITS = 40
 _MORE_DIGITS = 15
 _ATTEMPTS = 6
+_FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at every step
 _LINEAR = Fraction(1, 100)
 _STATE = ("p", "q")
 
@@ -76,6 +77,8 @@ def _against_mpmath(job: Job, first: Outcome) -> Bounds:
     if second.done == job.steps and _spread(first, second) < _LINEAR:
         return Bounds(_differences(first, second.values, job.steps), method)
     # float64 has lost every digit, so the reference has lost many: is it good for the rest?
+    if job.steps > _FOLLOWED_STEPS:
+        return _compensated(job, first)
     true = _resolved(job, reference, second, 1)
     if true.status != "finished":
         return Bounds({}, f"{method}, which finds another orbit", "unresolved")

@@ -36,9 +36,13 @@ def _with_system(command: Any) -> Any:
     return command
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
 @click.version_option(package_name="areaproof", prog_name="verify")
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Verify how well a one-step scheme for p' = −H_q, q' = H_p preserves area.
 
     \b
@@ -49,6 +53,8 @@ def cli() -> None:
 
     Numbers are exact: 0.001 is 1/1000, 7/3 is a third of seven.
     """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 @cli.command()
@@ -161,7 +167,6 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
     from reports.page import write
-
     from verify.execute import Store, cost
     from verify.plan import plan_scenes
     from verify.progress import progress_bar

@@ -22,6 +22,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from verify.bounds import DIRECT_STEPS
 from verify.exact import text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
@@ -172,7 +173,8 @@ def execute(
 def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
     if isinstance(task, RunTask):
-        return task.steps * _STEP_COST.get(task.arithmetic, 1000)
+        checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
+        return task.steps * _STEP_COST["mpmath" if checked else task.arithmetic]
     return 1
 
 

@@ -126,7 +126,7 @@ def advance(
     """The state after `count` steps, or None where a number left the arithmetic's range."""
     try:
         done, *after = kernel.function(count, *fixed, *state)
-    except (ArithmeticError, ValueError, TypeError):  # mpmath: pole, log of a negative, complex
+    except (ArithmeticError, ValueError):  # mpmath: a pole, or the log or root of a negative
         return None
     if done < count or not all(arithmetic.finite(x) for x in after):
         return None

@@ -43,11 +43,11 @@ def made_run(h: Any, values: dict[str, Given], **changes: Any) -> RunResult:
 
 
 def made_proof(**changes: Any) -> ProofResult:
-    """A proof that left ΔJ undecided, for a map that is consistent."""
+    """A proof that decided neither ΔJ nor whether the map is consistent."""
     fields: dict[str, Any] = {
         "hamiltonian": "p**2/2 - cos(q)", "parameters": {}, "scheme": "lie2",
         "verdict": Verdict.UNDECIDED, "reason": "left open by hand", "order": None,
-        "leading": "1", "delta_j": "1", "area_preserving": None, "convergence_order": 2,
+        "leading": "1", "delta_j": "1", "area_preserving": None, "convergence_order": 0,
         "witness": {}, "enclosure": "", "p_next": "p", "q_next": "q",
         "jacobian": (("1", "0"), ("0", "1")), "seconds": 0.0,
     }  # fmt: skip

@@ -30,8 +30,8 @@ PROVED, MEASURED, REFUTED, UNDECIDED = (
 
 # -- criteria -------------------------------------------------------------------------------------
 
-THIRD_ORDER = made_proof(verdict=PROVED, order=3, area_preserving=False)
-NO_AREA = made_proof(verdict=PROVED, order=None, area_preserving=True)
+THIRD_ORDER = made_proof(verdict=PROVED, order=3, area_preserving=False, convergence_order=2)
+NO_AREA = made_proof(verdict=PROVED, order=None, area_preserving=True, convergence_order=2)
 OPEN = made_proof()
 
 

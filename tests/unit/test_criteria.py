@@ -95,6 +95,17 @@ def test_no_run_proves_what_is_said_of_every_point(number: int) -> None:
     assert judge(number, made_proof(), power_runs(mse=6, lam=2)).verdict is UNDECIDED
 
 
+@pytest.mark.parametrize("number", [2, 3, 4])
+@pytest.mark.parametrize("agreement", [1, 2, None])
+def test_agreement_with_the_flow_proves_criteria_2_to_4_where_delta_j_is_open(
+    number: int, agreement: int | None
+) -> None:
+    found = judge(number, made_proof(convergence_order=agreement), [])
+    assert found.verdict is PROVED
+    least = 13 if agreement is None else agreement + 1
+    assert f"O(h^{ {2: least, 3: 2 * least, 4: least - 1}[number] })" in found.evidence
+
+
 # -- by slope -------------------------------------------------------------------------------------
 
 OPEN = made_proof()

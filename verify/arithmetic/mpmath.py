@@ -30,7 +30,16 @@ def at_bits(bits: int) -> Arithmetic:
         made = libmp.from_rational(value.numerator, value.denominator, bits, "n")
         return context.make_mpf(made)
 
-    names = ("sin", "cos", "exp", "log", "sinh", "cosh", "atan", "root", "sqrt")
+    def real(function: Callable[..., Any]) -> Callable[..., Any]:
+        def checked(*arguments: Any) -> Any:
+            value = function(*arguments)
+            if not isinstance(value, context.mpf):
+                raise ValueError("a complex value")
+            return value
+
+        return checked
+
+    names = ("sin", "cos", "exp", "sinh", "cosh", "atan")
     return Arithmetic(
         name=NAME,
         bits=bits,
@@ -39,6 +48,7 @@ def at_bits(bits: int) -> Arithmetic:
         finite=lambda x: bool(context.isfinite(x)),
         functions={
             **{f: getattr(context, f) for f in names},
+            **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
             "cos_sin": context.cos_sin,
             "pi": +context.pi,
             "escape": context.ldexp(1, ESCAPE_BITS),
