@@ -4,8 +4,10 @@ float64, up to `DIRECT_STEPS` steps: held against mpmath from the exact inputs, 
 is itself confirmed. Beyond: against a compensated run (see `verify.kernel`), by four times the
 greatest difference at any of the checkpoints on the way, p and q taken together, since a single
 difference may be small by chance. That leaves the rounding of h, the parameters and the initial
-values aside, which shifts the phase by T·2⁻⁵³ at most, while the rounding of N ≥ 20,000 states
-shifts it by about √N·T·2⁻⁵³/5.
+values aside. Where errors grow linearly in time it shifts the phase by about T·2⁻⁵³, while the
+rounding of N ≥ 20,000 states shifts it by about √N·T·2⁻⁵³/5; where they grow exponentially, as near
+a separatrix, every rounding counts alike, and the states' are N to one. Where the two orbits differ
+by more than their size no value is given.
 
 mpmath: held against a rerun with 15 more digits, at a precision that is raised until the digits
 asked for stand. A rerun confirms a run only where the two differ little: once the first has lost
@@ -91,10 +93,13 @@ def _compensated(job: Job, first: Outcome) -> Bounds:
     second = job.go(number_systems.get("float64", 17), compensated=True)
     if second.done < job.steps:
         return Bounds({}, f"{method}, which left the range", "unresolved")
-    spread = 4 * _spread(first, second)
+    spread = _spread(first, second)
+    if spread > 1:  # two orbits, not one with errors
+        return Bounds({}, f"{method}, which is another orbit", "unresolved")
+    spread *= 4
     found = {}
     for name, x in first.values.items():
-        largest = max(abs(a[name]) for a in first.trail)
+        largest = max(abs(a[name]) for a in (*first.trail, *second.trail))
         if name in _STATE:
             difference = spread * largest
         else:

@@ -78,7 +78,7 @@ class SpreadClaim(_Claim):
 
     kind: Literal["spread"]
     quantity: Quantity
-    factor: Number
+    factor: Annotated[Number, Field(ge=1)]
 
 
 class MonotoneClaim(_Claim):

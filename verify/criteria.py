@@ -55,7 +55,8 @@ def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[
             return Verdict.REFUTED, f"ΔJ has order exactly h^{proof.order}{where}"
         return _from_order(number, proof.order, f", exactly of that order{where}", runs)
     if number == 1:
-        return Verdict.UNDECIDED, proof.reason
+        open_ = proof.area_preserving is None
+        return Verdict.UNDECIDED if open_ else Verdict.REFUTED, proof.reason
     least = (MOST_ORDERS if agreement is None else agreement) + 1
     return _from_order(number, least, ", as the map agrees with the exact flow so far", runs)
 
@@ -64,9 +65,16 @@ def _from_order(number: int, r: int, how: str, runs: Sequence[RunResult]) -> tup
     """Criteria 2–4 from ΔJ = O(h^r) with r ≥ 2, which every consistent map has."""
     if number == 2:
         return Verdict.PROVED, f"ΔJ = O(h^{r}){how}"
-    if number == 3:
-        return Verdict.PROVED, f"MSE = O(h^{2 * r}) on every fixed [0, T]{_seen('mse', runs)}"
-    return Verdict.PROVED, f"Λ = O(h^{r - 1}) on every fixed [0, T]{_seen('lambda', runs)}"
+    name, order = ("mse", 2 * r) if number == 3 else ("lambda", r - 1)
+    bound = f"{'MSE' if number == 3 else 'Λ'} = O(h^{order}), an upper bound"
+    left = [run for run in runs if run.status == "left range"]
+    if left:
+        return Verdict.UNDECIDED, (
+            f"{bound} on every [0, T] on which the exact solution exists; whether it does on the "
+            f"scene's is open, as {len(left)} of {len(runs)} runs leave the range"
+        )
+    where = "on every fixed [0, T] on which the exact solution exists"
+    return Verdict.PROVED, f"{bound} {where}{_seen(name, runs)}"
 
 
 def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, str]:

@@ -88,7 +88,8 @@ def check_delta_j(claim: DeltaJClaim, findings: Findings) -> ClaimResult:
     what = _PRINTED_AS[claim.kind]
     gap = _gaps(step_map, [(what, printed, step_map.delta_j)])[0]
     if claim.up_to is None:
-        return _from_gaps(claim, [gap], f"{what} is ΔJ’s closed form exactly")
+        holds = f"{what}, as printed, agrees with det J − 1 exactly, for all p, q, h and parameters"
+        return _from_gaps(claim, [gap], holds)
     return _up_to(claim, gap)
 
 
@@ -106,7 +107,7 @@ def _up_to(claim: DeltaJClaim, gap: Gap) -> ClaimResult:
     return result(
         claim,
         Verdict.PROVED,
-        f"{what} as printed differs from the closed form of ΔJ by O(h^{claim.up_to}): the "
+        f"{what} as printed differs from det J − 1 by O(h^{claim.up_to}): the "
         f"difference is {to_text(-grouped(ring, x))}",
     )
 

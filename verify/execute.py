@@ -164,7 +164,7 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
-    for name, result in _performed(waiting, _workers(waiting, workers)):
+    for name, result in _performed(waiting, _workers(waiting, workers), store.put):
         store.put(name, result)
         finish(name, result)
     return results
@@ -186,7 +186,7 @@ def _workers(tasks: Mapping[str, Task], asked: int | None) -> int:
     return max(1, min(os.cpu_count() or 1, len(tasks)))
 
 
-def _performed(tasks: Mapping[str, Task], workers: int) -> Iterator[tuple[str, Result]]:
+def _performed(tasks: Mapping[str, Task], workers: int, kept: Done) -> Iterator[tuple[str, Result]]:
     # Longest first, so that no worker is left with a long one at the end.
     order = sorted(tasks, key=lambda name: -cost(tasks[name]))
     if workers == 1:
@@ -197,8 +197,16 @@ def _performed(tasks: Mapping[str, Task], workers: int) -> Iterator[tuple[str, R
         futures: dict[Future[Result], str] = {
             executor.submit(perform, tasks[name]): name for name in order
         }
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+        try:
+            for future in as_completed(futures):
+                name = futures.pop(future)
+                yield name, future.result()
+        except KeyboardInterrupt:
+            # What other workers had just finished is not lost either.
+            for future, name in futures.items():
+                if future.done() and not future.cancelled() and future.exception() is None:
+                    kept(name, future.result())
+            raise
 
 
 @contextlib.contextmanager
@@ -210,6 +218,7 @@ def _pool(workers: int) -> Iterator[Executor]:
     try:
         yield executor
     except BaseException:
+        # The executor has no public way to end a task that is running.
         for process in (executor._processes or {}).values():
             process.terminate()
         executor.shutdown(wait=False, cancel_futures=True)

@@ -93,7 +93,9 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
     `names`: the names that may occur; None allows p, q and any parameter name. `source` is the
     name under which an error speaks of the text. Raises InputError, never anything else.
     """
-    if not isinstance(text, str) or not text.strip():
+    if not isinstance(text, str):
+        raise InputError(source, text, "is not text; write a formula such as 'p**2/2 + q**2/2'")
+    if not text.strip():
         raise InputError(source, text, "empty; write a formula such as p**2/2 + q**2/2")
     if len(text) > MAX_LENGTH:
         raise InputError(source, text, f"longer than {MAX_LENGTH} characters")

@@ -34,6 +34,8 @@ class Hamiltonian:
         Raises InputError for a bad formula, a bad value, or a parameter that H does not have.
         """
         expression = parse(formula, source="hamiltonian")
+        if parameters is not None and not isinstance(parameters, Mapping):
+            raise InputError("parameters", parameters, "is not a mapping of names to values")
         return cls(expression).with_values(parameters or {})
 
     def with_values(self, parameters: Mapping[str, Exact | None]) -> "Hamiltonian":

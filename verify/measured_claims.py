@@ -262,16 +262,20 @@ def check_magnitude(claim: MagnitudeClaim, findings: Findings) -> ClaimResult:
     _, rows = _rows(claim, findings, *names)
     details = [["initial value", *(f"{LABELS[n]} (about 10^{claim.exponents[n]}?)" for n in names)]]
     holds: list[bool | None] = []
+    failing: list[str] = []
     for row in rows:
         runs = [r for r in row if Fraction(r.step_size) == claim.step_size]
         if not runs:
             raise InputError(f"claim {claim.id}", text(claim.step_size), "is not in the grid")
         values = {name: QUANTITIES[name](runs[0]) for name in names}
         off = [abs(lg(values[n]) - claim.exponents[n]) for n in names]
-        holds.append(_every([_sign(rational_ball(Fraction(1, 2)) - x) for x in off]))
+        near = [_sign(rational_ball(Fraction(1, 2)) - x) for x in off]
+        holds.append(_every(near))
+        wrong = [n for n, sign in zip(names, near, strict=True) if sign is False]
+        failing.append(", ".join(f"{LABELS[n]} = {shown(values[n], 2)}" for n in wrong))
         details.append([_start(row[0]), *(shown(values[n], 4) for n in names)])
     yes = [details[i + 1][0] for i, h in enumerate(holds) if h is True]
-    no = [details[i + 1][0] for i, h in enumerate(holds) if h is False]
+    no = [f"{details[i + 1][0]}: {failing[i]}" for i, h in enumerate(holds) if h is False]
     evidence = f"holds for {_list(yes)}; does not hold for {_list(no)}"
     decided = _some(holds) if claim.quantifier == "some" else _every(holds)
     verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[decided]

@@ -2,11 +2,14 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PlainSerializer
 
 from verify.verdict import Verdict
 
 _DECIMAL = r"^-?\d+(\.\d+)?(e[+-]\d+)?$"
+
+
+Seconds = Annotated[float, PlainSerializer(repr, str, when_used="json")]
 
 
 class Frozen(BaseModel):
@@ -40,7 +43,7 @@ class ProofResult(Frozen):
     p_next: str
     q_next: str
     jacobian: tuple[tuple[str, str], tuple[str, str]]
-    seconds: float
+    seconds: Seconds
 
 
 class SeriesPoint(Frozen):
@@ -78,7 +81,7 @@ class RunResult(Frozen):
     error_method: str
     exact: tuple[str, ...]
     series: tuple[SeriesPoint, ...]
-    seconds: float
+    seconds: Seconds
 
 
 class CriterionResult(Frozen):
@@ -123,7 +126,7 @@ class Provenance(Frozen):
     command: str
     versions: dict[str, str]
     machine: str
-    seconds: float
+    seconds: Seconds
     kept: int  # results taken from an earlier, interrupted or finished, call
     computed: int
 

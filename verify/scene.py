@@ -42,6 +42,7 @@ StepSize = Annotated[
     Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
 ]
 _MAX_DEPTH = 12
+Time = Annotated[Fraction, BeforeValidator(lambda x: positive(x, "time")), PlainSerializer(text)]
 Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
 
 
@@ -53,7 +54,7 @@ class InitialValue(Frozen):
 class Grid(Frozen):
     """Runs of every scheme for every step size and initial value, over `time` or `steps`."""
 
-    time: StepSize | None = None
+    time: Time | None = None
     steps: Steps | None = None
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
@@ -70,6 +71,10 @@ class Grid(Frozen):
         for name in self.observables:
             if name not in ASKED:
                 raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
+        if len(set(self.step_sizes)) < len(self.step_sizes):
+            raise InputError("step_sizes", len(self.step_sizes), "one of them stands twice")
+        if len(set(self.initial_values)) < len(self.initial_values):
+            raise InputError("initial_values", len(self.initial_values), "one stands twice")
         for h in self.step_sizes:
             self.steps_for(h)
         return self
@@ -90,7 +95,7 @@ class Series(Frozen):
 
     step_size: StepSize
     initial_value: InitialValue
-    time: StepSize | None = None
+    time: Time | None = None
     steps: Steps | None = None
     points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
 
@@ -184,13 +189,18 @@ def _shallow(data: Any) -> bool:
 
 
 def one_line(error: ValidationError, source: str) -> InputError:
-    first = error.errors(include_url=False)[0]
+    errors = error.errors(include_url=False)
+    # A mistyped key is also a missing one: name what was typed.
+    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
     cause = first.get("ctx", {}).get("error")
     where = ".".join(str(part) for part in first["loc"])
     if isinstance(cause, InputError):
         prefix = f"{source}: {where}: " if where else f"{source}: "
         return InputError(prefix + cause.name, cause.value, cause.problem)
-    problem = first["msg"]
     if first["type"] == "extra_forbidden":
-        problem = "unknown key"
-    return InputError(f"{source}: {where}", first.get("input"), problem)
+        missing = [str(e["loc"][-1]) for e in errors if e["type"] == "missing"]
+        meant = f"; is one of these meant: {', '.join(missing)}?" if missing else ""
+        return InputError(f"{source}: {where}", first.get("input"), f"unknown key{meant}")
+    if first["type"] == "missing":
+        return InputError(f"{source}: {where}", "", "is missing")
+    return InputError(f"{source}: {where}", first.get("input"), first["msg"])

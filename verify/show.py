@@ -78,6 +78,7 @@ def run_json(result: "RunResult") -> dict[str, Any]:
         "error_bound": {name: value.bound for name, value in values.items() if value},
         "error_kind": result.error_kind,
         "error_method": result.error_method,
+        "exact": list(result.exact),  # what a proof gave, and no run
         "status": result.status,
         "failed_step": result.failed_step,
         "seconds": f"{result.seconds:.6f}",
@@ -90,8 +91,8 @@ def print_run(result: "RunResult") -> None:
         return
     if result.status != "finished":
         click.echo(
-            f"at step {result.failed_step} the orbit leaves the range of {result.arithmetic}, or "
-            "the domain of H"
+            f"at step {result.failed_step} the orbit leaves the domain of H or the range of "
+            f"{result.arithmetic} (mpmath is stopped beyond 2^4000)"
         )
         return
     for name, label in _LABELS.items():

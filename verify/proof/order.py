@@ -59,7 +59,8 @@ class Leading:
     """The first coefficient in h that is not shown to vanish: of h^`power`, as an expression.
 
     `decision.zero` is False at a proved leading term, None at an undecided one, and True where
-    every coefficient vanishes (`power` is None then).
+    every coefficient vanishes (`power` is None then). False with `power` None: ΔJ is not zero, but
+    its leading term lies beyond the orders looked at.
     """
 
     power: int | None
@@ -138,7 +139,11 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
     if step_map.preserves_area or step.preserves_area:
         return _VANISHES
     if step.degree is None:
-        return Expansion(step.ring, step.delta_j).leading()
+        leading = Expansion(step.ring, step.delta_j).leading()
+        if leading.decision.zero is None and leading.power == MOST_ORDERS + 1:
+            # All coefficients looked at vanish; ΔJ itself may still be shown not to.
+            return Leading(None, sympy.S.Zero, step.ring.decide(step.delta_j))
+        return leading
     found = _first(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
     return found or _VANISHES
 
@@ -200,6 +205,10 @@ def _verdict(
     match leading.decision.zero:
         case True:
             return Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1"
+        case False if leading.power is None and not (scheme and scheme.area_preserving):
+            return Verdict.PROVED, (
+                f"ΔJ is not the zero function, and its coefficients up to h^{MOST_ORDERS} vanish"
+            )
         case None:
             return Verdict.UNDECIDED, (
                 f"the coefficient of h^{leading.power} in ΔJ is neither shown to vanish nor not to"

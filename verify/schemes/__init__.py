@@ -26,6 +26,8 @@ def names() -> tuple[str, ...]:
 @cache
 def get(name: str) -> Scheme:
     """The scheme of that name; InputError where there is none."""
+    if not isinstance(name, str):
+        raise InputError("scheme", name, "is not a name")
     for module in _modules():
         scheme = module.make(name)  # type: ignore[attr-defined]
         if scheme is not None:
