@@ -38,6 +38,7 @@ Done = Callable[[str, Result], None]  # called with a task's key and its result
 
 _VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
+# In float64 steps; an arithmetic that is not listed counts as one in between.
 _STEP_COST = {"float64": 1, "mpmath": 3000}
 
 
@@ -174,7 +175,7 @@ def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
-        return task.steps * _STEP_COST["mpmath" if checked else task.arithmetic]
+        return task.steps * _STEP_COST.get("mpmath" if checked else task.arithmetic, 500)
     return 1
 
 
