@@ -7,7 +7,7 @@ from typing import Any
 
 import flint
 
-from verify.exact import decimal, known_digits
+from verify.exact import known_digits
 from verify.results import Value
 
 Ball = Any  # flint.arb, which has no type stubs
@@ -37,12 +37,18 @@ def lg(x: Ball) -> Ball:
     return x.log() / flint.arb(10).log()
 
 
-def bounds(x: Ball) -> tuple[Fraction, Fraction]:
-    """The ball's end points as exact rationals; the ball must be finite."""
+def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
+    """The ball's middle and radius as exact rationals; the ball must be finite."""
     middle, radius = (
         Fraction(int(m)) * Fraction(2) ** int(e)
         for m, e in (x.mid().man_exp(), flint.arb(x.rad()).man_exp())
     )
+    return middle, radius
+
+
+def bounds(x: Ball) -> tuple[Fraction, Fraction]:
+    """The ball's end points as exact rationals; the ball must be finite."""
+    middle, radius = middle_and_radius(x)
     return middle - radius, middle + radius
 
 
@@ -69,10 +75,6 @@ def place(units: int, places: int) -> str:
     """An integer number of 10^−places as a decimal."""
     digits = f"{abs(units):0{places + 1}d}"
     return f"{'-' if units < 0 else ''}{digits[:-places]}.{digits[-places:]}"
-
-
-def scientific(value: Fraction, digits: int = 3) -> str:
-    return decimal(value, digits)
 
 
 def slope(points: Sequence[tuple[float, float]]) -> tuple[float, float]:

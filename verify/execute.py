@@ -92,6 +92,7 @@ class Store:
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
+        self.taken = 0  # results that were found here
 
     def path(self, name: str) -> Path | None:
         return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
@@ -102,9 +103,11 @@ class Store:
             return None
         model = ProofResult if isinstance(task, ProofTask) else RunResult
         try:
-            return model.model_validate_json(path.read_text())
+            found: Result = model.model_validate_json(path.read_text())
         except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
             return None
+        self.taken += 1
+        return found
 
     def put(self, name: str, result: Result) -> None:
         path = self.path(name)

@@ -67,9 +67,13 @@ class Hamiltonian:
     @property
     def exact(self) -> sympy.Expr:
         """H with the values put in; InputError where it is not defined for them."""
+        return self.put_in(self.expression)
+
+    def put_in(self, expression: sympy.Expr) -> sympy.Expr:
+        """Any expression with H's parameter values put in, under the parser's limits."""
         put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
         shown = ", ".join(f"{n}={text(v)}" for n, v in self.values)
-        return substitute(self.expression, put, shown)
+        return substitute(expression, put, shown)
 
     def generic(self) -> "Hamiltonian":
         """H with its parameters as symbols, but for those of value 0, whose terms vanish.

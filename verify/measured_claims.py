@@ -11,7 +11,17 @@ from typing import Any
 
 import flint
 
-from verify.balls import Ball, ball, bounds, fixed, lg, precision, rational_ball, scientific, shown
+from verify.balls import (
+    Ball,
+    ball,
+    bounds,
+    fixed,
+    lg,
+    middle_and_radius,
+    precision,
+    rational_ball,
+    shown,
+)
 from verify.claims import (
     Findings,
     LessClaim,
@@ -22,7 +32,7 @@ from verify.claims import (
     result,
 )
 from verify.errors import InputError
-from verify.exact import text
+from verify.exact import decimal, text
 from verify.results import ClaimResult, RunResult
 from verify.scene import Scene
 from verify.verdict import Verdict
@@ -189,14 +199,13 @@ def check_spread(claim: SpreadClaim, findings: Findings) -> ClaimResult:
         worst = max(worst, reached)
     evidence = (
         f"{LABELS[claim.quantity]} varies over the initial values by a factor of up to "
-        f"{scientific(worst, 2)} at one step size (allowed here: {text(claim.factor)})"
+        f"{decimal(worst, 2)} at one step size (allowed here: {text(claim.factor)})"
     )
     return result(claim, _all(verdicts), evidence, details)
 
 
 def _middle(x: Ball) -> Fraction:
-    mantissa, exponent = x.mid().man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return middle_and_radius(x)[0]
 
 
 def _all(verdicts: Sequence[bool | None]) -> Verdict:

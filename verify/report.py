@@ -29,8 +29,9 @@ def make_report(
     """Compute what the scenes and claims need, and judge. The claims' scenes must be given."""
     begun = time.perf_counter()
     plan = plan_scenes(list(scenes)) if plan is None else plan
-    kept = sum(store.get(name, task) is not None for name, task in plan.tasks.items())
+    before = store.taken
     results = execute(plan, store, workers=workers, done=done)
+    kept = store.taken - before
     findings = Findings({scene.name: scene for scene in scenes}, results)
     return Report(
         title=title,

@@ -13,6 +13,7 @@ from typing import Any
 import flint
 
 from verify import arithmetic as number_systems
+from verify.balls import middle_and_radius
 from verify.bounds import Bounded, bounded, working_digits
 from verify.enclosure import enclose
 from verify.errors import InputError
@@ -124,13 +125,7 @@ def _proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     with flint.ctx.workprec(bits):
         lam = (1 + delta_j) ** steps - 1
         balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
-        return {name: _rational_ball(ball) for name, ball in balls.items()}
-
-
-def _rational_ball(ball: Any) -> tuple[Fraction, Fraction]:
-    mid, rad = (flint.arb(x).man_exp() for x in (ball.mid(), ball.rad()))
-    middle, radius = (Fraction(int(m)) * Fraction(2) ** int(e) for m, e in (mid, rad))
-    return middle, radius
+        return {name: middle_and_radius(ball) for name, ball in balls.items()}
 
 
 def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:

@@ -6,7 +6,7 @@ u = p' − p, v = q' − q as u_p + v_q + u_p v_q − u_q v_p, in which nothing 
 1 + ΔJ of the composition is the product along it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -120,11 +120,9 @@ class StepMap:
         names = ("p", "q", "h", *hamiltonian.parameters)
         if "p_next" in names:
             raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
-        values = dict(hamiltonian.values)
-        put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in values.items()}
         p1 = parse(p_next, names, source="p_next")
         q1 = parse(q_next, (*names, "p_next"), source="q_next").subs(symbol("p_next"), p1)
-        return cls.from_expressions(hamiltonian, p1.subs(put), q1.subs(put))
+        return cls.from_expressions(hamiltonian, hamiltonian.put_in(p1), hamiltonian.put_in(q1))
 
     @cached_property
     def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
@@ -169,16 +167,19 @@ class StepMap:
         step = self.flat
         if step.degree is None:
             return step.ring.factored(step.delta_j)
-        terms = ((n, step.coefficient(n)) for n in range(step.degree + 1))
-        return sympy.Add(*(H_STEP**n * step.ring.factored(c) for n, c in terms if c != 0))
+        return _by_powers(step.ring, {n: step.coefficient(n) for n in range(step.degree + 1)})
 
 
 def grouped(ring: Ring, x: Poly) -> sympy.Expr:
     """x as an expression: by powers of h, each coefficient factored, where h stands outside."""
     if h_inside(ring, x):
         return ring.factored(x)
-    powers = ring.powers(x, "h")
-    return sympy.Add(*(H_STEP**n * ring.factored(c) for n, c in sorted(powers.items())))
+    return _by_powers(ring, ring.powers(x, "h"))
+
+
+def _by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Expr:
+    """Σ hⁿ cₙ, each coefficient factored."""
+    return sympy.Add(*(H_STEP**n * ring.factored(c) for n, c in sorted(coefficients.items())))
 
 
 def h_inside(ring: Ring, *elements: Poly) -> bool:
