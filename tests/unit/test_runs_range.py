@@ -280,6 +280,17 @@ def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
     assert len(compiled) == 2, "a vanishing term has a kernel of its own"
 
 
+@pytest.mark.parametrize("name", ["float64", "mpmath"])
+def test_a_map_that_is_not_defined_at_the_step_size_leaves_the_range_at_once(name: str) -> None:
+    """What does not depend on the state is computed before the loop, and may fail there."""
+    scheme = "p_next = p - h*q/(1 - 10*h); q_next = q + h*p"
+    at: dict[str, Any] = {"q": 1, "p": 0, "steps": 3, "arithmetic": name}
+    found = run(Hamiltonian.parse("p**2/2 + q**2/2"), scheme, step_size="0.1", **at)
+    assert (found.status, found.failed_step, found.values) == ("left range", 1, {})
+    defined = run(Hamiltonian.parse("p**2/2 + q**2/2"), scheme, step_size="0.2", **at)
+    assert defined.status == "finished"
+
+
 def test_the_observables_asked_for_are_those_that_come_back() -> None:
     for asked in ((), ("mse",), ("lambda", "mse"), CLOSED_FORM, ASKED):
         found = duffing_run("float64", 10, q=1, p=0, h=Fraction(1, 10), observables=asked)

@@ -5,6 +5,7 @@ The global `mpmath.mp` is neither used nor changed.
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from fractions import Fraction
 from typing import Any
 
@@ -46,6 +47,7 @@ def at_bits(bits: int) -> Arithmetic:
         number=number,
         exact=_exact,
         finite=lambda x: bool(context.isfinite(x)),
+        context=nullcontext,
         functions={
             **{f: getattr(context, f) for f in names},
             **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
