@@ -36,7 +36,7 @@ from verify.step_map import grouped
 Result = ProofResult | RunResult
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
-_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
+_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
 # In float64 steps; an arithmetic that is not listed counts as one in between.
 _STEP_COST = {"float64": 1, "mpmath": 3000}

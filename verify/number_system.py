@@ -1,5 +1,6 @@
 """What a kernel needs of a number system."""
 
+import math
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
@@ -32,3 +33,19 @@ class Arithmetic:
     guard: str | None = field(compare=False)
     pipelined: bool = field(compare=False)
     chunk: int = field(compare=False)
+
+
+ESCAPE_BITS = 4000  # where exponents have no end of their own, an orbit is stopped at |z| = 2^4000
+
+
+def bits_for(digits: int) -> int:
+    """The bits of a binary mantissa that holds so many decimal digits."""
+    return math.ceil(digits * math.log2(10)) + 1
+
+
+def interpreted(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """The function of that name as plain Python: the `compile` of what has no compiler."""
+    scope = dict(namespace)
+    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
+    function: Callable[..., Any] = scope[name]
+    return function

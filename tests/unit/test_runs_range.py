@@ -14,8 +14,8 @@ import pytest
 from mpmath.ctx_mp import MPContext
 
 from verify import arithmetic
-from verify.arithmetic.mpmath import ESCAPE_BITS
 from verify.hamiltonian import Hamiltonian
+from verify.number_system import ESCAPE_BITS
 from verify.results import RunResult
 from verify.runs import ASKED, CLOSED_FORM, run
 
