@@ -134,7 +134,7 @@ def test_an_orbit_whose_escape_depends_on_rounding_is_given_no_digit(
     assert not found.values
 
 
-@pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpmath", "compensated"])
+@pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpfr", "compensated"])
 @pytest.mark.parametrize("h", ["1e-60", "1e-400"])
 def test_an_underflow_is_not_given_as_an_exact_zero(steps: int, h: str) -> None:
     """ΔJ is about 1.5 h³, so that ΔJ², or ΔJ itself, is too small for float64, and is not 0."""
