@@ -27,6 +27,7 @@ def make(digits: int) -> Arithmetic:
         functions={
             **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
             "sqrt": math.sqrt,
+            "root": _root,
             "pi": math.pi,
         },
         compile=_compile,
@@ -46,7 +47,7 @@ def _number(value: Fraction) -> float:
 def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     import numba
 
-    scope = {"root": numba.njit(_root), **namespace}
+    scope = {**namespace, "root": numba.njit(_root)}
     exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
     compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(scope[name])
     return compiled

@@ -54,6 +54,7 @@ def at_bits(bits: int) -> Arithmetic:
         functions={
             **{f: getattr(gmpy2, f) for f in names},
             "root": _root,
+            "approx": float,
             "pi": pi,
             "escape": number(Fraction(2**ESCAPE_BITS)),
             "minus_escape": number(Fraction(-(2**ESCAPE_BITS))),
