@@ -173,7 +173,7 @@ class _Writer:
             for n, increment in zip(("p", "q"), step.increments, strict=True):
                 total[n] = program.add(total[n], evaluator.evaluate(increment))
         result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
-        if self.arithmetic.absolute and "lambda" in self.observables:
+        if self.arithmetic.absolute and {"lambda", "extremes"} & self.observables:
             result["scale"] = scale
         if jacobian is not None:
             a, b, c, d = jacobian
