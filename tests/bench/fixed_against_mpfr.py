@@ -35,7 +35,7 @@ TARGETS = {  # at least so many times faster than C, and than mpmath, at these d
 COMPARED_STEPS = 2000
 Run = Callable[[int], Result]
 SLICE = 0.3  # seconds of one measurement
-ROUNDING = 64  # allowed error after N steps, in units of N · 2^−bits
+ROUNDING = 4  # allowed error after N steps, in units of N · 2^−bits
 
 
 def ours(system: str, digits: int, steps: int, name: str = "fixed") -> Result:

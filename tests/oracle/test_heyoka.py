@@ -57,9 +57,9 @@ def ours(name: str, eta: int, at: Point) -> tuple[State, Fraction]:
     return found[:-1], found[-1]
 
 
-def distance(precision: Precision, x: State, y: State) -> Fraction:
+def distance(precision: Precision, x: State, y: State) -> float:
     """The greatest of the six differences, in units of what rounding allows."""
-    return max(abs(a - b) / precision.rounding(b) for a, b in zip(x, y, strict=True))
+    return float(max(abs(a - b) / precision.rounding(b) for a, b in zip(x, y, strict=True)))
 
 
 @every_case
