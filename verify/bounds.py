@@ -10,11 +10,11 @@ a separatrix, every rounding counts alike, and the states' are N to one. Where t
 by more than their size no value is given.
 
 Every other arithmetic: held against a rerun with 15 more digits, at a precision that is raised
-until the digits asked for stand. A rerun confirms a run only where the two differ little: once the first has lost
-every digit, as on a chaotic orbit, the second may have lost as many more. So where they differ by
-more than `_LINEAR` of the orbit's size the precision is doubled instead; where that does not end,
-the run is "unresolved" and no value is given. An estimate is no certificate, and is called
-`estimated`.
+until the digits asked for stand. A rerun confirms a run only where the two differ little: once the
+first has lost every digit, as on a chaotic orbit, the second may have lost as many more. So where
+they differ by more than `_LINEAR` of the orbit's size the precision is doubled instead; where that
+does not end, the run is "unresolved" and no value is given. An estimate is no certificate, and is
+called `estimated`.
 """
 
 from dataclasses import dataclass
