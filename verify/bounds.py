@@ -1,4 +1,10 @@
-"""Error bounds of runs, estimated: what rounding left of the digits.
+"""Error bounds of runs: what rounding left of the digits.
+
+Balls: the run itself encloses the true values. Where the digits asked for are not all known, or the
+balls have grown so wide that nothing is, it is done again, in that case with twice the digits;
+where they then end at the same step, the orbit has left the range or the domain there, and where
+raising the precision does not end, the run is "unresolved". The other number systems' bounds are
+estimates.
 
 float64, up to `DIRECT_STEPS` steps: held against mpfr from the exact inputs, at a precision that
 is itself confirmed. Beyond: against a compensated run (see `verify.kernel`), by four times the
@@ -47,6 +53,8 @@ class Bounds:
     method: str
     status: Status = "finished"
     failed_step: int | None = None
+    kind: Literal["enclosed", "estimated"] = "estimated"
+    run: Outcome | None = None  # the one that the values are of, where it is not the first
 
 
 def working_digits(digits: int, steps: int) -> int:
@@ -67,6 +75,8 @@ def bounded(
     `known`: what a proof gives for observables that were not run. `reference`: the arithmetic that
     float64 is held against.
     """
+    if own.radius is not None:
+        return _enclosed(job, own, first, digits)
     if own.name != "float64":
         return _resolved(job, own, first, digits)
     if first.done < job.steps:
@@ -158,20 +168,44 @@ def _resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
             n: (second.values[n], abs(x - second.values[n]) + unit * abs(x))
             for n, x in first.values.items()
         }
-        missing = max(_missing(value, bound, digits) for value, bound in found.values())
+        missing = max(_missing(n, *value, digits) for n, value in found.items())
         if missing <= 0:
-            return Bounds(found, method)
+            return Bounds(found, method, run=second)
         own = number_systems.get(own.name, _digits(own) + missing + 5)
         first = job.go(own)
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
+
+
+def _enclosed(job: Job, own: Arithmetic, run: Outcome, digits: int) -> Bounds:
+    """The values with the radii of their balls, by raising the precision until they are known."""
+    ended = None  # where the run before this one did
+    for attempt in range(_ATTEMPTS):
+        if run.done == job.steps:
+            found = {n: (x, run.radii[n]) for n, x in run.values.items()}
+            missing = max(_missing(n, *value, digits) for n, value in found.items())
+            if missing <= 0:
+                method = f"ball arithmetic with {_digits(own)} digits"
+                return Bounds(found, method, kind="enclosed", run=run)
+            wanted = _digits(own) + missing + 5
+        elif run.done == ended:
+            # Twice as many digits would have carried a ball that had only grown too wide further.
+            return Bounds({}, "ball arithmetic", "left range", run.done + 1)
+        else:
+            wanted, ended = 2 * _digits(own), run.done
+        if attempt + 1 < _ATTEMPTS:
+            own = number_systems.get(own.name, wanted)
+            run = job.go(own)
+    return Bounds({}, f"balls that grow too wide in {_digits(own)} digits", "unresolved")
 
 
 def _digits(own: Arithmetic) -> int:
     return own.bits * 30103 // 100000
 
 
-def _missing(value: Fraction, bound: Fraction, digits: int) -> int:
+def _missing(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
     """How many of the digits asked for are not known yet; a value of 0 may stay unknown."""
+    if name == "lambda_plain" and abs(value) <= bound:
+        value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
     if bound == 0 or value == 0:
         return 0
     return digits - (magnitude(value) - magnitude(2 * bound))

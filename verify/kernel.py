@@ -139,15 +139,25 @@ class _Writer:
             lines += self.accumulate("mse", "dj * dj")
         if "delta_j_max" in asked:
             self.carried.append(("top", 0))
-            lines += ["size = abs(dj)", "if size > top: top = size"]
+            lines += ["size = abs(dj)", self.keep_extreme("top", "size", ">")]
         if "extremes" in asked:
             self.carried += [("dj_low", 0), ("dj_high", 0), ("lam_low", 0), ("lam_high", 0)]
             for name, of in (("dj", "dj"), ("lam", "lam")):
                 lines += [
-                    f"if k == 0 or {of} < {name}_low: {name}_low = {of}",
-                    f"if k == 0 or {of} > {name}_high: {name}_high = {of}",
+                    self.keep_extreme(f"{name}_low", of, "<", first="k == 0 or "),
+                    self.keep_extreme(f"{name}_high", of, ">", first="k == 0 or "),
                 ]
         return lines + self.accumulate("p", value["dp"]) + self.accumulate("q", value["dq"])
+
+    def keep_extreme(self, name: str, of: str, order: str, first: str = "") -> str:
+        """The statement that makes `name` the least or greatest of what it was and of `of`."""
+        choose, opposite = {"<": ("minimum", ">="), ">": ("maximum", "<=")}[order]
+        if choose not in self.arithmetic.functions:
+            return f"if {first}{of} {order} {name}: {name} = {of}"
+        # Balls, of which neither may be certainly the greater: then the extreme is a third ball.
+        either = f"{choose}({of}, {name})"
+        value = f"{of} if k == 0 else {either}" if first else either
+        return f"if {first}not {of} {opposite} {name}: {name} = {value}"
 
     def accumulate(self, name: str, increment: str) -> list[str]:
         if name not in ("p", "q"):

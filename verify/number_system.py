@@ -19,7 +19,9 @@ class Arithmetic:
     is a condition on `{x}`, put into the loop, that holds while the orbit is in range (None where
     infinities propagate and are found afterwards). `pipelined`: independent operations overlap, so
     that latency counts and not their number. `chunk`: steps between looks at progress and
-    interruption. Two arithmetics of one name and precision are equal.
+    interruption. `radius`, where a number is an enclosure: how far from `exact` the true value may
+    be, and `minimum` and `maximum` are then among the functions. Two arithmetics of one name and
+    precision are equal.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Arithmetic:
     guard: str | None = field(compare=False)
     pipelined: bool = field(compare=False)
     chunk: int = field(compare=False)
+    radius: Callable[[Any], Fraction] | None = field(default=None, compare=False)
 
 
 ESCAPE_BITS = 4000  # where exponents have no end of their own, an orbit is stopped at |z| = 2^4000

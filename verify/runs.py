@@ -1,6 +1,6 @@
 """One run: N steps from (q, p) in one arithmetic, each value with its error bound.
 
-How the bounds are got is told in `verify.bounds`; so far they are estimates, and called so.
+How the bounds are got is told in `verify.bounds`: rigorous in ball arithmetic, else estimates.
 
 What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exactly 0; where ΔJ does not
 depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
@@ -10,8 +10,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-import flint
-
 from verify import arithmetic as number_systems
 from verify.balls import middle_and_radius
 from verify.bounds import Bounded, bounded, working_digits
@@ -20,6 +18,7 @@ from verify.errors import InputError
 from verify.exact import Exact, known_digits, positive, rational, text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
+from verify.precision import working_precision
 from verify.results import RunResult, Value
 from verify.schemes import get
 from verify.step_map import StepMap
@@ -63,6 +62,7 @@ def run(
     own = number_systems.get(arithmetic, working_digits(digits, steps))
     first = job.go(own, progress=progress)
     found = bounded(job, own, first, digits, known)
+    reported = found.run or first
     most = min(digits, 17) if own.name == "float64" else digits
     values = {
         n: _printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
@@ -82,11 +82,11 @@ def run(
         status=found.status,
         failed_step=found.failed_step,
         values=values,
-        error_kind="estimated",
+        error_kind=found.kind,
         error_method=found.method,
         exact=tuple(o for o in observables if o in known),
-        series=first.series,
-        seconds=first.seconds,
+        series=reported.series,
+        seconds=reported.seconds,
     )
 
 
@@ -122,7 +122,7 @@ def _proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)
     if delta_j is None:
         return {}
-    with flint.ctx.workprec(bits):
+    with working_precision(bits):
         lam = (1 + delta_j) ** steps - 1
         balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
         return {name: middle_and_radius(ball) for name, ball in balls.items()}

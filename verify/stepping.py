@@ -22,12 +22,16 @@ ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_pla
 
 @dataclass(frozen=True)
 class Outcome:
-    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done."""
+    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done.
+
+    `radii`: how far from the last of them the true values may be, where numbers are enclosures.
+    """
 
     done: int
     trail: tuple[dict[str, Fraction], ...]
     series: tuple[SeriesPoint, ...]
     seconds: float
+    radii: dict[str, Fraction]
 
     @property
     def values(self) -> dict[str, Fraction]:
@@ -102,7 +106,8 @@ class Job:
             if progress:
                 progress(done)
         seconds = time.perf_counter() - begun
-        return Outcome(done, tuple(trail), tuple(series), seconds)
+        radii = self.radii(kernel, arithmetic, state, done)
+        return Outcome(done, tuple(trail), tuple(series), seconds, radii)
 
     def finals(
         self, kernel: Kernel, arithmetic: Arithmetic, state: State, done: int
@@ -117,6 +122,18 @@ class Job:
             result["mse"] /= done
         if "lambda_plain" in result:
             result["lambda_plain"] -= 1
+        return result
+
+    def radii(
+        self, kernel: Kernel, arithmetic: Arithmetic, state: State, done: int
+    ) -> dict[str, Fraction]:
+        """How far each of `finals` may be from the true value, where numbers are enclosures."""
+        if arithmetic.radius is None or done < self.steps:
+            return {}
+        raw = {n: arithmetic.radius(x) for n, x in zip(kernel.carried, state, strict=True)}
+        result = {"p": raw["p"], "q": raw["q"]}
+        for name in self.observables & set(ACCUMULATORS):
+            result[name] = raw[ACCUMULATORS[name]] / (done if name == "mse" else 1)
         return result
 
 
@@ -153,10 +170,11 @@ def _point(
 ) -> SeriesPoint:
     """The extremes over the kernel calls that ended in these states."""
     at = [dict(zip(kernel.carried, state, strict=True)) for state in states]
+    exact, radius = arithmetic.exact, arithmetic.radius or (lambda _: Fraction(0))
 
     def pair(name: str) -> tuple[str, str]:
-        low = min(arithmetic.exact(x[f"{name}_low"]) for x in at)
-        high = max(arithmetic.exact(x[f"{name}_high"]) for x in at)
+        low = min(exact(x[f"{name}_low"]) - radius(x[f"{name}_low"]) for x in at)
+        high = max(exact(x[f"{name}_high"]) + radius(x[f"{name}_high"]) for x in at)
         return decimal(low, 7), decimal(high, 7)
 
     return SeriesPoint(first=first, last=last, delta_j=pair("dj"), lam=pair("lam"))
