@@ -1,10 +1,10 @@
 """Error bounds of runs: what rounding left of the digits.
 
 Balls: the run itself encloses the true values. Where the digits asked for are not all known, or the
-balls have grown so wide that nothing is, it is done again, in that case with twice the digits;
-where they then end at the same step, the orbit has left the range or the domain there, and where
-raising the precision does not end, the run is "unresolved". The other number systems' bounds are
-estimates.
+balls have grown so wide that nothing is, it is done again, in that case with twice the digits, and
+then with as many as the steps so far say that all of them cost. Where twice the digits end at the
+same step, the orbit has left the range or the domain there. Where too many digits or attempts would
+be needed, the run is "unresolved". The other number systems' bounds are estimates.
 
 float64, up to `DIRECT_STEPS` steps: held against mpfr from the exact inputs, at a precision that
 is itself confirmed. Beyond: against a compensated run (see `verify.kernel`), by four times the
@@ -40,6 +40,7 @@ REFERENCE = "mpfr"  # mpmath finds the same, and takes five to ten times as long
 _REFERENCE_DIGITS = 40
 _MORE_DIGITS = 15
 _ATTEMPTS = 6
+_MOST_TIMES = 64  # the first attempt's digits, beyond which a ball is given up
 _FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at every step
 _LINEAR = Fraction(1, 100)
 _STATE = ("p", "q")
@@ -178,24 +179,29 @@ def _resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
 
 def _enclosed(job: Job, own: Arithmetic, run: Outcome, digits: int) -> Bounds:
     """The values with the radii of their balls, by raising the precision until they are known."""
-    ended = None  # where the run before this one did
-    for attempt in range(_ATTEMPTS):
+    most, last = _MOST_TIMES * _digits(own), None
+    for attempt in range(1, _ATTEMPTS + 1):
+        has, wanted = _digits(own), 2 * _digits(own)
         if run.done == job.steps:
             found = {n: (x, run.radii[n]) for n, x in run.values.items()}
             missing = max(_missing(n, *value, digits) for n, value in found.items())
             if missing <= 0:
-                method = f"ball arithmetic with {_digits(own)} digits"
+                method = f"ball arithmetic with {has} digits"
                 return Bounds(found, method, kind="enclosed", run=run)
-            wanted = _digits(own) + missing + 5
-        elif run.done == ended:
+            wanted = has + missing + 5
+        elif last and last[1] == run.done:
             # Twice as many digits would have carried a ball that had only grown too wide further.
             return Bounds({}, "ball arithmetic", "left range", run.done + 1)
-        else:
-            wanted, ended = 2 * _digits(own), run.done
-        if attempt + 1 < _ATTEMPTS:
-            own = number_systems.get(own.name, wanted)
-            run = job.go(own)
-    return Bounds({}, f"balls that grow too wide in {_digits(own)} digits", "unresolved")
+        elif last:  # about evenly, steps cost digits
+            steps, spent = run.done - last[1], has - last[0]
+            wanted = max(wanted, has + (job.steps - run.done) * spent // steps)
+        if wanted > most or attempt == _ATTEMPTS:
+            break
+        last = has, run.done
+        own = number_systems.get(own.name, wanted)
+        run = job.go(own)
+    method = f"balls that grow too wide in {has} digits; {wanted} would be tried next"
+    return Bounds({}, method, "unresolved")
 
 
 def _digits(own: Arithmetic) -> int:

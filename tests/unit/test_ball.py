@@ -147,10 +147,12 @@ def test_precision_is_raised_until_the_digits_asked_for_are_known() -> None:
     assert int(found.error_method.split()[-2]) > 100, "digits enough to lose a hundred"
 
 
-def test_where_precision_is_raised_in_vain_no_digit_is_given() -> None:
+def test_what_would_need_too_many_digits_is_given_none_and_says_how_many() -> None:
     found = run(PENDULUM, "symplectic-euler", **CHAOTIC, steps=8000, arithmetic="ball", digits=5)
     assert (found.status, found.error_kind, found.values) == ("unresolved", "estimated", {})
     assert "too wide" in found.error_method
+    wanted = int(found.error_method.split(";")[1].split()[0])
+    assert 3000 < wanted < 9000, "K = 4 costs log10(2) to log10(6) digits a step"
 
 
 def test_the_number_of_attempts_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
