@@ -39,6 +39,7 @@ import flint
 from verify.balls import bounds, rational_ball
 from verify.derivatives import Derivatives
 from verify.number_system import Arithmetic
+from verify.precision import working_precision
 from verify.rounding import FLOAT, PRECISION, Ball, Rounded, Rounding, analyse, rounding_of
 from verify.stepping import Job, Outcome
 
@@ -69,7 +70,7 @@ def certify_at(
     job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int
 ) -> dict[str, Fraction] | None:
     """`certify` for the values at one of the run's checkpoints."""
-    with flint.ctx.workprec(PRECISION):
+    with working_precision(PRECISION):
         found = _Certificate(job, arithmetic, outcome, note).bounds()
     return found
 

@@ -206,14 +206,14 @@ class _Writer:
             lines += self.accumulate("mse", "dj * dj")
         if "delta_j_max" in asked:
             self.carry("top", 0)
-            lines += ["size = abs(dj)", "if size > top: top = size"]
+            lines += ["size = abs(dj)", self.keep_extreme("top", "size", ">")]
         if "extremes" in asked:
             for name, kind in (("dj", "wide"), ("lam", "sum")):
                 self.carry(f"{name}_low", 0, kind)
                 self.carry(f"{name}_high", 0, kind)
                 lines += [
-                    f"if k == 0 or {name} < {name}_low: {name}_low = {name}",
-                    f"if k == 0 or {name} > {name}_high: {name}_high = {name}",
+                    self.keep_extreme(f"{name}_low", name, "<", first="k == 0 or "),
+                    self.keep_extreme(f"{name}_high", name, ">", first="k == 0 or "),
                 ]
         if self.tangent:
             for name, start in tangent.CARRIED:
@@ -239,6 +239,16 @@ class _Writer:
                 self.carry(end, 0)
                 lines.append(f"if {product} {relation} {end}: {end} = {product}")
         return lines
+
+    def keep_extreme(self, name: str, of: str, order: str, first: str = "") -> str:
+        """The statement that makes `name` the least or greatest of what it was and of `of`."""
+        choose, opposite = {"<": ("minimum", ">="), ">": ("maximum", "<=")}[order]
+        if choose not in self.arithmetic.functions:
+            return f"if {first}{of} {order} {name}: {name} = {of}"
+        # Balls, of which neither may be certainly the greater: then the extreme is a third ball.
+        either = f"{choose}({of}, {name})"
+        value = f"{of} if k == 0 else {either}" if first else either
+        return f"if {first}not {of} {opposite} {name}: {name} = {value}"
 
     def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
         self.carried.append((name, kind, start))

@@ -14,6 +14,7 @@ import flint
 
 from verify.balls import rational_ball
 from verify.kernel import Kernel
+from verify.precision import working_precision
 from verify.rounding import PRECISION, Ball, Rounded, analyse
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
@@ -43,7 +44,7 @@ def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
     def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
         return _room(kernel, inputs, p, q, value)
 
-    with flint.ctx.workprec(PRECISION):
+    with working_precision(PRECISION):
         for value in _VALUE_LIMITS:
             for common in _SIDES:
                 if safe(common, common, value) is None:

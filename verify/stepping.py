@@ -1,6 +1,6 @@
 """Stepping: a job of N steps, in chunks, in whatever arithmetic it is given."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -22,6 +22,7 @@ class Outcome:
     """A run's numbers as exact rationals, at checkpoints on its way and at the last step done.
 
     `tangents` has what `verify.tangent.NAMES` names, at the same checkpoints; `kernel` made them.
+    `radii`: how far from the last values the true ones may be, where numbers are enclosures.
     `reason` says why the run ended early, where that is the number format's doing.
     """
 
@@ -31,6 +32,7 @@ class Outcome:
     series: tuple[SeriesPoint, ...]
     seconds: float
     kernel: Kernel | None
+    radii: Mapping[str, Fraction]
     reason: str = ""
 
     @property
@@ -39,7 +41,7 @@ class Outcome:
 
 
 _NOWHERE = Outcome(
-    0, (), (), (), 0.0, None, "an operation of the first step may leave the range of fixed"
+    0, (), (), (), 0.0, None, {}, "an operation of the first step may leave the range of fixed"
 )
 
 
@@ -150,7 +152,7 @@ class Job:
 
         def outcome() -> Outcome:
             return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
-                           walk.seconds, kernel)  # fmt: skip
+                           walk.seconds, kernel, walk.radii())  # fmt: skip
 
         try:
             for done in walk.chunks():

@@ -101,10 +101,12 @@ class Walk:
 
     def _note(self) -> None:
         raw = {n: self._exact(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
-        for name in _EXTREMES:
-            if name in raw:
-                choose = min if name.endswith("low") else max
-                self._seen[name] = choose(raw[name], self._seen.get(name, raw[name]))
+        radius = self.arithmetic.radius or (lambda _: Fraction(0))
+        for name, x in zip(self.kernel.carried, self.state, strict=True):
+            if name in _EXTREMES:
+                low = name.endswith("low")
+                end = raw[name] - radius(x) if low else raw[name] + radius(x)
+                self._seen[name] = (min if low else max)(end, self._seen.get(name, end))
         if self.done % self.section and self.done < self.job.steps:
             return
         self.trail.append(self._finals(raw))
@@ -136,6 +138,18 @@ class Walk:
             result["lambda_plain"] -= 1
         return result
 
+    def radii(self) -> dict[str, Fraction]:
+        """How far the last values may be from the true ones, where numbers are enclosures."""
+        radius = self.arithmetic.radius
+        if radius is None or self.done < self.job.steps:
+            return {}
+        raw = {n: radius(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
+        names = self.job.observables & set(_ACCUMULATORS)
+        found = {"p": raw["p"], "q": raw["q"]} | {n: raw[_ACCUMULATORS[n]] for n in names}
+        if "mse" in found:
+            found["mse"] /= self.done
+        return found
+
     def _point(self, first: int) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:
             ends = (self._seen[f"{name}_{end}"] for end in ("low", "high"))
@@ -148,6 +162,8 @@ class Walk:
 
     def keep(self) -> None:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
+        if self.arithmetic.radius is not None:
+            return  # a ball's radius is not kept; such runs are short
         data = {
             "done": self.done,
             "seconds": self.seconds,
