@@ -23,7 +23,7 @@ loses some 20 digits and not thousands. The quadratic term is closed by a bootst
 twice the bound without it; if with E* in it the bound is at most E*, then by induction over k it
 holds for all k. (Norms are Euclidean and Frobenius; S ≤ (N Σ ‖M_k‖²)^½.)
 
-Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = ΔJ/h^r over the box
+Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
 and η its rounding; their sum bounds how log(1 + Λ) moves. The rounding of the sums themselves is
 counted
 once per step, and multiplied in Λ by the greatest ratio of two of its factors, κ = (1 + max Λ)/(1 +
@@ -79,6 +79,7 @@ class _Certificate:
     def __init__(self, job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
         self.job, self.arithmetic, self.kernel = job, arithmetic, outcome.kernel
+        self.shift = outcome.shift
         self.rounding = rounding_of(arithmetic)
         self.steps = int(outcome.tangents[note]["done"])
         self.values = outcome.trail[note]
@@ -127,7 +128,7 @@ class _Certificate:
         """The state, which is data and has no error, and h and the parameters as rounded."""
         given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
         unit = flint.arb(2) ** -self.arithmetic.bits
-        for name, exact in self.job.inputs(self.kernel).items():
+        for name, exact in self.job.inputs(self.kernel, self.shift).items():
             x = rational_ball(exact)
             held = self.arithmetic.exact(self.arithmetic.number(exact)) == exact
             size = flint.arb(1) if self.arithmetic.absolute else abs(x)
@@ -197,10 +198,8 @@ class _Certificate:
         asked, count = self.job.observables, self.steps
         if not asked & {"delta_j_max", "mse", "lambda"}:
             return {}
-        scale = self.h**self.kernel.power
-        slope = self.derivatives.gradient(
-            self.values_of_inputs(), self.box(error), self.kernel.power
-        )
+        scale = flint.arb(2) ** -self.shift
+        slope = self.derivatives.gradient(self.values_of_inputs(), self.box(error)) / scale
         moved = slope * summed + count * steps.delta_j  # Σ |D̂_k − D(z_k)|
         size = steps.size + slope * error
         result = {}
@@ -230,11 +229,9 @@ class _Certificate:
         # log(1 + Λ) moves by Σ |δ_k| / (1 − |ΔJ|).
         shift = ((scale * moved) / (1 - jump)).expm1() * (1 + high)
         ratio = (1 + high + unit) / (1 + low - unit) * 2
-        grown = size * (1 + largest)
         if self.arithmetic.absolute:
-            # D Λ and h^r (D + D Λ) are rounded, and h^r itself; Λ as a factor feels all of it.
-            scale_error = unit * 4 * (1 + self.kernel.power)
-            factor = ratio * count * (scale * unit + unit + scale_error * grown)
+            # D Λ is rounded, and 2^−s (D + D Λ) is cut; Λ as a factor feels both.
+            factor = ratio * count * (scale * unit + unit)
             return shift + scale * (count * unit + count * size * factor) + scale * count * unit
         each = unit * (largest + 4 * jump * (1 + largest)) * 2
         return shift + ratio * count * each

@@ -76,10 +76,8 @@ def _room(
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ may reach: D (1 + Λ) and h^r D (1 + Λ) + Λ stay below 2^15."""
-    scale = size.get("scale", flint.arb(0))
+    """The power of two that Λ may reach: D (1 + Λ) and Λ + D (1 + Λ) stay below 2^15."""
     for n in range(13, -1, -1):
-        grown = size["dj"] * (1 + 2**n)
-        if grown < 2**14 and scale * grown < 2**14:
+        if size["dj"] * (1 + 2**n) < 2**14:
             return Fraction(2**n)
     return None
