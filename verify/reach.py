@@ -24,7 +24,7 @@ _SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1
 
 @dataclass(frozen=True)
 class Limits:
-    """What p, q, Λ and the values of functions stay below in size; see `verify.kernel.LIMITS`."""
+    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `verify.kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -76,10 +76,11 @@ def _room(
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ may reach: D (1 + Λ) and h^r D (1 + Λ) + Λ stay below 2^15."""
-    scale = size.get("scale", flint.arb(0))
+    """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
+    h^r D (1 + Λ) + Λ and the next product stay below 2^15."""
+    scale, determinant = (size.get(name, flint.arb(0)) for name in ("scale", "det"))
     for n in range(13, -1, -1):
         grown = size["dj"] * (1 + 2**n)
-        if grown < 2**14 and scale * grown < 2**14:
+        if all(x < 2**14 for x in (grown, scale * grown, determinant * 2**n)):
             return Fraction(2**n)
     return None
