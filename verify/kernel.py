@@ -123,7 +123,7 @@ class Writer:
         scope = {
             **self.arithmetic.functions,
             **self.lowering.named_constants(self.arithmetic.number),
-            **(self.tangent.lowering.named_constants(float) if self.tangent else {}),
+            **(self.tangent.lowering.named_constants(tangent.number) if self.tangent else {}),
         }
         names, kinds, start = zip(*self.carried, strict=True)
         return Kernel(
@@ -300,8 +300,8 @@ class Writer:
             template = self.arithmetic.guard
             return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
         looked_at = {"p": "reach_p", "q": "reach_q"}
-        if any(name == "part" for name, _, _ in self.carried):
-            looked_at["part"] = "reach_part"
+        products = [name for name, _, _ in self.carried if name in ("part", "plain")]
+        looked_at |= dict.fromkeys(products, "reach_part")
         for index in self.lowering.live(needed):
             if self.program.ops[index].kind in PARTIAL:
                 looked_at[self.lowering.name(index)] = "reach_value"

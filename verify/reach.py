@@ -24,7 +24,7 @@ _SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1
 
 @dataclass(frozen=True)
 class Limits:
-    """What p, q, Λ and the values of functions stay below in size; see `verify.kernel.LIMITS`."""
+    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `verify.kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -76,8 +76,10 @@ def _room(
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ may reach: D (1 + Λ) and Λ + D (1 + Λ) stay below 2^15."""
+    """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
+    D (1 + Λ) + Λ and the next product stay below 2^15."""
+    determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
-        if size["dj"] * (1 + 2**n) < 2**14:
+        if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:
             return Fraction(2**n)
     return None

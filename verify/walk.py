@@ -54,7 +54,7 @@ class Walk:
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
-            state.append(float(value) if kind == "float" else number(value))
+            state.append(tangent.number(value) if kind == "float" else number(value))
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------

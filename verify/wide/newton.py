@@ -16,7 +16,7 @@ _LEAST_DIVISOR = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
-    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^(64−W)·2^−48."""
+    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^−101."""
     width = x.type.width
     high = b.sitofp(limbs.limb(b, x, width // 64 - 1), DOUBLE)
     low = b.uitofp(limbs.limb(b, x, width // 64 - 2), DOUBLE)

@@ -9,8 +9,9 @@ is first assigned to it, an argument's is its annotation:
 - `float` IEEE double precision; `int` a 64-bit integer.
 
 `wide(x)` takes a float64 exactly, `approx(x)` goes back to the nearest float64 or its neighbour.
-The name `valid` is true in a pass of the loop as long as every function had a value;
-`inside(x, limit)` is |x| < limit, seen from the highest limbs, and `shifted(x, s)` is x/2^s.
+The name `valid` is true in a pass of the loop as long as every function had a value, in the pass
+and before the loop; `inside(x, limit)` is |x| < limit, seen from the highest limbs, and
+`shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -51,7 +52,7 @@ class Translator:
         main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "main")
         self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
         self.b = ir.IRBuilder(main.append_basic_block("body"))
-        self._assign_valid(True)
+        self._assign("valid", ir.Constant(BOOL, 1))
         offset = 0
         for name, kind in self.arguments:
             value, offset = self._read(main.args[0], offset, kind)
@@ -94,9 +95,6 @@ class Translator:
             value = self._to(value, target)
         self.b.store(value, self._variables[name])
 
-    def _assign_valid(self, value: bool) -> None:
-        self._assign("valid", ir.Constant(BOOL, int(value)))
-
     # -- statements ---------------------------------------------------------------------------
 
     def _block(self, statements: list[ast.stmt]) -> None:
@@ -131,13 +129,14 @@ class Translator:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
+        before = self._load("valid")
         head, body, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
-        self._assign_valid(True)
+        self._assign("valid", before)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
