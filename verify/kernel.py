@@ -51,10 +51,10 @@ def kernel_for(
 ) -> Kernel:
     """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once."""
     step_map = get(scheme).step_map(hamiltonian)
-    return _Writer(step_map, arithmetic, observables, compensated).kernel()
+    return Writer(step_map, arithmetic, observables, compensated).kernel()
 
 
-class _Writer:
+class Writer:
     """Writes the source of one kernel."""
 
     def __init__(

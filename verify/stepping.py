@@ -88,7 +88,7 @@ class Job:
             count = min(arithmetic.chunk, sections - done % sections, self.steps - done)
             after = advance(kernel, arithmetic, fixed, state, count)
             if after is None:
-                done += _last_good(kernel, arithmetic, fixed, state, count)
+                done += last_good(kernel, arithmetic, fixed, state, count)
                 break
             state = after
             extremes.append(state)
@@ -133,7 +133,7 @@ def advance(
     return tuple(after)
 
 
-def _last_good(
+def last_good(
     kernel: Kernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
 ) -> int:
     """The greatest number of steps below `count` that stays in range, by bisection."""
