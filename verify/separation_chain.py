@@ -1,9 +1,9 @@
 """The whole chain Λ₀ … Λ₄ for one step size, and its parts; see `verify.separation`.
 
 What is known is not run. Where the proof gives ΔJ ≡ 0, Λ₀, Λ₁ and Λ₂ are exactly 0; where ΔJ does
-not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁. Where every input is a float64, Λ₁ = Λ₀; after
-one step Λ₂ = Λ₁, for the first ΔJ is taken at the initial value. Equal links are one object, and
-the part between them is exactly 0.
+not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁. Where every input is a float64, Λ₁ = Λ₀;
+after one step Λ₂ = Λ₁, for the first ΔJ is taken at the initial value. Equal links are one object,
+and the part between them is exactly 0.
 """
 
 import copy
@@ -20,9 +20,16 @@ from verify.exact import magnitude
 from verify.hamiltonian import Hamiltonian
 from verify.runs import proved
 from verify.schemes import get
-from verify.separation_working import POINTS, Kind, Link, Stopped, WorkingRun, exact_link
+from verify.separation_working import (
+    POINTS,
+    Kind,
+    Link,
+    Stopped,
+    WorkingRun,
+    exact_link,
+    rounded_inputs,
+)
 from verify.separation_working import marks as marks_of
-from verify.separation_working import rounded_inputs
 from verify.step_map import StepMap
 from verify.stepping import Job
 
@@ -165,9 +172,7 @@ def _rounded_map(exact: StepMap, rounded: Job) -> StepMap | None:
         return None
 
 
-def _reference(
-    job: Job, arithmetic: str, digits: int, advance: Callable[[int], None]
-) -> Link:
+def _reference(job: Job, arithmetic: str, digits: int, advance: Callable[[int], None]) -> Link:
     """Λ in exact arithmetic's stead, to so many digits; Stopped where a run cannot give it."""
     own = number_systems.get(arithmetic, working_digits(digits, job.steps))
     last = 0

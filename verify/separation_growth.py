@@ -22,17 +22,23 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Literal
 
 from verify.balls import slope
 
-WALK, DRIFT = "random walk", "drift"
-UNDECIDED = "undecided"
+Name = Literal["random walk", "drift", "undecided"]
 _FIRST = 8  # values that a maximum is taken of, at least
 _MOST = 32  # checkpoints of a fit
 _LEAST = 5
 _DECADES = 1.5
 _ABOVE = 10  # times the error bound
 _WANDERING = 1.65
+_NAMED: dict[tuple[bool, bool], tuple[Name, str]] = {  # by whether the interval holds ½, and 1
+    (True, False): ("random walk", "½"),
+    (False, True): ("drift", "1"),
+    (True, True): ("undecided", "both ½ and 1"),
+    (False, False): ("undecided", "neither ½ nor 1"),
+}
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,7 @@ class Growth:
 
     exponent: float | None
     standard_error: float | None
-    name: str
+    name: Name
     reason: str
     first: int
     last: int
@@ -77,13 +83,12 @@ def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) ->
             f"{len(chosen)} checkpoints above noise over {reach / math.log(10):.1f} decades of N; "
             f"a fit takes {_LEAST} over {_DECADES}"
         )
-        return Growth(None, None, UNDECIDED, reason, first, last, len(chosen))
+        return Growth(None, None, "undecided", reason, first, last, len(chosen))
     found, scatter = slope([(math.log(marks[k]), log(tops[k])) for k in chosen])
     error = max(scatter, _WANDERING * reach**-1.5)
-    holds = [name for name, at in ((WALK, 0.5), (DRIFT, 1.0)) if abs(found - at) <= 2 * error]
-    name = holds[0] if len(holds) == 1 else UNDECIDED
-    said = {0: "neither ½ nor 1", 1: "½" if name == WALK else "1", 2: "both ½ and 1"}
-    reason = f"{found:.3f} ± 2·{error:.3f} holds {said[len(holds)]}"
+    walk, drift = (abs(found - at) <= 2 * error for at in (0.5, 1.0))
+    name, holds = _NAMED[walk, drift]
+    reason = f"{found:.3f} ± 2·{error:.3f} holds {holds}"
     return Growth(found, error, name, reason, first, last, len(chosen))
 
 

@@ -5,7 +5,7 @@ lowers them, so that the same operations are rounded in the same order, and stat
 products agree with it bit for bit. At each float64 state z̃_k the `wide` lines, in an arithmetic of
 high precision, evaluate what the chain of `verify.separation` asks for:
 
-    w_trajectory   Λ ← Λ + ΔJ(z̃_k) + Λ ΔJ(z̃_k), the step map's own ΔJ, exactly, at h̃ and parameters ã
+    w_trajectory   Λ ← Λ + ΔJ(z̃_k) + Λ ΔJ(z̃_k), the step map's own ΔJ, exactly, at rounded inputs
     w_determinant  the same with d̃_k − 1, d̃_k the determinant that float64 found
     w_closed       the same with the ΔJ that float64 found from the closed form
     f_plain        Π d̃_k in float64

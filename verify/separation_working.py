@@ -124,9 +124,7 @@ class WorkingRun:
 
     # -- stepping -----------------------------------------------------------------------------
 
-    def _states(
-        self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance
-    ) -> list[State]:
+    def _states(self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance) -> list[State]:
         """What the kernel carries, at every checkpoint."""
         given = [self.inputs[n] for n in ("h", *kernel.parameters)]
         fixed = [*given, *(arithmetic.number(Fraction(x)) for x in given)]
@@ -170,9 +168,7 @@ class WorkingRun:
         return found
 
     def _box(self, kernel: MixedKernel, last: State) -> dict[str, tuple[Fraction, Fraction]]:
-        box = {
-            n: (Fraction(last[f"f_{n}_low"]), Fraction(last[f"f_{n}_high"])) for n in ("p", "q")
-        }
+        box = {n: (Fraction(last[f"f_{n}_low"]), Fraction(last[f"f_{n}_high"])) for n in ("p", "q")}
         for k, name in enumerate(kernel.parameters):
             box[f"x{k}"] = (Fraction(self.inputs[name]),) * 2
         return box | {"h": (Fraction(self.inputs["h"]),) * 2}
