@@ -1,6 +1,6 @@
-"""Error bounds of runs, estimated: what float64 or mpmath left of the digits.
+"""Error bounds of runs, estimated: what rounding left of the digits.
 
-float64, up to `DIRECT_STEPS` steps: held against mpmath from the exact inputs, at a precision that
+float64, up to `DIRECT_STEPS` steps: held against mpfr from the exact inputs, at a precision that
 is itself confirmed. Beyond: against a compensated run (see `verify.kernel`), by four times the
 greatest difference at any of the checkpoints on the way, p and q taken together, since a single
 difference may be small by chance. That leaves the rounding of h, the parameters and the initial
@@ -9,8 +9,8 @@ rounding of N ≥ 20,000 states shifts it by about √N·T·2⁻⁵³/5; where t
 a separatrix, every rounding counts alike, and the states' are N to one. Where the two orbits differ
 by more than their size no value is given.
 
-mpmath: held against a rerun with 15 more digits, at a precision that is raised until the digits
-asked for stand. A rerun confirms a run only where the two differ little: once the first has lost
+Every other arithmetic: held against a rerun with 15 more digits, at a precision that is raised
+until the digits asked for stand. A rerun confirms a run only where the two differ little: once the first has lost
 every digit, as on a chaotic orbit, the second may have lost as many more. So where they differ by
 more than `_LINEAR` of the orbit's size the precision is doubled instead; where that does not end,
 the run is "unresolved" and no value is given. An estimate is no certificate, and is called
@@ -30,6 +30,7 @@ DIRECT_STEPS = 20_000
 Bounded = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
 Status = Literal["finished", "left range", "unresolved"]
 
+REFERENCE = "mpfr"  # mpmath finds the same, and takes five to ten times as long
 _REFERENCE_DIGITS = 40
 _MORE_DIGITS = 15
 _ATTEMPTS = 6
@@ -53,16 +54,25 @@ def working_digits(digits: int, steps: int) -> int:
     return digits + 10 + 2 * len(str(steps))
 
 
-def bounded(job: Job, own: Arithmetic, first: Outcome, digits: int, known: Bounded) -> Bounds:
+def bounded(
+    job: Job,
+    own: Arithmetic,
+    first: Outcome,
+    digits: int,
+    known: Bounded,
+    reference: str = REFERENCE,
+) -> Bounds:
     """The values of the run `first` of the job with their bounds.
 
-    `known`: what a proof gives for observables that were not run.
+    `known`: what a proof gives for observables that were not run. `reference`: the arithmetic that
+    float64 is held against.
     """
     if own.name != "float64":
         return _resolved(job, own, first, digits)
     if first.done < job.steps:
         return Bounds({}, "none", "left range", first.done + 1)
-    found = _against_mpmath(job, first) if job.steps <= DIRECT_STEPS else _compensated(job, first)
+    direct = job.steps <= DIRECT_STEPS
+    found = _against(job, first, reference) if direct else _compensated(job, first)
     values = dict(found.values)
     better = (known | values).get("lambda")
     if "lambda_plain" in values and better:
@@ -72,10 +82,10 @@ def bounded(job: Job, own: Arithmetic, first: Outcome, digits: int, known: Bound
     return Bounds(values, found.method, found.status, found.failed_step)
 
 
-def _against_mpmath(job: Job, first: Outcome) -> Bounds:
-    reference = number_systems.get("mpmath", working_digits(_REFERENCE_DIGITS, job.steps))
+def _against(job: Job, first: Outcome, name: str) -> Bounds:
+    reference = number_systems.get(name, working_digits(_REFERENCE_DIGITS, job.steps))
     second = job.go(reference)
-    method = f"rerun in mpmath with {_REFERENCE_DIGITS} digits"
+    method = f"rerun in {name} with {_REFERENCE_DIGITS} digits"
     if second.done == job.steps and _spread(first, second) < _LINEAR:
         return Bounds(_differences(first, second.values, job.steps), method)
     # float64 has lost every digit, so the reference has lost many: is it good for the rest?

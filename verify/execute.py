@@ -22,7 +22,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from verify.bounds import DIRECT_STEPS
+from verify.bounds import DIRECT_STEPS, REFERENCE
 from verify.exact import text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
@@ -36,10 +36,10 @@ from verify.step_map import grouped
 Result = ProofResult | RunResult
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
-_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
+_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
 # In float64 steps; an arithmetic that is not listed counts as one in between.
-_STEP_COST = {"float64": 1, "mpmath": 3000}
+_STEP_COST = {"float64": 1, "mpfr": 300, "mpmath": 3000}
 
 
 def perform(task: Task) -> Result:
@@ -178,7 +178,7 @@ def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
-        return task.steps * _STEP_COST.get("mpmath" if checked else task.arithmetic, 500)
+        return task.steps * _STEP_COST.get(REFERENCE if checked else task.arithmetic, 500)
     return 1
 
 

@@ -202,8 +202,9 @@ class Writer:
 
     def pair(self, index: int, live: set[int], written: set[int]) -> str | None:
         """cos and sin of one argument in one call, where the arithmetic has that."""
-        op = self.program.ops[index]
-        if op.kind not in ("cos", "sin") or "cos_sin" not in self.arithmetic.functions:
+        op, functions = self.program.ops[index], self.arithmetic.functions
+        both = next((f for f in ("cos_sin", "sin_cos") if f in functions), None)
+        if op.kind not in ("cos", "sin") or both is None:
             return None
         found = {
             self.program.ops[i].kind: i
@@ -213,7 +214,8 @@ class Writer:
         if len(found) < 2:
             return None
         written |= set(found.values())
-        return f"v{found['cos']}, v{found['sin']} = cos_sin(v{op.args[0]})"
+        first, second = (found[kind] for kind in both.split("_"))
+        return f"v{first}, v{second} = {both}(v{op.args[0]})"
 
     def operation(self, index: int) -> str:
         op = self.program.ops[index]

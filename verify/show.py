@@ -108,7 +108,7 @@ def print_run(result: "RunResult") -> None:
     if result.status != "finished":
         click.echo(
             f"at step {result.failed_step} the orbit leaves the domain of H or the range of "
-            f"{result.arithmetic} (mpmath is stopped beyond 2^4000)"
+            f"{result.arithmetic} (other than float64 stops beyond 2^4000)"
         )
         return
     for name, label in _LABELS.items():

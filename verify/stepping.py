@@ -78,7 +78,7 @@ class Job:
         fixed = [number(self.start["h"]), *(number(self.parameters[n]) for n in kernel.parameters)]
         state: State = tuple(number(self.start[n]) for n in ("p", "q"))
         state += tuple(number(Fraction(x)) for x in kernel.start)
-        kernel.function(0, *fixed, *state)  # compiles, so that `seconds` is the stepping alone
+        advance(kernel, arithmetic, fixed, state, 0)  # compiles: `seconds` is the stepping alone
         sections = -(-self.steps // (self.points or _CHECKPOINTS))  # steps of a section
         series: list[SeriesPoint] = []
         trail: list[dict[str, Fraction]] = []
@@ -125,8 +125,9 @@ def advance(
 ) -> State | None:
     """The state after `count` steps, or None where a number left the arithmetic's range."""
     try:
-        done, *after = kernel.function(count, *fixed, *state)
-    except (ArithmeticError, ValueError):  # mpmath: a pole, or the log or root of a negative
+        with arithmetic.context():
+            done, *after = kernel.function(count, *fixed, *state)
+    except (ArithmeticError, ValueError):  # not float64: a pole, or the log or root of a negative
         return None
     if done < count or not all(arithmetic.finite(x) for x in after):
         return None

@@ -126,7 +126,7 @@ def test_estimated_bounds_hold_for_many_steps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("steps", "count"), [(2_000, 30), (DIRECT_STEPS + 1, 120)], ids=["by-mpmath", "compensated"]
+    ("steps", "count"), [(2_000, 30), (DIRECT_STEPS + 1, 120)], ids=["by-mpfr", "compensated"]
 )
 def test_estimated_bounds_hold_for_every_one_of_many_random_runs(steps: int, count: int) -> None:
     draw = random.Random(4)  # noqa: S311 - repeatable, not secret

@@ -14,8 +14,8 @@ import pytest
 from mpmath.ctx_mp import MPContext
 
 from verify import arithmetic
-from verify.arithmetic.mpmath import ESCAPE_BITS
 from verify.hamiltonian import Hamiltonian
+from verify.number_system import ESCAPE_BITS
 from verify.results import RunResult
 from verify.runs import ASKED, CLOSED_FORM, run
 
@@ -134,7 +134,7 @@ def test_an_orbit_whose_escape_depends_on_rounding_is_given_no_digit(
     assert not found.values
 
 
-@pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpmath", "compensated"])
+@pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpfr", "compensated"])
 @pytest.mark.parametrize("h", ["1e-60", "1e-400"])
 def test_an_underflow_is_not_given_as_an_exact_zero(steps: int, h: str) -> None:
     """ΔJ is about 1.5 h³, so that ΔJ², or ΔJ itself, is too small for float64, and is not 0."""
@@ -278,6 +278,17 @@ def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
     assert len(compiled[0].signatures) == 1, "numba compiled it for one set of types"
     run(fresh.with_values({"a": 1, "b": 0}), "lie3", q=1, p=0, step_size="0.1", steps=50)
     assert len(compiled) == 2, "a vanishing term has a kernel of its own"
+
+
+@pytest.mark.parametrize("name", ["float64", "mpmath"])
+def test_a_map_that_is_not_defined_at_the_step_size_leaves_the_range_at_once(name: str) -> None:
+    """What does not depend on the state is computed before the loop, and may fail there."""
+    scheme = "p_next = p - h*q/(1 - 10*h); q_next = q + h*p"
+    at: dict[str, Any] = {"q": 1, "p": 0, "steps": 3, "arithmetic": name}
+    found = run(Hamiltonian.parse("p**2/2 + q**2/2"), scheme, step_size="0.1", **at)
+    assert (found.status, found.failed_step, found.values) == ("left range", 1, {})
+    defined = run(Hamiltonian.parse("p**2/2 + q**2/2"), scheme, step_size="0.2", **at)
+    assert defined.status == "finished"
 
 
 def test_the_observables_asked_for_are_those_that_come_back() -> None:

@@ -6,6 +6,7 @@ overflow give infinities and NaN, which the run finds.
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from fractions import Fraction
 from typing import Any
 
@@ -22,6 +23,7 @@ def make(digits: int) -> Arithmetic:
         number=_number,
         exact=Fraction,
         finite=math.isfinite,
+        context=nullcontext,
         functions={
             **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
             "sqrt": math.sqrt,

@@ -3,23 +3,22 @@
 The global `mpmath.mp` is neither used nor changed.
 """
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from contextlib import nullcontext
 from fractions import Fraction
 from typing import Any
 
 from mpmath import libmp
 from mpmath.ctx_mp import MPContext
 
-from verify.number_system import Arithmetic
+from verify.number_system import ESCAPE_BITS, Arithmetic, bits_for, interpreted
 
 NAME = "mpmath"
-ESCAPE_BITS = 4000  # an orbit with |z| ≥ 2^4000 is stopped: exponents could grow without end
 
 
 def make(digits: int) -> Arithmetic:
     """mpmath with the bits for `digits` decimal digits."""
-    return at_bits(math.ceil(digits * math.log2(10)) + 1)
+    return at_bits(bits_for(digits))
 
 
 def at_bits(bits: int) -> Arithmetic:
@@ -46,15 +45,17 @@ def at_bits(bits: int) -> Arithmetic:
         number=number,
         exact=_exact,
         finite=lambda x: bool(context.isfinite(x)),
+        context=nullcontext,
         functions={
             **{f: getattr(context, f) for f in names},
             **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
             "cos_sin": context.cos_sin,
             "pi": +context.pi,
-            "escape": context.ldexp(1, ESCAPE_BITS),
         },
-        compile=_compile,
-        guard="-escape < {x} < escape",
+        compile=interpreted,
+        # |x| < 2^ESCAPE_BITS, read from x = mantissa · 2^exponent and the mantissa's bits: a
+        # comparison of two numbers takes twenty times as long.
+        guard=f"{{x}}._mpf_[2] + {{x}}._mpf_[3] <= {ESCAPE_BITS}",
         pipelined=False,
         chunk=1 << 12,
     )
@@ -64,10 +65,3 @@ def _exact(x: Any) -> Fraction:
     sign, mantissa, exponent, _ = x._mpf_
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return Fraction(-size if sign else size)
-
-
-def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    scope = dict(namespace)
-    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
-    function: Callable[..., Any] = scope[name]
-    return function
