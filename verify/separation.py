@@ -35,7 +35,7 @@ from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.exact import Exact, decimal, known_digits, positive, rational, text
+from verify.exact import Exact, known_digits, positive, rational, text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.results import (
@@ -127,13 +127,23 @@ def separate_grid(
     Raises InputError as `separate` does, and where a step size is given twice, or not exactly one
     of `steps` and `time` is given.
     """
+    counts = grid(step_sizes, steps, time)
+    for _, count in counts:
+        check(hamiltonian, count, digits, ())  # before the first of them is run
     points = [
         separate(
-            hamiltonian, scheme, q=q, p=p, step_size=h, steps=n, digits=digits,
-            arithmetic=arithmetic, progress=progress,
+            hamiltonian,
+            scheme,
+            q=q,
+            p=p,
+            step_size=h,
+            steps=count,
+            digits=digits,
+            arithmetic=arithmetic,
+            progress=progress,
         )
-        for h, n in grid(step_sizes, steps, time)
-    ]  # fmt: skip
+        for h, count in counts
+    ]
 
     def of(name: str) -> CrossoverResult:
         found = []
@@ -158,6 +168,8 @@ def grid(
     """Each step size with its number of steps; see `separate_grid`."""
     if (steps is None) == (time is None):
         raise InputError("steps, time", "", "give one of the two")
+    if not step_sizes:
+        raise InputError("step_sizes", step_sizes, "give one at least")
     found: dict[Fraction, int] = {}
     for given in step_sizes:
         h = positive(given, "step_size")
@@ -188,10 +200,10 @@ def _reference(arithmetic: str | None) -> str:
 
 def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     trails = {name: chain.trail(name) for name in QUANTITIES}
-    largest = {n: decimal(envelope(trails[n][0])[-1], _SHOWN) for n in ("truncation", "total")}
+    tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
     return EvaluationResult(
         parts=Parts(**{name: _printed(*chain.final(name), digits) for name in QUANTITIES}),
-        largest=largest,
+        largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
         growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *PARTS)},
         series=tuple(_at(chain, trails, k) for k in _shown(chain.marks)),
         error_kind=chain.kind,

@@ -190,7 +190,8 @@ def _after(
 ) -> State | None:
     """The state after `count` steps, or None where float64 leaves its range on the way."""
     try:
-        _, *after = kernel.function(count, *fixed, *(state[n] for n in kernel.carried))
+        with arithmetic.context():
+            _, *after = kernel.function(count, *fixed, *(state[n] for n in kernel.carried))
     except (ArithmeticError, ValueError):
         return None
     found = dict(zip(kernel.carried, after, strict=True))
