@@ -2,6 +2,7 @@
 
 import math
 from fractions import Fraction
+from itertools import pairwise
 
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -63,7 +64,7 @@ def test_parts_add_up_exactly_and_contain_what_rationals_give(
 
 
 def differences(values: list[Fraction]) -> list[Fraction]:
-    return [values[0], *(b - a for a, b in zip(values, values[1:], strict=False))]
+    return [values[0], *(b - a for a, b in pairwise(values))]
 
 
 dyadic = st.builds(lambda n, k: Fraction(n, 2**k), st.integers(-40, 40), st.integers(3, 6))
