@@ -11,11 +11,9 @@ from typing import Any
 import pytest
 
 from verify import arithmetic, separation_kernel
-from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
-from verify.results import SeparationGrid, SeparationResult
 from verify.runs import run
-from verify.separation import separate, separate_grid
+from verify.separation import separate
 from verify.separation_chain import PARTS, QUANTITIES, Chain, Separation
 from verify.separation_kernel import WORKING, mixed_kernel
 from verify.separation_working import WorkingRun, marks, rounded_inputs
@@ -268,53 +266,3 @@ def test_truncation_is_the_lambda_of_the_vectors(case: dict[str, Any]) -> None:
     assert len(truncation.value.partition("e")[0].strip("-")) == 31, "30 digits and a point"
     plain, closed = (abs(Fraction(x.parts.total.value)) for x in (found.plain, found.closed_form))
     assert closed < plain / 10**2, "the closed form buys two digits at least"
-
-
-# -- results --------------------------------------------------------------------------------------
-
-
-def test_a_result_survives_json_and_is_frozen() -> None:
-    grid = separate_grid(DUFFING, "lie2", q="1.5", p=0, step_sizes=["0.1", "0.2"], time=3)
-    assert SeparationGrid.model_validate_json(grid.model_dump_json()) == grid
-    assert [point.steps for point in grid.points] == [30, 15]
-    with pytest.raises(ValueError, match="frozen"):
-        grid.points[0].steps = 3  # type: ignore[misc]
-
-
-def ended(found: SeparationResult) -> tuple[str, int | None, bool]:
-    return found.status, found.failed_step, found.plain is None
-
-
-def test_a_run_that_blows_up_has_one_clear_answer() -> None:
-    escaping = Hamiltonian.parse("p**2/2 - q**4")
-    found = separate(escaping, "lie2", q="1.5", p=0, step_size=1, steps=90)
-    other = run(escaping, "lie2", q="1.5", p=0, step_size=1, steps=90)
-    assert ended(found) == ("left range", other.failed_step, True)
-    assert ended(separate(PENDULUM, "lie2", q="1e400", p=0, step_size=1, steps=9)) == (
-        "left range", 1, True)  # fmt: skip
-    undefined = Hamiltonian.parse("p**2/2 + q**(3/2)")
-    assert ended(separate(undefined, "lie2", q="-1", p=0, step_size=1, steps=9)) == (
-        "left range", 1, True)  # fmt: skip
-
-
-def test_the_closed_form_is_left_out_where_a_determinant_is_negative() -> None:
-    found = separate(PENDULUM, "lie2", q="1.5", p=0, step_size="1.7", steps=20)
-    assert found.status == "finished"
-    assert found.plain is not None
-    assert found.closed_form is None
-
-
-BAD: dict[str, tuple[dict[str, Any], str]] = {
-    "h": ({"step_size": 0}, "step_size=0"),
-    "steps": ({"steps": 0}, "steps=0"),
-    "digits": ({"digits": 0}, "digits=0"),
-    "float64": ({"arithmetic": "float64"}, "arithmetic=float64: is what is examined"),
-    "arithmetic": ({"arithmetic": "decimal"}, "arithmetic=decimal: unknown"),
-    "q": ({"q": "nan"}, "q=nan"),
-}
-
-
-@pytest.mark.parametrize(("changes", "named"), BAD.values(), ids=BAD)
-def test_bad_input_is_named_before_anything_runs(changes: dict[str, Any], named: str) -> None:
-    with pytest.raises(InputError, match=re.escape(named)):
-        separate(DUFFING, "lie2", **{**AT, "steps": 10, **changes})

@@ -1,0 +1,139 @@
+"""Counted rounding errors: they contain what a run of few bits gets wrong, for every operation."""
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.property.strategies import polynomials
+from verify import arithmetic
+from verify.arithmetic import mpfr
+from verify.hamiltonian import Hamiltonian
+from verify.kernel import Writer
+from verify.program import Program
+from verify.rounding_count import rounding_error, unit
+from verify.schemes import get
+
+BITS = 24
+COARSE, FINE = mpfr.at_bits(BITS), mpfr.at_bits(400)
+Box = dict[str, tuple[Fraction, Fraction]]
+
+
+def value(program: Program, root: int, at: dict[str, Fraction], made: Any) -> Fraction:
+    """The program's value at a point in that arithmetic, operation by operation."""
+    found: list[Any] = []
+    f = made.functions
+    with made.context():
+        for op in program.ops[: root + 1]:
+            x = [found[i] for i in op.args]
+            match op.kind:
+                case "input":
+                    found.append(made.number(at[op.name]))
+                case "const":
+                    found.append(made.number(op.value))
+                case "pi":
+                    found.append(f["pi"])
+                case "add":
+                    found.append(x[0] + x[1])
+                case "sub":
+                    found.append(x[0] - x[1])
+                case "mul":
+                    found.append(x[0] * x[1])
+                case "neg":
+                    found.append(-x[0])
+                case "inverse":
+                    found.append(1 / x[0])
+                case "root":
+                    found.append(f["root"](x[0], op.degree))
+                case _:
+                    found.append(f[op.kind](x[0]))
+    return made.exact(found[root])  # type: ignore[no-any-return]
+
+
+def binary(low: int, high: int) -> st.SearchStrategy[Fraction]:
+    """Numbers that COARSE has exactly."""
+    return st.integers(low * 2**12, high * 2**12).map(lambda n: Fraction(n, 2**12))
+
+
+def delta_j(text: str) -> tuple[Program, int]:
+    step_map = get("lie2").step_map(Hamiltonian.parse(text))
+    writer = Writer(step_map, COARSE, frozenset({"lambda"}), compensated=False)
+    root = writer.outputs()["dj"]
+    return writer.program, root
+
+
+@settings(deadline=None, max_examples=100)
+@given(polynomials(degree=5), binary(-2, 2), binary(-2, 2), binary(-2, 2), binary(-2, 2))
+def test_the_bound_of_a_delta_j_holds_all_over_the_box(
+    text: str, p: Fraction, q: Fraction, p2: Fraction, q2: Fraction
+) -> None:
+    program, root = delta_j(text)
+    h = Fraction(1, 64)
+    box = {"p": (min(p, p2), max(p, p2)), "q": (min(q, q2), max(q, q2)), "h": (h, h)}
+    bound = rounding_error(program, root, box, COARSE)
+    assert bound is not None
+    for at in ({"p": p, "q": q, "h": h}, {"p": p2, "q": q2, "h": h}):
+        error = abs(value(program, root, at, COARSE) - value(program, root, at, FINE))
+        assert error <= bound
+
+
+FUNCTIONS = ["sin", "cos", "exp", "sinh", "cosh", "atan", "log", "inverse", "root"]
+
+
+@pytest.mark.parametrize("kind", FUNCTIONS)
+@settings(deadline=None, max_examples=60)
+@given(x=binary(1, 3), y=binary(1, 3), width=binary(0, 1), sign=st.sampled_from([1, -1]))
+def test_the_bound_of_every_function_holds(
+    kind: str, x: Fraction, y: Fraction, width: Fraction, sign: int
+) -> None:
+    """f(x (1/3 + y)): an argument that is rounded three times before the function is."""
+    program = Program()
+    inputs = [program.input(name, static=False) for name in "xy"]
+    third = program.constant(Fraction(1, 3))
+    argument = program.mul(inputs[0], program.add(third, inputs[1]))
+    if kind not in ("log", "root") and sign < 0:
+        argument = program.neg(argument)
+    root = program.apply(kind, argument, degree=3)
+    box = {"x": (x, x + width), "y": (y, y + width)}
+    bound = rounding_error(program, root, box, COARSE)
+    assert bound is not None
+    errors = []
+    for at in ({"x": x, "y": y}, {"x": x + width, "y": y}, {"x": x, "y": y + width}):
+        true = value(program, root, at, FINE)
+        errors.append(abs(value(program, root, at, COARSE) - true))
+    assert max(errors) <= bound
+    if width == 0:
+        assert bound <= 50 * unit(COARSE) * max(1, abs(true)) * 12, "and is no idle bound"
+
+
+def test_there_is_no_bound_where_the_value_is_not_defined_all_over_the_box() -> None:
+    program = Program()
+    x = program.input("x", static=False)
+    crossing: Box = {"x": (Fraction(-1), Fraction(1))}
+    for kind in ("inverse", "log", "root"):
+        assert rounding_error(program, program.apply(kind, x, degree=2), crossing, COARSE) is None
+    square = program.add(program.constant(Fraction(1)), program.mul(x, x))
+    inverse = program.apply("inverse", square)
+    assert rounding_error(program, inverse, crossing, COARSE) is not None, "1 + x² ≥ 1"
+
+
+def test_functions_are_counted_only_where_their_rounding_is_specified() -> None:
+    program = Program()
+    x = program.input("x", static=False)
+    box = {"x": (Fraction(0), Fraction(1))}
+    for root, mpmath_too in ((program.apply("sin", x), False), (program.mul(x, x), True)):
+        assert rounding_error(program, root, box, arithmetic.get("mpfr", 30)) is not None
+        found = rounding_error(program, root, box, arithmetic.get("mpmath", 30))
+        assert (found is not None) == mpmath_too
+
+
+def test_what_is_exact_has_no_error() -> None:
+    program = Program()
+    x = program.input("x", static=False)
+    box = {"x": (Fraction(1, 3), Fraction(1, 3))}
+    assert rounding_error(program, program.neg(x), box, COARSE) == 0
+    assert rounding_error(program, program.constant(Fraction(7)), box, COARSE) == 0
+    third = program.constant(Fraction(1, 3))
+    assert rounding_error(program, third, box, COARSE) == pytest.approx(2.0**-BITS * 2 / 3, rel=0.1)
