@@ -137,3 +137,21 @@ def test_what_is_exact_has_no_error() -> None:
     assert rounding_error(program, program.constant(Fraction(7)), box, COARSE) == 0
     third = program.constant(Fraction(1, 3))
     assert rounding_error(program, third, box, COARSE) == pytest.approx(2.0**-BITS * 2 / 3, rel=0.1)
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["first", "second"])
+def test_a_factor_carries_the_others_error_whichever_comes_first(first: bool) -> None:
+    """x − 1/3 next to 1/3: the constant's rounding is nearly all of it, and a product keeps that."""
+    program = Program()
+    if first:
+        z = program.input("z", static=False)
+    x = program.input("x", static=False)
+    near = program.add(x, program.neg(program.constant(Fraction(1, 3))))
+    if not first:
+        z = program.input("z", static=False)
+    root = program.mul(near, z)
+    at = {"x": Fraction(1, 3) + Fraction(1, 3 * 2**22), "z": Fraction(7)}
+    bound = rounding_error(program, root, {n: (v, v) for n, v in at.items()}, COARSE)
+    error = abs(value(program, root, at, COARSE) - value(program, root, at, FINE))
+    assert bound is not None
+    assert error <= bound <= 8 * error
