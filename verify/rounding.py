@@ -130,9 +130,9 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
 
 
 def _square(x: Ball) -> Ball:
-    """x² of an interval, which is not negative."""
-    half = x.abs_upper() * x.abs_upper() / 2
-    return half + half * flint.arb(0, 1) if x.contains(0) else x * x
+    """x² of an interval: as narrow as its ends are, which x · x is not."""
+    low, high = x.abs_lower(), x.abs_upper()
+    return (low * low).union(high * high)
 
 
 _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
@@ -143,6 +143,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: 1 / (x * x),
+    "inverse": lambda x, _: 1 / _square(x),
     "root": lambda x, n: x.root(n) / (n * x),
 }

@@ -27,6 +27,7 @@ from verify.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 BOOL = ir.IntType(1)
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 _FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
+_LIBM_FUNCTIONS = ("log1p", "sinh", "cosh")  # by the C library that this process has
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -265,9 +266,13 @@ class Translator:
 
     def _float_function(self, name: str, x: Value) -> Value:
         plain = name.removeprefix("f_")
-        if plain not in _FLOAT_FUNCTIONS:
+        if plain in _FLOAT_FUNCTIONS:
+            return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in _LIBM_FUNCTIONS:
             raise NotImplementedError(name)
-        return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in self.module.globals:
+            ir.Function(self.module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
+        return self.b.call(self.module.globals[plain], [x])
 
     def _condition(self, node: Any) -> Value:
         match node:
