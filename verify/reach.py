@@ -49,8 +49,9 @@ def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
             for common in _SIDES:
                 if safe(common, common, value) is None:
                     continue
-                p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
-                q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
+                # q first: it is an angle more often than p, and grows where that turns.
+                q = next(r for r in _SIDES if r == common or safe(common, r, value) is not None)
+                p = next(r for r in _SIDES if r == common or safe(r, q, value) is not None)
                 part = safe(p, q, value)
                 return Limits(p, q, part, value) if part is not None else None
     return None
