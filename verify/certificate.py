@@ -29,9 +29,9 @@ the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) ove
 most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
 nothing grows the bound is the sum of the roundings, and nothing is lost to norms.
 
-Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = ΔJ/h^r over the box
+Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
 and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
-P_{k+1} = P_k (1 + h^r D̂_k) + τ_k, so that 1 + h^r D̂_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
+P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
 product of the first k factors is P_k but for a factor within exp(± N max |τ|/min P).
 """
 
@@ -60,7 +60,6 @@ class _Steps:
     delta_j: Ball
     tangent: Ball
     size: Ball  # a bound of |D|
-    scale: Ball  # of h^r, where that is computed
 
 
 def certify(job: Job, arithmetic: Arithmetic, outcome: Outcome) -> dict[str, Fraction] | None:
@@ -85,6 +84,7 @@ class _Certificate:
     def __init__(self, job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
         self.job, self.arithmetic, self.kernel = job, arithmetic, outcome.kernel
+        self.shift = outcome.shift
         self.rounding = rounding_of(arithmetic)
         self.steps = int(outcome.tangents[note]["done"])
         self.values = outcome.trail[note]
@@ -127,14 +127,13 @@ class _Certificate:
             return None
         added = [self.adding(name, values[f"d{name}"]) for name in ("p", "q")]
         state = (added[0] * added[0] + added[1] * added[1]).sqrt().abs_upper()
-        scale = values["scale"].error if "scale" in values else flint.arb(0)
-        return _Steps(state, values["dj"].error, tangent, values["dj"].magnitude, scale)
+        return _Steps(state, values["dj"].error, tangent, values["dj"].magnitude)
 
     def inputs(self, rounding: Rounding) -> dict[str, Rounded]:
         """The state, which is data and has no error, and h and the parameters as rounded."""
         given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
         unit = flint.arb(2) ** -self.arithmetic.bits
-        for name, exact in self.job.inputs(self.kernel).items():
+        for name, exact in self.job.inputs(self.kernel, self.shift).items():
             x = rational_ball(exact)
             held = self.arithmetic.exact(self.arithmetic.number(exact)) == exact
             size = flint.arb(1) if self.arithmetic.absolute else abs(x)
@@ -166,8 +165,8 @@ class _Certificate:
         size, error = (
             _norm([getattr(x, part) for x in entries]) for part in ("magnitude", "error")
         )
-        # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of the
-        # products. That is 4 times half a unit, and what is of second order.
+        # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of
+        # the products. That is 4 times half a unit, and what is of second order.
         return ((error + 3 * unit * size) * (1 + unit) + unit * unit).abs_upper()
 
     def orbit(self, steps: _Steps, derivatives: Derivatives) -> tuple[Ball, Ball] | None:
@@ -208,8 +207,8 @@ class _Certificate:
         asked, count = self.job.observables, self.steps
         if not asked & {"delta_j_max", "mse", "lambda"}:
             return {}
-        scale = self.h**self.kernel.power
-        slope = derivatives.gradient(self.values_of_inputs(), self.box(error), self.kernel.power)
+        scale = flint.arb(2) ** -self.shift
+        slope = derivatives.gradient(self.values_of_inputs(), self.box(error)) / scale
         moved = slope * summed + count * steps.delta_j  # Σ |D̂_k − D(z_k)|
         size = steps.size + slope * error
         result = {}
@@ -221,7 +220,7 @@ class _Certificate:
             )
             result["mse"] = scale * scale * (2 * size * moved / count + added)
         if "lambda" in asked:
-            result["lambda"] = self.of_lambda(steps, moved, size)
+            result["lambda"] = self.of_lambda(moved, size)
         return {name: x.abs_upper() for name, x in result.items()}
 
     def added(self, total: Ball, term: Ball) -> Ball:
@@ -229,16 +228,16 @@ class _Certificate:
         unit = flint.arb(2) ** -self.arithmetic.bits
         return unit if self.arithmetic.absolute else unit * (total + term) * 2
 
-    def of_lambda(self, steps: _Steps, moved: Ball, size: Ball) -> Ball:
-        scale, count = self.h**self.kernel.power, self.steps
+    def of_lambda(self, moved: Ball, size: Ball) -> Ball:
+        scale, count = flint.arb(2) ** -self.shift, self.steps
         unit = flint.arb(2) ** -self.arithmetic.bits
         low, high = self.seen["least"], self.seen["most"]
         largest, jump = abs(low).max(abs(high)), scale * size
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
         if self.arithmetic.absolute:
-            # Λ/h^r sums D + D Λ, in which a product is rounded; Λ adds its product with h^r.
-            rounded = unit * (1 + scale) + steps.scale * (size * (1 + largest) + unit)
+            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
+            rounded = unit * (1 + scale)
         else:
             rounded = unit * (1 + unit) * (largest + 2 * jump * (1 + largest))
         drift = count * rounded / (1 + low)

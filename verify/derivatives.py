@@ -42,12 +42,12 @@ class Derivatives:
         entries = [x for hessian in self.hessians for x in hessian]
         return _norm(self.ring, entries, {**fixed, **box})
 
-    def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball], power: int) -> Ball:
-        """A bound of ‖∇(ΔJ/h^power)‖ in the box."""
+    def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
+        """A bound of ‖∇ΔJ‖ in the box."""
         total = flint.arb(0)
         for n, gradient in self.gradients:
             size = _norm(self.ring, gradient, {**fixed, **box})
-            total += fixed["h"] ** (n - power) * size
+            total += fixed["h"] ** n * size
         return total
 
 

@@ -77,10 +77,9 @@ def _room(
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
     """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
-    h^r D (1 + Λ) + Λ and the next product stay below 2^15."""
-    scale, determinant = (size.get(name, flint.arb(0)) for name in ("scale", "det"))
+    Λ + D (1 + Λ) and the next product stay below 2^15."""
+    determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
-        grown = size["dj"] * (1 + 2**n)
-        if all(x < 2**14 for x in (grown, scale * grown, determinant * 2**n)):
+        if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:
             return Fraction(2**n)
     return None

@@ -18,7 +18,7 @@ Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
 _SECTIONS = 16
 _ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
-_POWERS = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # of h^r, which the kernel has divided out
+_SCALED = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # powers of the 2^s that the kernel carries
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 
 
@@ -26,11 +26,18 @@ class Walk:
     """Steps a job with one kernel from its start, or from where a checkpoint was kept."""
 
     def __init__(
-        self, job: "Job", kernel: Kernel, arithmetic: Arithmetic, limits: Sequence[Fraction]
+        self,
+        job: "Job",
+        kernel: Kernel,
+        arithmetic: Arithmetic,
+        limits: Sequence[Fraction],
+        shift: int,
     ) -> None:
-        self.job, self.kernel, self.arithmetic = job, kernel, arithmetic
+        self.job, self.kernel, self.arithmetic, self.shift = job, kernel, arithmetic, shift
         number = arithmetic.number
-        self.fixed = [number(x) for x in (*job.inputs(kernel).values(), *limits)]
+        self.fixed: list[Any] = [number(x) for x in job.inputs(kernel, shift).values()]
+        self.fixed += [shift] if kernel.scales else []
+        self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
         self.section = -(-job.steps // (job.points or _SECTIONS))  # steps between two notes
         self.done, self.seconds = 0, 0.0
@@ -38,7 +45,7 @@ class Walk:
         self.tangents: list[dict[str, Fraction]] = []
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
-        kinds = f"{arithmetic.name} {arithmetic.bits} {kernel.power} {' '.join(kernel.carried)}"
+        kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
         self._label = f"{kinds} {' '.join(map(str, limits))}"
         self._restore(job.keeper.load(self._label))
 
@@ -122,8 +129,7 @@ class Walk:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
     def _unscaled(self, name: str, value: Fraction) -> Fraction:
-        power = self.kernel.power * _POWERS.get(name, 0)
-        return value * self.job.start["h"] ** power
+        return value / (1 << self.shift * _SCALED.get(name, 0))
 
     def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
         """p, q and the observables after the steps done, as the exact rationals that they are."""

@@ -10,7 +10,8 @@ is first assigned to it, an argument's is its annotation:
 
 `wide(x)` takes a float64 exactly, `approx(x)` goes back to the nearest float64 or its neighbour.
 The name `valid` is true in a pass of the loop as long as every function had a value, in the pass
-and before the loop.
+and before the loop; `inside(x, limit)` is |x| < limit, seen from the highest limbs, and
+`shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -240,6 +241,8 @@ class Translator:
             return [b.select(negative, b.neg(x), x)]
         if name == "approx":
             return [to_double(b, x, self.fraction)]
+        if name == "shifted":
+            return [self._shifted(x, values[1])]
         if name == "wide":
             return [from_double(b, x, self.types["wide"].width, self.fraction)]
         if x.type == DOUBLE:
@@ -249,6 +252,16 @@ class Translator:
         self.b.store(b.and_(self._load("valid"), b.extract_value(packed, count)),
                      self._variables["valid"])  # fmt: skip
         return [b.extract_value(packed, i) for i in range(count)]
+
+    def _shifted(self, x: Value, by: Value) -> Value:
+        """x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not see by itself."""
+        b, count = self.b, x.type.width // 64
+        kind = ir.FunctionType(I64, [I64] * 3)
+        funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
+        words = [limbs.limb(b, x, i) for i in range(count)]
+        above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
+        moved = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
+        return limbs.joined(b, moved)
 
     def _float_function(self, name: str, x: Value) -> Value:
         plain = name.removeprefix("f_")
@@ -272,7 +285,17 @@ class Translator:
                 return total
             case ast.Compare():
                 return self._comparison(node)
+            case ast.Call(func=ast.Name(id="inside")):
+                return self._inside(*(self._expression(a) for a in node.args))
         raise NotImplementedError(ast.dump(node))
+
+    def _inside(self, x: Value, limit: Value) -> Value:
+        """|x| < limit, by the highest limbs alone: where it says so it is so; limit > 0."""
+        b, last = self.b, x.type.width // 64 - 1
+        x, limit = limbs.limb(b, x, last), limbs.limb(b, limit, last)
+        # −limit < x < limit for integers is 0 < x + limit < 2·limit.
+        moved = b.sub(b.add(x, limit), constant(1, 64))
+        return b.icmp_unsigned("<", moved, b.sub(b.add(limit, limit), constant(1, 64)))
 
     def _comparison(self, node: ast.Compare) -> Value:
         values = [self._expression(e) for e in (node.left, *node.comparators)]
