@@ -78,7 +78,7 @@ def _room(
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
     """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
-    D (1 + Λ) + Λ and the next product stay below 2^15."""
+    Λ + D (1 + Λ) and the next product stay below 2^15."""
     determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
         if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:
