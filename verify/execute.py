@@ -57,6 +57,7 @@ def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
             step_size=task.step_size,
             steps=task.steps,
             digits=task.digits,
+            keeper=keeper,
         )
     return run(
         hamiltonian,

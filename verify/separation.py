@@ -38,6 +38,7 @@ from verify.errors import InputError
 from verify.exact import Exact, known_digits, positive, rational, text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
+from verify.keeping import NOTHING, Keeper
 from verify.results import (
     CrossoverResult,
     EvaluationResult,
@@ -70,6 +71,7 @@ def separate(
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress | None = None,
+    keeper: Keeper = NOTHING,
 ) -> SeparationResult:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
 
@@ -80,7 +82,7 @@ def separate(
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, ())
     _check_reference(arithmetic)
-    work = Separation(hamiltonian, scheme, start, steps)
+    work = Separation(hamiltonian, scheme, start, steps, keeper)
     chains: Chains | None = None
     stopped = None
     try:

@@ -18,6 +18,7 @@ from verify.digits import choose, measure
 from verify.errors import InputError
 from verify.exact import magnitude
 from verify.hamiltonian import Hamiltonian
+from verify.keeping import NOTHING, Keeper
 from verify.number_system import UnsupportedError
 from verify.runs import proved
 from verify.schemes import get
@@ -123,9 +124,14 @@ class Separation:
     """What is separated: a scheme's run of `steps` steps from exact inputs."""
 
     def __init__(
-        self, hamiltonian: Hamiltonian, scheme: str, start: dict[str, Fraction], steps: int
+        self,
+        hamiltonian: Hamiltonian,
+        scheme: str,
+        start: dict[str, Fraction],
+        steps: int,
+        keeper: Keeper = NOTHING,
     ) -> None:
-        self.job = Job(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS)
+        self.job = Job(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
         self.map = get(scheme).step_map(hamiltonian)
 
     def chains(

@@ -25,6 +25,7 @@ import flint
 from verify import arithmetic as number_systems
 from verify.balls import bounds as ends
 from verify.balls import rational_ball
+from verify.keeping import fraction_of, fraction_text
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.reach import limits
 from verify.rounding import PRECISION, Rounded, analyse, rounding_of
@@ -135,16 +136,11 @@ class WorkingRun:
         given = [self.inputs[n] for n in ("h", *kernel.parameters)]
         wide = [arithmetic.number(Fraction(x)) for x in given]
         fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
-        state: State = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
-        for name in kernel.carried:
-            if name not in kernel.start:  # p, q and the region that they visit
-                state[name] = state[name[:3]]
-            else:
-                value = kernel.start[name]
-                state[name] = float(value) if name[0] == "f" else arithmetic.number(Fraction(value))
-        found: list[State] = []
-        done = 0
-        for mark in self.marks:
+        label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
+        found = self._kept(label, arithmetic)
+        state = found[-1] if found else self._first_state(kernel, arithmetic)
+        done = self.marks[len(found) - 1] if found else 0
+        for mark in self.marks[len(found) :]:
             while done < mark:
                 count = min(arithmetic.chunk, mark - done)
                 after = _after(kernel, arithmetic, fixed, state, count)
@@ -157,7 +153,29 @@ class WorkingRun:
                 done += count
                 advance(count)
             found.append(state)
+            if self.job.keeper.due(label):
+                texts = [
+                    {n: fraction_text(_exact(arithmetic, x)) for n, x in s.items()} for s in found
+                ]
+                self.job.keeper.save(label, {"found": texts})
         return found
+
+    def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
+        state: State = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
+        for name in kernel.carried:
+            if name not in kernel.start:  # p, q and the region that they visit
+                state[name] = state[name[:3]]
+            else:
+                state[name] = _number(arithmetic, name, Fraction(kernel.start[name]))
+        return state
+
+    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
+        """The checkpoints that an interrupted run has left."""
+        kept = self.job.keeper.load(label) or {"found": []}
+        return [
+            {n: _number(arithmetic, n, fraction_of(x)) for n, x in state.items()}
+            for state in kept["found"]
+        ]
 
     def _limits(self, kernel: MixedKernel, arithmetic: Arithmetic) -> list[Any]:
         """What the kernel compares p, q and Λ with; UnsupportedError where they start beyond it."""
@@ -209,6 +227,15 @@ class WorkingRun:
             live, rounding = lowering.live([root]), rounding_of(arithmetic)
             found = analyse(lowering.program, live, inputs, rounding)
             return None if found is None else ends(found[root].error)[1]
+
+
+def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Any:
+    """What a name that begins with f or with w holds: a float64 or a wide number."""
+    return float(value) if name[0] == "f" else arithmetic.number(value)
+
+
+def _exact(arithmetic: Arithmetic, x: Any) -> Fraction:
+    return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
 
 
 def rounded_inputs(job: Job) -> dict[str, float]:

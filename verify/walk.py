@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify import tangent
 from verify.exact import decimal
+from verify.keeping import fraction_of, fraction_text
 from verify.kernel import Kernel
 from verify.number_system import Arithmetic
 from verify.results import SeriesPoint
@@ -46,7 +47,8 @@ class Walk:
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
-        self._label = f"{kinds} {' '.join(map(str, limits))}"
+        inputs = (job.start, job.parameters, job.scheme, job.steps, job.points)
+        self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         self._restore(job.keeper.load(self._label))
 
     def _first_state(self) -> State:
@@ -173,7 +175,7 @@ class Walk:
         data = {
             "done": self.done,
             "seconds": self.seconds,
-            "state": [_text(self._exact(x)) for x in self.state],
+            "state": [fraction_text(self._exact(x)) for x in self.state],
             "seen": _texts(self._seen),
             "trail": list(map(_texts, self.trail)),
             "tangents": list(map(_texts, self.tangents)),
@@ -186,7 +188,7 @@ class Walk:
             return
         self.done, self.seconds = kept["done"], kept["seconds"]
         number, kinds = self.arithmetic.number, self.kernel.kinds
-        values = [_fraction(x) for x in kept["state"]]
+        values = [fraction_of(x) for x in kept["state"]]
         self.state = tuple(
             float(x) if kind == "float" else number(x)
             for kind, x in zip(kinds, values, strict=True)
@@ -197,18 +199,9 @@ class Walk:
         self.series = [SeriesPoint.model_validate(point) for point in kept["series"]]
 
 
-def _text(x: Fraction) -> str:
-    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
-
-
-def _fraction(x: str) -> Fraction:
-    numerator, denominator = (int(part, 16) for part in x.split("/"))
-    return Fraction(numerator, denominator)
-
-
 def _texts(note: Mapping[str, Fraction]) -> dict[str, str]:
-    return {name: _text(x) for name, x in note.items()}
+    return {name: fraction_text(x) for name, x in note.items()}
 
 
 def _fractions(note: Mapping[str, str]) -> dict[str, Fraction]:
-    return {name: _fraction(x) for name, x in note.items()}
+    return {name: fraction_of(x) for name, x in note.items()}
