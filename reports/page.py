@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from reports import mathml, typography
 from reports.views import page_view
-from verify.execute import write_atomically
+from verify.keeping import write_atomically
 from verify.results import Report
 from verify.verdict import Verdict
 

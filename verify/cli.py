@@ -135,7 +135,9 @@ def run(
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
-@click.option("--arithmetic", help="What stands for exact arithmetic; the fastest that can.")
+@click.option(
+    "--arithmetic", default="auto", help="What stands for exact: auto, fixed, mpfr, mpmath."
+)
 def separate(
     system: str | None,
     hamiltonian: str | None,

@@ -1,6 +1,6 @@
 """Enclosing a ring element at a rational point by ball arithmetic, and points to look at."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -19,18 +19,28 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
     Leaves flint's global context as it was.
     """
     with flint.ctx.workprec(precision):
-        values: dict[int, Any] = {}
-        for g in ring.used(x):
-            if g.kind == "variable":
-                at = point[str(g.expression)]
-                values[g.index] = flint.arb(flint.fmpq(at.numerator, at.denominator))
-            elif g.kind == "pi":
-                values[g.index] = flint.arb.pi()
-            else:
-                values[g.index] = BALLS[g.kind](_at(g.argument, values), g.degree)
-            if not values[g.index].is_finite():
-                return None
-        return _at(x, values)
+        exact = {
+            name: flint.arb(flint.fmpq(at.numerator, at.denominator)) for name, at in point.items()
+        }
+        return enclose_over(ring, x, exact)
+
+
+def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
+    """A ball that contains x at every point of a box of balls, or None where x may be undefined.
+
+    In flint's present precision.
+    """
+    values: dict[int, Any] = {}
+    for g in ring.used(x):
+        if g.kind == "variable":
+            values[g.index] = box[str(g.expression)]
+        elif g.kind == "pi":
+            values[g.index] = flint.arb.pi()
+        else:
+            values[g.index] = BALLS[g.kind](_at(g.argument, values), g.degree)
+        if not values[g.index].is_finite():
+            return None
+    return _at(x, values)
 
 
 def _power(x: Any, n: int) -> Any:

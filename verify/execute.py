@@ -6,30 +6,25 @@ code is taken for one of this.
 """
 
 import contextlib
-import hashlib
-import json
 import multiprocessing
 import os
 import signal
-import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from verify.bounds import DIRECT_STEPS, REFERENCE
 from verify.exact import text
+from verify.float_bounds import DIRECT_STEPS
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
+from verify.keeping import fingerprint, write_atomically
 from verify.plan import Plan, ProofTask, RunTask, Task
 from verify.proof.order import prove
 from verify.results import ProofResult, RunResult
-from verify.runs import run
+from verify.runs import AUTO, run
 from verify.schemes import get
 from verify.step_map import grouped
 
@@ -39,7 +34,7 @@ Done = Callable[[str, Result], None]  # called with a task's key and its result
 _VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
 # In float64 steps; an arithmetic that is not listed counts as one in between.
-_STEP_COST = {"float64": 1, "mpfr": 300, "mpmath": 3000}
+_STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000}
 
 
 def perform(task: Task) -> Result:
@@ -115,37 +110,6 @@ class Store:
             write_atomically(path, result.model_dump_json(indent=1))
 
 
-def write_atomically(path: Path, content: str) -> None:
-    """The whole content or the old one, never a part: written beside it, then renamed."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-
-
-def versions() -> dict[str, str]:
-    """The versions that a result depends on."""
-    python = ".".join(map(str, sys.version_info[:3]))
-    return {"Python": python} | {name: version(name) for name in _VERSIONED}
-
-
-@cache
-def fingerprint() -> str:
-    """A name for this package's source and its libraries: results of others are not taken up."""
-    digest = hashlib.sha256(json.dumps(versions()).encode())
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
-
-
 def execute(
     plan: Plan, store: Store, *, workers: int | None = None, done: Done | None = None
 ) -> dict[str, Result]:
@@ -178,7 +142,7 @@ def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
-        return task.steps * _STEP_COST.get(REFERENCE if checked else task.arithmetic, 500)
+        return task.steps * _STEP_COST.get(AUTO if checked else task.arithmetic, 500)
     return 1
 
 

@@ -4,41 +4,66 @@ Observables: `delta_j_max` max |ΔJ|, `mse` Σ ΔJ² (Eq. 15 before its 1/N), `l
 the closed form of ΔJ as Λ ← Λ + ΔJ + Λ ΔJ, `lambda_plain` Π det J the plain way (four entries,
 their determinant, the product), `extremes` the least and greatest ΔJ and Λ of one call's steps.
 
+`tangent` carries the tangent map along (see `verify.tangent`), for a rigorous bound.
+
+Where an arithmetic's numbers have an absolute precision (fixed point), ΔJ = h^r D with the greatest
+such r is carried as D, and so are its sums, so that they keep their significant digits however
+small h is; Λ itself is carried beside them as `part`, since it multiplies. There the loop ends
+where p, q, Λ or a function's value leaves the limits that are given with the parameters.
+
 A compensated kernel adds the increments to the state, and ΔJ to its sums, in twice the working
 precision (Knuth's two-sum): what remains is the rounding of the increments, smaller by a factor of
 about h. Its difference from the plain kernel estimates the plain kernel's rounding error.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
+from verify import tangent
 from verify.hamiltonian import Hamiltonian
-from verify.number_system import Arithmetic
+from verify.lowering import Lowering
+from verify.number_system import Arithmetic, UnsupportedError
 from verify.program import Evaluator, Program
+from verify.ring import Poly
 from verify.schemes import get
-from verify.step_map import StepMap
+from verify.step_map import StepMap, Substep, h_inside
 
-OBSERVABLES = ("delta_j_max", "mse", "lambda", "lambda_plain", "extremes")
-_INFIX = {"add": "+", "sub": "-", "mul": "*"}
-_CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "extremes"})
+OBSERVABLES = ("delta_j_max", "mse", "lambda", "lambda_plain", "extremes", "tangent")
+CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "extremes"})
+PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
+LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
 
 
 @dataclass(frozen=True)
 class Kernel:
-    """`function(steps, h, *parameters, *carried)` → (steps done, *carried).
+    """`function(steps, h, *parameters, *limits, *carried)` → (steps done, *carried).
 
     `carried` names the state and accumulators in their order: p, q, then those of the observables;
-    `start` has their initial values, p and q apart.
+    `kinds` says of each what it is (see `verify.wide.translate`), `start` has the initial values,
+    p and q apart; "p" and "q" there are those in float64. `limits` are numbers that the loop's
+    guard compares with. `power`: ΔJ and its sums are carried divided by h^power. `lowering` and
+    `outputs` are what is computed: the program and the indices of its results.
     """
 
     function: Callable[..., tuple[Any, ...]]
     parameters: tuple[str, ...]
+    limits: tuple[str, ...]
     carried: tuple[str, ...]
-    start: tuple[int, ...]
+    kinds: tuple[str, ...]
+    start: tuple[int | str, ...]
+    power: int
+    lowering: Lowering
+    outputs: Mapping[str, int]
+    tangent: tangent.Tangent | None
     source: str
+
+    @property
+    def roots(self) -> list[int]:
+        """What the source computes before its statements, as indices of the program."""
+        return [*self.outputs.values(), *(self.tangent.needed if self.tangent else ())]
 
 
 @lru_cache(maxsize=64)
@@ -48,10 +73,14 @@ def kernel_for(
     arithmetic: Arithmetic,
     observables: frozenset[str],
     compensated: bool = False,
+    most_power: int | None = None,
 ) -> Kernel:
-    """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once."""
+    """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once.
+
+    `most_power`: ΔJ is divided by that power of h at most.
+    """
     step_map = get(scheme).step_map(hamiltonian)
-    return Writer(step_map, arithmetic, observables, compensated).kernel()
+    return Writer(step_map, arithmetic, observables, compensated, most_power).kernel()
 
 
 class Writer:
@@ -63,28 +92,60 @@ class Writer:
         arithmetic: Arithmetic,
         observables: frozenset[str],
         compensated: bool,
+        most_power: int | None,
     ) -> None:
         self.map, self.arithmetic = step_map, arithmetic
         self.observables, self.compensated = observables, compensated
         self.program = Program()
+        self.lowering = Lowering(self.program, arithmetic.functions)
+        self.tangent = tangent.Tangent(self.program) if "tangent" in observables else None
         self.parameters = step_map.hamiltonian.symbols
-        self.carried: list[tuple[str, int]] = [("p", 0), ("q", 0)]
-        self.body: list[str] = []
+        self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
+        self.needs_delta_j = bool(observables & CLOSED_FORM)
+        self.power = self.common_power() if arithmetic.absolute and self.needs_delta_j else 0
+        if most_power is not None:
+            self.power = min(self.power, most_power)
+
+    def common_power(self) -> int:
+        """The greatest r for which h^r divides ΔJ of every substep."""
+        changing = [step for step in self.map.substeps if not step.preserves_area]
+        return min(map(_lowest_power, changing), default=0)
 
     # -- what is computed ---------------------------------------------------------------------
 
     def kernel(self) -> Kernel:
         outputs = self.outputs()
         lines = self.statements(outputs)
-        source = self.assemble(outputs, lines)
-        scope = {**self.arithmetic.functions, **self.constants()}
+        limits = LIMITS if self.arithmetic.absolute else ()
+        needed = [*outputs.values(), *(self.tangent.needed if self.tangent else ())]
+        self.check(needed)
+        source = self.assemble(needed, lines, limits)
+        scope = {
+            **self.arithmetic.functions,
+            **self.lowering.named_constants(self.arithmetic.number),
+            **(self.tangent.lowering.named_constants(float) if self.tangent else {}),
+        }
+        names, kinds, start = zip(*self.carried, strict=True)
         return Kernel(
             function=self.arithmetic.compile(source, "kernel", scope),
             parameters=self.parameters,
-            carried=tuple(name for name, _ in self.carried),
-            start=tuple(value for _, value in self.carried[2:]),
+            limits=limits,
+            carried=names,
+            kinds=kinds,
+            start=start[2:],
+            power=self.power,
+            lowering=self.lowering,
+            outputs=outputs,
+            tangent=self.tangent,
             source=source,
         )
+
+    def check(self, needed: Sequence[int]) -> None:
+        """Raises UnsupportedError where the arithmetic lacks a function."""
+        for index in self.lowering.live(needed):
+            function = self.lowering.function(index)
+            if function is not None and function not in self.arithmetic.functions:
+                raise UnsupportedError(f"{self.arithmetic.name} has no {function}")
 
     def outputs(self) -> dict[str, int]:
         """Indices of the increments of p and q, of ΔJ and det J as far as they are asked for."""
@@ -94,20 +155,26 @@ class Writer:
         fixed = {n: program.input(a, static=True) for n, a in arguments.items()}
         zero = program.constant(Fraction(0))
         state = {n: program.input(n, static=False) for n in ("p", "q")}
+        scale = program.power(fixed["h"], self.power)
         total = {"p": zero, "q": zero}
         delta_j, jacobian = zero, None
         for step in self.map.substeps:
             at = {n: program.add(state[n], total[n]) for n in ("p", "q")}
             evaluator = Evaluator(program, step.ring, fixed | at, self.arithmetic.pipelined)
-            if self.observables & _CLOSED_FORM and not step.preserves_area:
-                own = evaluator.evaluate(step.delta_j)
-                delta_j = program.add(program.add(delta_j, own), program.mul(delta_j, own))
+            if self.needs_delta_j and not step.preserves_area:
+                own = evaluator.evaluate(_divided(step, self.power))
+                both = program.mul(scale, program.mul(delta_j, own))
+                delta_j = program.add(program.add(delta_j, own), both)
             if "lambda_plain" in self.observables:
                 own_j = [evaluator.evaluate(entry) for entry in step.jacobian]
                 jacobian = own_j if jacobian is None else self.product(own_j, jacobian)
+            if self.tangent:
+                self.tangent.follow(step, evaluator)
             for n, increment in zip(("p", "q"), step.increments, strict=True):
                 total[n] = program.add(total[n], evaluator.evaluate(increment))
         result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
+        if self.arithmetic.absolute and "lambda" in self.observables:
+            result["scale"] = scale
         if jacobian is not None:
             a, b, c, d = jacobian
             minus = program.neg(program.mul(b, c))
@@ -125,121 +192,117 @@ class Writer:
 
     def statements(self, outputs: dict[str, int]) -> list[str]:
         """The loop's statements after the values: observables first, then the step."""
-        value = {name: f"v{index}" for name, index in outputs.items()}
+        value = {name: self.lowering.name(index) for name, index in outputs.items()}
         lines: list[str] = []
         asked = self.observables
         if "lambda_plain" in asked:
-            self.carried.append(("plain", 1))
+            self.carry("plain", 1)
             lines.append(f"plain = plain * {value['det']}")
-        if asked & _CLOSED_FORM:
+        if asked & CLOSED_FORM:
             lines.append(f"dj = {value['dj']}")
         if {"lambda", "extremes"} & asked:
-            lines += self.accumulate("lam", "dj + lam * dj")
+            lines += self.product_of_factors(value)
         if "mse" in asked:
             lines += self.accumulate("mse", "dj * dj")
         if "delta_j_max" in asked:
-            self.carried.append(("top", 0))
+            self.carry("top", 0)
             lines += ["size = abs(dj)", "if size > top: top = size"]
         if "extremes" in asked:
-            self.carried += [("dj_low", 0), ("dj_high", 0), ("lam_low", 0), ("lam_high", 0)]
-            for name, of in (("dj", "dj"), ("lam", "lam")):
+            for name, kind in (("dj", "wide"), ("lam", "sum")):
+                self.carry(f"{name}_low", 0, kind)
+                self.carry(f"{name}_high", 0, kind)
                 lines += [
-                    f"if k == 0 or {of} < {name}_low: {name}_low = {of}",
-                    f"if k == 0 or {of} > {name}_high: {name}_high = {of}",
+                    f"if k == 0 or {name} < {name}_low: {name}_low = {name}",
+                    f"if k == 0 or {name} > {name}_high: {name}_high = {name}",
                 ]
+        if self.tangent:
+            for name, start in tangent.CARRIED:
+                self.carry(name, start, "float")
+            change = [self.tangent.lowering.name(index) for index in self.tangent.change]
+            lines += tangent.statements(change)
         return lines + self.accumulate("p", value["dp"]) + self.accumulate("q", value["dq"])
+
+    def product_of_factors(self, value: Mapping[str, str]) -> list[str]:
+        """Λ ← Λ + ΔJ + Λ ΔJ."""
+        lines = self.accumulate("lam", "dj + lam * dj")
+        product = "lam"
+        if self.arithmetic.absolute:
+            self.carry("part", 0)
+            product = "part"
+            lines = [
+                "grown = dj + dj * part",
+                f"part = part + {value['scale']} * grown",
+                "lam = lam + grown",
+            ]
+        if self.tangent:
+            for end, relation in (("least", "<"), ("most", ">")):
+                self.carry(end, 0)
+                lines.append(f"if {product} {relation} {end}: {end} = {product}")
+        return lines
+
+    def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
+        self.carried.append((name, kind, start))
 
     def accumulate(self, name: str, increment: str) -> list[str]:
         if name not in ("p", "q"):
-            self.carried.append((name, 0))
+            self.carry(name, 0, "sum")
         if not self.compensated:
             return [f"{name} = {name} + ({increment})"]
-        self.carried.append((f"{name}_rest", 0))
+        self.carry(f"{name}_rest", 0)
         return [
             f"add = {name}_rest + ({increment})",
             f"total = {name} + add",
-            f"part = total - {name}",
-            f"{name}_rest = ({name} - (total - part)) + (add - part)",
+            f"rest = total - {name}",
+            f"{name}_rest = ({name} - (total - rest)) + (add - rest)",
             f"{name} = total",
         ]
 
-    def assemble(self, outputs: dict[str, int], statements: list[str]) -> str:
-        static, dynamic = self.values(list(outputs.values()))
-        names = ", ".join(name for name, _ in self.carried)
+    def assemble(self, needed: Sequence[int], statements: list[str], limits: Sequence[str]) -> str:
+        static, dynamic = self.lowering.lines(needed)
+        if self.tangent:
+            more = self.tangent.lowering.lines(self.tangent.change)
+            static, dynamic = static + more[0], dynamic + more[1]
+        names = ", ".join(name for name, _, _ in self.carried)
         parameters = [f"x{k}" for k in range(len(self.parameters))]
-        arguments = ", ".join(["steps", "h", *parameters, names])
-        if self.arithmetic.guard is not None:
-            p, q = (self.arithmetic.guard.format(x=x) for x in ("p", "q"))
-            statements = [*statements, f"if not ({p} and {q}): return k, {names}"]
+        annotated = [f"{name}: '{kind}'" for name, kind, _ in self.carried]
+        arguments = ", ".join(["steps: 'int'", "h", *parameters, *limits, *annotated])
+        guard = self.guard(needed)
         return "\n".join(
             [
                 f"def kernel({arguments}):",
                 *(f"    {line}" for line in static),
                 "    for k in range(steps):",
                 *(f"        {line}" for line in [*dynamic, *statements]),
+                *([f"        if not ({guard}): return k, {names}"] if guard else []),
                 f"    return steps, {names}",
                 "",
             ]
         )
 
-    def values(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
-        """The lines that compute the roots: those before the loop, and those in it."""
-        program = self.program
-        live, stack = set(roots), list(roots)
-        while stack:
-            new = set(program.ops[stack.pop()].args) - live
-            live |= new
-            stack += new
-        static: list[str] = []
-        dynamic: list[str] = []
-        written: set[int] = set()
-        for index in sorted(live):
-            if index in written or program.ops[index].kind == "const":
-                continue
-            line = self.pair(index, live, written) or f"v{index} = {self.operation(index)}"
-            (static if program.static[index] else dynamic).append(line)
-        return static, dynamic
+    def guard(self, needed: Sequence[int]) -> str:
+        """What holds as long as the orbit is in range; empty where nothing is to be looked at."""
+        if not self.arithmetic.absolute:
+            template = self.arithmetic.guard
+            return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
+        looked_at = {"p": "reach_p", "q": "reach_q"}
+        if any(name == "part" for name, _, _ in self.carried):
+            looked_at["part"] = "reach_part"
+        for index in self.lowering.live(needed):
+            if self.program.ops[index].kind in PARTIAL:
+                looked_at[self.lowering.name(index)] = "reach_value"
+        return " and ".join(["valid", *(f"-{m} < {x} < {m}" for x, m in looked_at.items())])
 
-    def pair(self, index: int, live: set[int], written: set[int]) -> str | None:
-        """cos and sin of one argument in one call, where the arithmetic has that."""
-        op, functions = self.program.ops[index], self.arithmetic.functions
-        both = next((f for f in ("cos_sin", "sin_cos") if f in functions), None)
-        if op.kind not in ("cos", "sin") or both is None:
-            return None
-        found = {
-            self.program.ops[i].kind: i
-            for i in live
-            if self.program.ops[i].kind in ("cos", "sin") and self.program.ops[i].args == op.args
-        }
-        if len(found) < 2:
-            return None
-        written |= set(found.values())
-        first, second = (found[kind] for kind in both.split("_"))
-        return f"v{first}, v{second} = {both}(v{op.args[0]})"
 
-    def operation(self, index: int) -> str:
-        op = self.program.ops[index]
-        args = [f"v{a}" for a in op.args]
-        match op.kind:
-            case "input":
-                return op.name
-            case "add" | "sub" | "mul":
-                return f" {_INFIX[op.kind]} ".join(args)
-            case "neg":
-                return f"-{args[0]}"
-            case "inverse":
-                return f"1 / {args[0]}"
-            case "root" if op.degree == 2:
-                return f"sqrt({args[0]})"
-            case "root":
-                return f"root({args[0]}, {op.degree})"
-            case "pi":
-                return "pi"
-        return f"{op.kind}({args[0]})"
+def _lowest_power(step: Substep) -> int:
+    if h_inside(step.ring, step.p_next, step.q_next):
+        return 0
+    return min(step.ring.powers(step.delta_j, "h"))
 
-    def constants(self) -> dict[str, Any]:
-        return {
-            f"v{i}": self.arithmetic.number(op.value)
-            for i, op in enumerate(self.program.ops)
-            if op.kind == "const"
-        }
+
+def _divided(step: Substep, power: int) -> Poly:
+    """ΔJ / h^power, where that divides it."""
+    if power == 0:
+        return step.delta_j
+    h = step.ring.variable("h")
+    parts = step.ring.powers(step.delta_j, "h")
+    return sum((h ** (n - power) * x for n, x in parts.items()), step.ring.zero)

@@ -19,7 +19,9 @@ class Arithmetic:
     is a condition on `{x}`, put into the loop, that holds while the orbit is in range (None where
     infinities propagate and are found afterwards). `pipelined`: independent operations overlap, so
     that latency counts and not their number. `chunk`: steps between looks at progress and
-    interruption. Two arithmetics of one name and precision are equal.
+    interruption. `absolute`: numbers have so many bits after the point, not so many significant
+    ones; a kernel then scales ΔJ and has limits of its own instead of a guard. Two arithmetics of
+    one name and precision are equal.
     """
 
     name: str
@@ -33,6 +35,11 @@ class Arithmetic:
     guard: str | None = field(compare=False)
     pipelined: bool = field(compare=False)
     chunk: int = field(compare=False)
+    absolute: bool = field(default=False, compare=False)
+
+
+class UnsupportedError(Exception):
+    """An arithmetic lacks a function that a kernel needs; the message says which."""
 
 
 ESCAPE_BITS = 4000  # where exponents have no end of their own, an orbit is stopped at |z| = 2^4000

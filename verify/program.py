@@ -122,10 +122,19 @@ class Evaluator:
         """The index of x's value."""
         used = self.ring.used(x)
         for generator in used:
-            if generator.index not in self._at:
-                self._at[generator.index] = self._generator(generator)
+            self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
         return self._nested(self._collect(x, dynamic), [self._at[i] for i in dynamic])
+
+    def at(self, generator: Generator) -> int:
+        """The index of a generator's value."""
+        if generator.index not in self._at:
+            self._at[generator.index] = self._generator(generator)
+        return self._at[generator.index]
+
+    def set(self, generator: Generator, index: int) -> None:
+        """Takes a value that the program has already for the generator's."""
+        self._at[generator.index] = index
 
     def _generator(self, g: Generator) -> int:
         if g.kind == "variable":

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from verify import systems
 from verify.claims import Claim, Findings, check_claims
 from verify.exact import text
-from verify.execute import Done, Store, execute, versions
+from verify.execute import Done, Store, execute
 from verify.formula import to_text
+from verify.keeping import versions
 from verify.plan import Plan, key, plan_scenes, series_task
 from verify.results import Provenance, Report, RunResult, SceneResult
 from verify.scene import Scene

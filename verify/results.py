@@ -61,14 +61,16 @@ class RunResult(Frozen):
     `values` holds p, q and the observables asked for. It is empty where the orbit left the
     arithmetic's range (`status` "left range"; `failed_step` is the first step that was out of it),
     and where no digit could be confirmed ("unresolved"). `error_kind`
-    is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `exact` names
-    the observables that a proof gave and no run was needed for.
+    is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
+    says why another arithmetic was taken than the one that was asked for. `exact` names the
+    observables that a proof gave and no run was needed for.
     """
 
     hamiltonian: str
     parameters: dict[str, str]
     scheme: str
     arithmetic: str
+    fallback: str = ""
     digits: int
     step_size: str
     steps: int

@@ -1,6 +1,7 @@
 """One run: N steps from (q, p) in one arithmetic, each value with its error bound.
 
-How the bounds are got is told in `verify.bounds`; so far they are estimates, and called so.
+How the bounds are got is told in `verify.certificate`, where they are rigorous, and otherwise in
+`verify.bounds`; for float64, which is under test, in `verify.float_bounds`.
 
 What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exactly 0; where ΔJ does not
 depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
@@ -14,19 +15,24 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.balls import middle_and_radius
-from verify.bounds import Bounded, bounded, working_digits
+from verify.bounds import Bounded
+from verify.digits import Measured, choose, measure
 from verify.enclosure import enclose
 from verify.errors import InputError
 from verify.exact import Exact, known_digits, positive, rational, text
+from verify.float_bounds import bounded
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
+from verify.keeping import NOTHING, Keeper
 from verify.results import RunResult, Value
 from verify.schemes import get
 from verify.step_map import StepMap
-from verify.stepping import Job, Progress
+from verify.stepping import Job
+from verify.walk import Progress
 
 MAX_STEPS = 10**12
 MAX_DIGITS = 10_000
+AUTO = "auto"
 CLOSED_FORM = ("delta_j_max", "mse", "lambda")
 ASKED = (*CLOSED_FORM, "lambda_plain")
 
@@ -44,12 +50,15 @@ def run(
     observables: Sequence[str] = CLOSED_FORM,
     points: int = 0,
     progress: Progress | None = None,
+    keeper: Keeper = NOTHING,
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
 
-    `digits`: significant digits wanted (float64 gives what it knows). `points`: at most so many
-    points of a thinned series are kept. `progress` is called with the number of steps done.
-    Raises InputError for h ≤ 0, N < 1, a parameter without a value, unknown names.
+    `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest with rigorous
+    bounds. `digits`: significant digits wanted (float64 gives what it knows). `points`: at most so
+    many points of a thinned series are kept. `progress` is called with the number of steps done.
+    `keeper` keeps checkpoints, from which an interrupted run goes on. Raises InputError for h ≤ 0,
+    N < 1, a parameter without a value, unknown names.
     """
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, observables)
@@ -58,12 +67,12 @@ def run(
     step_map = get(scheme).step_map(hamiltonian)
     known = proved(step_map, start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
-    job = Job(hamiltonian, scheme, start, steps, needed, points)
-
-    own = number_systems.get(arithmetic, working_digits(digits, steps))
-    first = job.go(own, progress=progress)
-    found = bounded(job, own, first, digits, known)
-    most = min(digits, 17) if own.name == "float64" else digits
+    job = Job(hamiltonian, scheme, start, steps, needed, points, keeper)
+    if arithmetic == AUTO:
+        arithmetic = choose(job, digits)
+    done = _run(job, arithmetic, digits, known, progress)
+    found = done.bounds
+    most = min(digits, 17) if done.arithmetic == "float64" else digits
     values = {
         n: _printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
     }
@@ -73,7 +82,8 @@ def run(
         hamiltonian=to_text(hamiltonian.expression),
         parameters={name: text(value) for name, value in hamiltonian.values},
         scheme=scheme,
-        arithmetic=arithmetic,
+        arithmetic=done.arithmetic,
+        fallback=done.fallback,
         digits=digits,
         step_size=text(start["h"]),
         steps=steps,
@@ -82,12 +92,21 @@ def run(
         status=found.status,
         failed_step=found.failed_step,
         values=values,
-        error_kind="estimated",
+        error_kind="enclosed" if found.rigorous else "estimated",
         error_method=found.method,
         exact=tuple(o for o in observables if o in known),
-        series=first.series,
-        seconds=first.seconds,
+        series=done.outcome.series,
+        seconds=done.outcome.seconds,
     )
+
+
+def _run(
+    job: Job, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
+) -> Measured:
+    if arithmetic != "float64":
+        return measure(job, arithmetic, digits, progress)
+    first = job.go(number_systems.get(arithmetic, digits), progress=progress)
+    return Measured(bounded(job, first, known), arithmetic, first)
 
 
 def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:

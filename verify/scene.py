@@ -33,7 +33,7 @@ from verify.errors import InputError
 from verify.exact import positive, rational, text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
-from verify.runs import ASKED, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
+from verify.runs import ASKED, AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
 
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
@@ -66,7 +66,7 @@ class Grid(Frozen):
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
             raise InputError("grid", "time, steps", "give one of the two")
-        if self.arithmetic not in number_systems.names():
+        if self.arithmetic not in (AUTO, *number_systems.names()):
             number_systems.get(self.arithmetic, self.digits)
         for name in self.observables:
             if name not in ASKED:

@@ -49,7 +49,7 @@ from verify.results import (
     Value,
 )
 from verify.runs import check
-from verify.separation_chain import PARTS, QUANTITIES, Chain, Chains, Separation
+from verify.separation_chain import AUTO, PARTS, QUANTITIES, Chain, Chains, Separation
 from verify.separation_growth import Growth, crossover, envelope, growth, log_spaced
 from verify.separation_working import Stopped
 
@@ -68,30 +68,30 @@ def separate(
     step_size: Exact,
     steps: int,
     digits: int = 17,
-    arithmetic: str | None = None,
+    arithmetic: str = AUTO,
     progress: Progress | None = None,
 ) -> SeparationResult:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
 
     `digits`: significant digits wanted of every part. `arithmetic` stands for exact arithmetic;
-    None takes the fastest that can. Raises InputError for h ≤ 0, N < 1, a parameter without a
+    `auto` takes the fastest that can. Raises InputError for h ≤ 0, N < 1, a parameter without a
     value, unknown names, and for float64, which is what is examined.
     """
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, ())
-    chosen = _reference(arithmetic)
+    _check_reference(arithmetic)
     work = Separation(hamiltonian, scheme, start, steps)
     chains: Chains | None = None
     stopped = None
     try:
-        chains = work.chains(chosen, digits, progress or (lambda _: None))
+        chains = work.chains(digits, arithmetic, progress or (lambda _: None))
     except Stopped as answer:
         stopped = answer
     return SeparationResult(
         hamiltonian=to_text(hamiltonian.expression),
         parameters={name: text(value) for name, value in hamiltonian.values},
         scheme=scheme,
-        arithmetic=chosen,
+        arithmetic=chains.arithmetic if chains else arithmetic,
         digits=digits,
         step_size=text(start["h"]),
         steps=steps,
@@ -104,7 +104,7 @@ def separate(
         closed_form=(
             _evaluation(chains.closed_form, digits) if chains and chains.closed_form else None
         ),
-        error_method="; ".join(dict.fromkeys(chains.methods)) if chains else "none",
+        error_method="; ".join(chains.plain.methods) if chains else "none",
         seconds=chains.seconds if chains else 0.0,
     )
 
@@ -119,7 +119,7 @@ def separate_grid(
     steps: int | None = None,
     time: Exact | None = None,
     digits: int = 17,
-    arithmetic: str | None = None,
+    arithmetic: str = AUTO,
     progress: Progress | None = None,
 ) -> SeparationGrid:
     """`separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
@@ -185,14 +185,11 @@ def grid(
     return list(found.items())
 
 
-def _reference(arithmetic: str | None) -> str:
-    known = [name for name in number_systems.names() if name != "float64"]
-    if arithmetic is None:
-        return "mpfr" if "mpfr" in known else "mpmath"
+def _check_reference(arithmetic: str) -> None:
+    known = [AUTO, *(name for name in number_systems.names() if name != "float64")]
     if arithmetic not in known:
         wrong = "is what is examined" if arithmetic == "float64" else "unknown"
         raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(known)}")
-    return arithmetic
 
 
 # -- from a chain to a result ---------------------------------------------------------------------

@@ -8,31 +8,35 @@ and the part between them is exactly 0.
 
 import copy
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 
 from verify import arithmetic as number_systems
-from verify.bounds import bounded, working_digits
+from verify.bounds import working_digits
+from verify.digits import choose, measure
 from verify.errors import InputError
 from verify.exact import magnitude
 from verify.hamiltonian import Hamiltonian
+from verify.number_system import UnsupportedError
 from verify.runs import proved
 from verify.schemes import get
 from verify.separation_working import (
     POINTS,
+    Advance,
     Kind,
     Link,
     Stopped,
+    Working,
     WorkingRun,
     exact_link,
+    marks_of,
     rounded_inputs,
 )
-from verify.separation_working import marks as marks_of
 from verify.step_map import StepMap
 from verify.stepping import Job
 
+AUTO = "auto"
 PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the chain's order
 _ENDS: dict[str, tuple[int | None, int]] = {  # between which links a quantity lies
     "lambda_working": (None, 4),
@@ -42,8 +46,10 @@ _ENDS: dict[str, tuple[int | None, int]] = {  # between which links a quantity l
 }
 QUANTITIES = tuple(_ENDS)
 _CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
-_ATTEMPTS = 3
+_ATTEMPTS = 4
 _DOUBLINGS = 6
+_BESIDE_FLOAT64 = ("fixed", "mpfr", "mpmath")  # what a mixed kernel can be made in
+_INTERPRETED = "mpfr"
 
 
 @dataclass(frozen=True)
@@ -73,23 +79,44 @@ class Chain:
         trail, bound = self.trail(name)
         return trail[-1], bound
 
+    def lacking(self, digits: int) -> list[int]:
+        """How many digits each link lacks for those wanted of the parts at its ends.
+
+        A part of 0 may stay unknown.
+        """
+        lacking = [0] * len(self.links)
+        for name, ends in _ENDS.items():
+            value, bound = self.final(name)
+            if not (value and bound):
+                continue
+            allowed = abs(value) / (4 * Fraction(10) ** digits)
+            for k in (end for end in ends if end is not None):
+                own = self.links[k].bound
+                if own > allowed:
+                    lacking[k] = max(lacking[k], magnitude(own / allowed) + 1)
+        return lacking
+
     @property
     def kind(self) -> Kind:
         return "enclosed" if all(x.kind == "enclosed" for x in self.links) else "estimated"
 
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """How the errors of the links were bounded, Λ₄'s apart, each way once."""
+        return tuple(dict.fromkeys(link.method for link in self.links[:4]))
+
 
 @dataclass(frozen=True)
 class Chains:
-    """The chains of the plain way and of the closed form, which has none where some det J ≤ 0."""
+    """The chains of the plain way and of the closed form, which has none where some det J ≤ 0.
+
+    `arithmetic` stood for exact arithmetic.
+    """
 
     plain: Chain
     closed_form: Chain | None
+    arithmetic: str
     seconds: float
-
-    @cached_property
-    def methods(self) -> tuple[str, ...]:
-        """How the errors of Λ₀, Λ₁, Λ₂ and Λ₃ were bounded."""
-        return tuple(link.method for link in self.plain.links[:4])
 
 
 class Separation:
@@ -100,40 +127,50 @@ class Separation:
     ) -> None:
         self.job = Job(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS)
         self.map = get(scheme).step_map(hamiltonian)
-        self.marks = marks_of(steps)
 
     def chains(
-        self, arithmetic: str, digits: int, advance: Callable[[int], None] = lambda _: None
+        self, digits: int, arithmetic: str = AUTO, advance: Advance = lambda _: None
     ) -> Chains:
         """Every part to so many digits where that can be had; raises Stopped where Λ has no value.
 
-        `arithmetic` stands for exact arithmetic. `advance` is called with the steps just done, of
-        three runs of N steps.
+        `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is
+        called with the steps just done, of three runs of N steps.
         """
-        wanted, begun = digits + _CANCELLED, time.perf_counter()
+        begun = time.perf_counter()
+        if arithmetic == AUTO:
+            arithmetic = choose(self.job, digits + _CANCELLED)
+        links = _Links(self.job, self.map, arithmetic, digits + _CANCELLED, advance)
         for _ in range(_ATTEMPTS):
-            plain, closed = self._links(arithmetic, wanted, advance)
-            missing = max(_missing(chain, digits) for chain in (plain, closed) if chain)
-            if missing <= 0:
+            plain, closed = links.chains()
+            lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
+            if not links.refine([max(each) for each in zip(*lacking, strict=True)]):
                 break
-            wanted, advance = wanted + missing + 5, lambda _: None
-        return Chains(plain, closed, time.perf_counter() - begun)
+        return Chains(plain, closed, arithmetic, time.perf_counter() - begun)
 
-    def _links(
-        self, arithmetic: str, digits: int, advance: Callable[[int], None]
-    ) -> tuple[Chain, Chain | None]:
-        inputs = rounded_inputs(self.job)
-        rounded = _rounded(self.job, inputs)
-        same = rounded.start == self.job.start and rounded.parameters == self.job.parameters
-        constant = self._proved(_rounded_map(self.map, rounded), rounded.start["h"], digits)
-        exact = self._proved(self.map, self.job.start["h"], digits)
 
-        own = number_systems.get(arithmetic, working_digits(digits, self.job.steps))
-        follow = constant is None and self.job.steps > 1
+class _Links:
+    """The links of a separation, each made when it is asked for, at its own number of digits."""
+
+    def __init__(
+        self, job: Job, step_map: StepMap, arithmetic: str, digits: int, advance: Advance
+    ) -> None:
+        self.job, self.arithmetic, self.advance = job, arithmetic, advance
+        self.marks = marks_of(job.steps)
+        self.digits = {"first": digits, "second": digits, "beside": digits}
+        self.inputs = rounded_inputs(job)
+        self.rounded = _rounded(job, self.inputs)
+        self.same = self.rounded.start == job.start and self.rounded.parameters == job.parameters
+        self.proved = _proved(step_map, job, digits)
+        self.constant = _proved(_rounded_map(step_map, self.rounded), self.rounded, digits)
+        self.made: dict[str, Link] = {}
+        self.working: Working | None = None
+
+    def chains(self) -> tuple[Chain, Chain | None]:
+        """The chain of the plain way and that of the closed form."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
-        working = WorkingRun(self.job, inputs, follow).go(own, advance)
-        first = exact or _reference(self.job, arithmetic, digits, advance)
-        second = first if same else constant or _reference(rounded, arithmetic, digits, advance)
+        working = self.working = self.working or self._beside()
+        first = self.proved or self._reference(self.job, "first")
+        second = first if self.same else self.constant or self._reference(self.rounded, "second")
         third = working.trajectory or second
         plain = Chain(self.marks, (first, second, third, working.determinant, working.plain))
         fourth, fifth = working.closed_delta_j, working.closed_form
@@ -141,15 +178,51 @@ class Separation:
             return plain, None
         return plain, Chain(self.marks, (first, second, third, fourth, fifth))
 
-    def _proved(self, step_map: StepMap | None, h: Fraction, digits: int) -> Link | None:
-        """Λ at every checkpoint where a proof gives it, which is where ΔJ is a constant."""
-        if step_map is None or "lambda" not in proved(step_map, h, 1, digits):
-            return None
-        if step_map.preserves_area:
-            return exact_link([Fraction(0)] * len(self.marks), "ΔJ ≡ 0")
-        found = [proved(step_map, h, n, digits)["lambda"] for n in self.marks]
-        worst = max(bound for _, bound in found)
-        return Link(tuple(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
+    def refine(self, lacking: Sequence[int]) -> bool:
+        """Asks for so many more digits of Λ₀ … Λ₄; False where no run lacks any."""
+        first, second, *beside = lacking
+        if self.same:
+            first, second = max(first, second), 0
+        wanted = {
+            "first": 0 if self.proved else first,
+            "second": 0 if self.constant else second,
+            "beside": max(beside),
+        }
+        self.advance = lambda _: None  # what was foreseen is done
+        for name, more in wanted.items():
+            if more:
+                self.digits[name] += more + 2
+                self.made.pop(name, None)
+        if wanted["beside"]:
+            self.working = None
+        return any(wanted.values())
+
+    def _beside(self) -> Working:
+        """The float64 run with exact arithmetic beside it, in mpfr where another cannot follow."""
+        run = WorkingRun(self.job, self.inputs, self.constant is None and self.job.steps > 1)
+        digits = working_digits(self.digits["beside"], self.job.steps)
+        name = self.arithmetic if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
+        try:
+            return run.go(number_systems.get(name, digits), self.advance)
+        except UnsupportedError:
+            return run.go(number_systems.get(_INTERPRETED, digits), self.advance)
+
+    def _reference(self, job: Job, name: str) -> Link:
+        if name not in self.made:
+            self.made[name] = _reference(job, self.arithmetic, self.digits[name], self.advance)
+        return self.made[name]
+
+
+def _proved(step_map: StepMap | None, job: Job, digits: int) -> Link | None:
+    """Λ at every checkpoint where a proof gives it, which is where ΔJ is a constant."""
+    h, marks, digits = job.start["h"], marks_of(job.steps), digits + len(str(job.steps))
+    if step_map is None or "lambda" not in proved(step_map, h, 1, digits):
+        return None
+    if step_map.preserves_area:
+        return exact_link([Fraction(0)] * len(marks), "ΔJ ≡ 0")
+    found = [proved(step_map, h, n, digits)["lambda"] for n in marks]
+    worst = max(bound for _, bound in found)
+    return Link(tuple(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
 
 
 def _rounded(job: Job, inputs: dict[str, float]) -> Job:
@@ -172,9 +245,8 @@ def _rounded_map(exact: StepMap, rounded: Job) -> StepMap | None:
         return None
 
 
-def _reference(job: Job, arithmetic: str, digits: int, advance: Callable[[int], None]) -> Link:
+def _reference(job: Job, arithmetic: str, digits: int, advance: Advance) -> Link:
     """Λ in exact arithmetic's stead, to so many digits; Stopped where a run cannot give it."""
-    own = number_systems.get(arithmetic, working_digits(digits, job.steps))
     last = 0
 
     def progress(done: int) -> None:
@@ -183,25 +255,17 @@ def _reference(job: Job, arithmetic: str, digits: int, advance: Callable[[int], 
         last = max(done, last)
 
     for _ in range(_DOUBLINGS):
-        first = job.go(own, progress=progress)
-        found = bounded(job, own, first, digits, {})
+        measured = measure(job, arithmetic, digits, progress)
+        found, run = measured.bounds, measured.outcome
         if found.status != "finished":
             reason = f"in exact arithmetic: {found.method}"
             raise Stopped(found.status, found.failed_step, reason)
         value, bound = found.values["lambda"]
-        # The bound is the last value's; the run's checkpoints share it where it has that value.
-        if first.done == job.steps and abs(first.values["lambda"] - value) <= bound:
-            trail = (*(x["lambda"] for x in first.trail[:-1]), value)
-            return Link(trail, bound, "estimated", found.method)
-        own = number_systems.get(arithmetic, 2 * (own.bits * 30103 // 100000))
+        # The bound is the last value's, where most has been added up; an estimate is that of the
+        # run's checkpoints, too, if it is the run's own last value that was confirmed.
+        if run.done == job.steps and abs(run.values["lambda"] - value) <= bound:
+            trail = (*(x["lambda"] for x in run.trail[:-1]), value)
+            kind: Kind = "enclosed" if found.rigorous else "estimated"
+            return Link(trail, bound, kind, found.method)
+        digits *= 2
     raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")
-
-
-def _missing(chain: Chain, digits: int) -> int:
-    """How many of the digits asked for some part lacks; a part of 0 may stay unknown."""
-    lacks = 0
-    for name in QUANTITIES:
-        value, bound = chain.final(name)
-        if value and bound:
-            lacks = max(lacks, digits - (magnitude(value) - magnitude(2 * bound)))
-    return lacks

@@ -4,12 +4,13 @@ How far they are known. Λ₄ is a float64, and so exact. Λ₂ and Λ₃ are pr
 states, so that nothing is magnified, and their rounding is counted:
 
 Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2 be
-the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each within u
-of its exact result, are e, t = Λ̂ e, s = e + t and Λ̂ + s. From |Λ̂ + s| ≤ (1 + u) M it follows that
-|s| ≤ 2.01 M, |e| ≤ 4.02 M, |t| ≤ 2.02 M, so |ρ| ≤ 12 u M; and if e itself is within B of its exact
-value (see `verify.rounding_count`), |ρ| ≤ 12 u M + 2 B. As P̂' ≥ 1/2, every step multiplies by
+the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each within
+u = 2^(1 − bits) of its exact result, are e, t = Λ̂ e, s = e + t and Λ̂ + s. From |Λ̂ + s| ≤ (1 + u) M
+it follows that |s| ≤ 2.01 M, |e| ≤ 4.02 M, |t| ≤ 2.02 M, so |ρ| ≤ 12 u M; in fixed point additions
+are exact, e and t are within a unit 2^−bits each, and |ρ| ≤ 3 units. If e itself is within B of
+its exact value (see `verify.rounding`), |ρ| grows by 2 B. As P̂' ≥ 1/2, every step multiplies by
 1 + θ at most beside the exact factor, |θ| ≤ 2.01 |ρ|; after N steps the product is within
-1.5 · 1.01 · N |θ| ≤ 4 N (12 u M + 2 B) of the exact one, as long as this is below 1/100.
+1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this is below 1/100.
 Where M > 1/2, or B is not known, a rerun with more digits estimates the error instead.
 """
 
@@ -19,9 +20,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
 
+import flint
+
 from verify import arithmetic as number_systems
-from verify.number_system import Arithmetic
-from verify.rounding_count import rounding_error, unit
+from verify.balls import bounds as ends
+from verify.balls import rational_ball
+from verify.number_system import Arithmetic, UnsupportedError
+from verify.reach import limits
+from verify.rounding import PRECISION, Rounded, analyse, rounding_of
 from verify.separation_kernel import MixedKernel, mixed_kernel
 from verify.stepping import Job
 
@@ -71,7 +77,7 @@ def exact_link(trail: Sequence[Fraction], method: str) -> Link:
     return Link(tuple(trail), Fraction(0), "enclosed", method)
 
 
-def marks(steps: int) -> tuple[int, ...]:
+def marks_of(steps: int) -> tuple[int, ...]:
     """The numbers of steps at the checkpoints, as `Job.go` makes them for `POINTS`."""
     section = -(-steps // POINTS)
     return tuple(min(k, steps) for k in range(section, steps + section, section))
@@ -85,7 +91,7 @@ class WorkingRun:
 
     def __init__(self, job: Job, inputs: dict[str, float], follow: bool) -> None:
         self.job, self.inputs, self.follow = job, inputs, follow
-        self.marks = marks(job.steps)
+        self.marks = marks_of(job.steps)
 
     def go(self, arithmetic: Arithmetic, advance: Advance) -> Working:
         """All steps; raises Stopped where float64 leaves its range."""
@@ -127,7 +133,8 @@ class WorkingRun:
     def _states(self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance) -> list[State]:
         """What the kernel carries, at every checkpoint."""
         given = [self.inputs[n] for n in ("h", *kernel.parameters)]
-        fixed = [*given, *(arithmetic.number(Fraction(x)) for x in given)]
+        wide = [arithmetic.number(Fraction(x)) for x in given]
+        fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
         state: State = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
         for name in kernel.carried:
             if name not in kernel.start:  # p, q and the region that they visit
@@ -141,6 +148,8 @@ class WorkingRun:
             while done < mark:
                 count = min(arithmetic.chunk, mark - done)
                 after = _after(kernel, arithmetic, fixed, state, count)
+                if after is None and arithmetic.absolute:
+                    raise UnsupportedError("the orbit leaves the range of fixed")
                 if after is None:
                     done += _last_good(kernel, arithmetic, fixed, state, count)
                     raise Stopped("left range", done + 1, "float64 leaves its range")
@@ -149,6 +158,23 @@ class WorkingRun:
                 advance(count)
             found.append(state)
         return found
+
+    def _limits(self, kernel: MixedKernel, arithmetic: Arithmetic) -> list[Any]:
+        """What the kernel compares p, q and Λ with; UnsupportedError where they start beyond it."""
+        if not kernel.limits:
+            return []
+        inputs = {n: Fraction(x) for n, x in self._named(kernel).items()}
+        found = limits(kernel.wide, inputs)
+        if found is None or any(
+            abs(self.inputs[n]) >= reach for n, reach in (("p", found.p), ("q", found.q))
+        ):
+            raise UnsupportedError("a step from the start may leave the range of fixed")
+        return [float(found.p), float(found.q), arithmetic.number(found.part)]
+
+    def _named(self, kernel: MixedKernel) -> dict[str, float]:
+        """h and the parameters by the names that the source has for them."""
+        named = {f"x{k}": self.inputs[n] for k, n in enumerate(kernel.parameters)}
+        return {"h": self.inputs["h"], **named}
 
     # -- bounds -------------------------------------------------------------------------------
 
@@ -160,18 +186,29 @@ class WorkingRun:
         for name in _WIDE:
             if f"w_{name}" in last:
                 own: Fraction | None = Fraction(0)
-                if name == "trajectory" and kernel.delta_j is not None:
-                    box = self._box(kernel, last)
-                    own = rounding_error(*kernel.delta_j, box, arithmetic)
+                if name == "trajectory":
+                    own = self._of_delta_j(kernel, arithmetic, last)
                 top = arithmetic.exact(last[f"w_{name}_top"])
                 found[name] = _accumulated(self.job.steps, top, own, arithmetic)
         return found
 
-    def _box(self, kernel: MixedKernel, last: State) -> dict[str, tuple[Fraction, Fraction]]:
-        box = {n: (Fraction(last[f"f_{n}_low"]), Fraction(last[f"f_{n}_high"])) for n in ("p", "q")}
-        for k, name in enumerate(kernel.parameters):
-            box[f"x{k}"] = (Fraction(self.inputs[name]),) * 2
-        return box | {"h": (Fraction(self.inputs["h"]),) * 2}
+    def _of_delta_j(
+        self, kernel: MixedKernel, arithmetic: Arithmetic, last: State
+    ) -> Fraction | None:
+        """B: the error of one wide ΔJ, all over the region that the float64 states have visited."""
+        lowering, root = kernel.wide.lowering, kernel.wide.outputs["dj"]
+        with flint.ctx.workprec(PRECISION):
+            # A float64 goes to a fixed-point number but for what is below its last place.
+            cut = flint.arb(2) ** -arithmetic.bits if arithmetic.absolute else flint.arb(0)
+            inputs = {
+                n: Rounded(rational_ball(Fraction(x)), cut) for n, x in self._named(kernel).items()
+            }
+            for n in ("p", "q"):
+                low, high = (rational_ball(Fraction(last[f"f_{n}_{x}"])) for x in ("low", "high"))
+                inputs[n] = Rounded(low.union(high), cut)
+            live, rounding = lowering.live([root]), rounding_of(arithmetic)
+            found = analyse(lowering.program, live, inputs, rounding)
+            return None if found is None else ends(found[root].error)[1]
 
 
 def rounded_inputs(job: Job) -> dict[str, float]:
@@ -191,14 +228,15 @@ def _after(
     """The state after `count` steps, or None where float64 leaves its range on the way."""
     try:
         with arithmetic.context():
-            _, *after = kernel.function(count, *fixed, *(state[n] for n in kernel.carried))
+            carried = (state[n] for n in kernel.carried)
+            done, *after = kernel.function(count, *fixed, *carried)
     except (ArithmeticError, ValueError):
         return None
     found = dict(zip(kernel.carried, after, strict=True))
     # The sums of logarithms may be undefined while the orbit and the plain way go on.
     vital = (x for n, x in found.items() if n not in ("f_sum", "f_rest"))
     finite = all(math.isfinite(x) if isinstance(x, float) else arithmetic.finite(x) for x in vital)
-    return found if finite else None
+    return found if finite and done == count else None
 
 
 def _last_good(
@@ -221,7 +259,8 @@ def _accumulated(
     """The bound of the module's docstring; M = `top`, B = `own`."""
     if own is None or top > Fraction(1, 2):
         return None
-    bound = 4 * steps * (12 * unit(arithmetic) * top + 2 * own)
+    rounded = 3 * _unit(arithmetic) if arithmetic.absolute else 12 * _unit(arithmetic) * top
+    bound = 4 * steps * (rounded + 2 * own)
     return bound if bound <= Fraction(1, 100) else None
 
 
@@ -232,7 +271,12 @@ def _apart(
     x = [coarse.exact(state[f"w_{name}"]) for state in first]
     y = [fine.exact(state[f"w_{name}"]) for state in second]
     apart = max(abs(a - b) for a, b in zip(x, y, strict=True))
-    return 2 * apart + unit(coarse) * max(map(abs, x))
+    return 2 * apart + _unit(coarse) * (1 if coarse.absolute else max(map(abs, x)))
+
+
+def _unit(arithmetic: Arithmetic) -> Fraction:
+    """One operation's error at most: relative, and twice that of rounding to nearest; or a unit."""
+    return Fraction(1 if arithmetic.absolute else 2, 2**arithmetic.bits)
 
 
 def _digits(arithmetic: Arithmetic) -> int:

@@ -1,37 +1,46 @@
 """Stepping: a job of N steps, in chunks, in whatever arithmetic it is given."""
 
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
 
 from verify.errors import InputError
-from verify.exact import decimal
+from verify.exact import text
 from verify.hamiltonian import Hamiltonian
+from verify.keeping import NOTHING, Keeper
 from verify.kernel import Kernel, kernel_for
 from verify.number_system import Arithmetic
+from verify.reach import Limits, limits
 from verify.results import SeriesPoint
 from verify.schemes import get
-
-Progress = Callable[[int], None]  # called with the number of steps done
-State = tuple[Any, ...]
-_CHECKPOINTS = 16
-ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
+from verify.walk import Progress, Walk
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done."""
+    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done.
+
+    `tangents` has what `verify.tangent.NAMES` names, at the same checkpoints; `kernel` made them.
+    `reason` says why the run ended early, where that is the number format's doing.
+    """
 
     done: int
     trail: tuple[dict[str, Fraction], ...]
+    tangents: tuple[dict[str, Fraction], ...]
     series: tuple[SeriesPoint, ...]
     seconds: float
+    kernel: Kernel | None
+    reason: str = ""
 
     @property
     def values(self) -> dict[str, Fraction]:
         return self.trail[-1]
+
+
+_NOWHERE = Outcome(
+    0, (), (), (), 0.0, None, "an operation of the first step may leave the range of fixed"
+)
 
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
@@ -59,104 +68,97 @@ class Job:
         steps: int,
         observables: frozenset[str],
         points: int,
+        keeper: Keeper = NOTHING,
     ) -> None:
         self.generic, self.scheme = _compilable(hamiltonian, scheme), scheme
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
+        self.keeper = keeper
+
+    def observing(self, observables: frozenset[str]) -> "Job":
+        """The same job with other observables, and without a series."""
+        other = copy(self)
+        other.observables, other.points = observables, 0
+        return other
+
+    def fits(self, arithmetic: Arithmetic) -> bool:
+        """Whether a step from the start stays in an arithmetic of limited range.
+
+        Raises UnsupportedError where that lacks a function.
+        """
+        made = (self.generic, self.scheme, arithmetic, self.observables | {"tangent"}, False)
+        highest = kernel_for(*made).power
+        return any(self._limits(kernel_for(*made, n)) for n in range(highest, -1, -1))
 
     def go(
         self,
         arithmetic: Arithmetic,
         *,
         compensated: bool = False,
+        tangent: bool = False,
         progress: Progress | None = None,
+        enough: Callable[[Outcome], bool] | None = None,
     ) -> Outcome:
-        """All steps in this arithmetic; the series only where the kernel collects extremes."""
+        """All steps in this arithmetic; the series only where the kernel collects extremes.
+
+        `tangent` carries the tangent map along. `enough` is asked at the first checkpoint whether
+        to go on; where it says no the run ends there. A fixed-point run that cannot stay within its
+        limits ends early.
+        """
         observables = self.observables if not compensated else self.observables - {"extremes"}
-        kernel = kernel_for(self.generic, self.scheme, arithmetic, observables, compensated)
-        number = arithmetic.number
-        fixed = [number(self.start["h"]), *(number(self.parameters[n]) for n in kernel.parameters)]
-        state: State = tuple(number(self.start[n]) for n in ("p", "q"))
-        state += tuple(number(Fraction(x)) for x in kernel.start)
-        advance(kernel, arithmetic, fixed, state, 0)  # compiles: `seconds` is the stepping alone
-        sections = -(-self.steps // (self.points or _CHECKPOINTS))  # steps of a section
-        series: list[SeriesPoint] = []
-        trail: list[dict[str, Fraction]] = []
-        extremes: list[State] = []
-        begun, done = time.perf_counter(), 0
-        while done < self.steps:
-            count = min(arithmetic.chunk, sections - done % sections, self.steps - done)
-            after = advance(kernel, arithmetic, fixed, state, count)
-            if after is None:
-                done += last_good(kernel, arithmetic, fixed, state, count)
-                break
-            state = after
-            extremes.append(state)
-            done += count
-            if done % sections == 0 or done == self.steps:
-                trail.append(self.finals(kernel, arithmetic, state, done))
-                if "extremes" in observables:
-                    first = (len(trail) - 1) * sections + 1
-                    series.append(_point(kernel, arithmetic, extremes, first, done))
-                extremes.clear()
-            if progress:
-                progress(done)
-        seconds = time.perf_counter() - begun
-        return Outcome(done, tuple(trail), tuple(series), seconds)
+        observables |= {"tangent"} if tangent else frozenset()
+        made = (self.generic, self.scheme, arithmetic, observables, compensated)
+        kernel = kernel_for(*made)
+        if not arithmetic.absolute:
+            return self._walk(kernel, arithmetic, (), progress, enough)
+        outcome = _NOWHERE
+        for power in range(kernel.power, -1, -1):
+            # With less of h divided out ΔJ is smaller, and the orbit may go farther.
+            kernel = kernel_for(*made, power)
+            found = self._limits(kernel)
+            if found is None:
+                continue
+            outcome = self._walk(kernel, arithmetic, tuple(found), progress, enough)
+            if outcome.done == self.steps or not outcome.trail:
+                return outcome
+            left = f"left |p| < {text(found.p)}, |q| < {text(found.q)} at step {outcome.done + 1}"
+            outcome = replace(
+                outcome, reason=f"the orbit {left}, or a value was too large for fixed"
+            )
+        return outcome
 
-    def finals(
-        self, kernel: Kernel, arithmetic: Arithmetic, state: State, done: int
-    ) -> dict[str, Fraction]:
-        """p, q and the observables after `done` steps, as the exact rationals that they are."""
-        raw = {n: arithmetic.exact(x) for n, x in zip(kernel.carried, state, strict=True)}
-        total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
-        result = {"p": total["p"], "q": total["q"]}
-        for name in self.observables & set(ACCUMULATORS):
-            result[name] = total[ACCUMULATORS[name]]
-        if "mse" in result:
-            result["mse"] /= done
-        if "lambda_plain" in result:
-            result["lambda_plain"] -= 1
-        return result
+    def inputs(self, kernel: Kernel) -> dict[str, Fraction]:
+        """h and the parameters by the names that the kernel's source has for them."""
+        named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
+        return {"h": self.start["h"], **named}
 
+    def _limits(self, kernel: Kernel) -> Limits | None:
+        found = limits(kernel, self.inputs(kernel))
+        if found is None or abs(self.start["p"]) >= found.p or abs(self.start["q"]) >= found.q:
+            return None
+        return found
 
-def advance(
-    kernel: Kernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
-) -> State | None:
-    """The state after `count` steps, or None where a number left the arithmetic's range."""
-    try:
-        with arithmetic.context():
-            done, *after = kernel.function(count, *fixed, *state)
-    except (ArithmeticError, ValueError):  # not float64: a pole, or the log or root of a negative
-        return None
-    if done < count or not all(arithmetic.finite(x) for x in after):
-        return None
-    return tuple(after)
+    def _walk(
+        self,
+        kernel: Kernel,
+        arithmetic: Arithmetic,
+        limits: tuple[Fraction, ...],
+        progress: Progress | None,
+        enough: Callable[[Outcome], bool] | None,
+    ) -> Outcome:
+        walk = Walk(self, kernel, arithmetic, limits)
 
+        def outcome() -> Outcome:
+            return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
+                           walk.seconds, kernel)  # fmt: skip
 
-def last_good(
-    kernel: Kernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
-) -> int:
-    """The greatest number of steps below `count` that stays in range, by bisection."""
-    good, bad = 0, count
-    while bad - good > 1:
-        middle = (good + bad) // 2
-        if advance(kernel, arithmetic, fixed, state, middle) is None:
-            bad = middle
-        else:
-            good = middle
-    return good
-
-
-def _point(
-    kernel: Kernel, arithmetic: Arithmetic, states: Sequence[State], first: int, last: int
-) -> SeriesPoint:
-    """The extremes over the kernel calls that ended in these states."""
-    at = [dict(zip(kernel.carried, state, strict=True)) for state in states]
-
-    def pair(name: str) -> tuple[str, str]:
-        low = min(arithmetic.exact(x[f"{name}_low"]) for x in at)
-        high = max(arithmetic.exact(x[f"{name}_high"]) for x in at)
-        return decimal(low, 7), decimal(high, 7)
-
-    return SeriesPoint(first=first, last=last, delta_j=pair("dj"), lam=pair("lam"))
+        try:
+            for done in walk.chunks():
+                if progress:
+                    progress(done)
+                if enough and done == walk.section and not enough(outcome()):
+                    return replace(_NOWHERE, done=done, seconds=walk.seconds)
+        except KeyboardInterrupt:
+            walk.keep()
+            raise
+        return outcome()

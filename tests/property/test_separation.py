@@ -22,7 +22,7 @@ quick = settings(deadline=None, max_examples=60)
 def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> Chains:
     work = Separation(Hamiltonian.parse(text), f"lie{eta}", start, steps)
     try:
-        return work.chains("mpmath", 17)
+        return work.chains(17, "mpfr")
     except Stopped:
         assume(False)
         raise

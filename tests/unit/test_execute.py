@@ -15,8 +15,10 @@ import pytest
 from tests.end_to_end.test_report_command import ended
 from tests.unit.test_scene import DUFFING, GRID, SERIES, load
 from verify import execute as execution
+from verify import keeping
 from verify.errors import InputError
-from verify.execute import Result, Store, execute, fingerprint, write_atomically
+from verify.execute import Result, Store, execute
+from verify.keeping import fingerprint, write_atomically
 from verify.plan import Plan, ProofTask, plan_scenes
 
 CONTENT = (
@@ -162,9 +164,9 @@ def test_another_source_does_not_take_up_the_results_of_this_one(
 ) -> None:
     source = tmp_path / "verify"
     (source / "schemes").mkdir(parents=True)
-    (source / "execute.py").write_text("one = 1\n")
+    (source / "keeping.py").write_text("one = 1\n")
     (source / "schemes" / "lie.py").write_text("two = 2\n")
-    monkeypatch.setattr(execution, "__file__", str(source / "execute.py"))
+    monkeypatch.setattr(keeping, "__file__", str(source / "keeping.py"))
 
     def fresh() -> str:
         fingerprint.cache_clear()

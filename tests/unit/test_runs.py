@@ -16,8 +16,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from verify.bounds import DIRECT_STEPS
 from verify.errors import InputError
+from verify.float_bounds import DIRECT_STEPS
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import kernel_for
 from verify.results import RunResult
@@ -53,7 +53,7 @@ def unit_of(value: str) -> Fraction:
 @vectors
 def test_mpmath_at_50_digits_gives_all_the_digits_of_the_vectors(case: dict[str, Any]) -> None:
     found = run_case(case, arithmetic="mpmath", digits=50)
-    assert (found.status, found.error_kind) == ("finished", "estimated")
+    assert (found.status, found.error_kind) == ("finished", "enclosed")
     assert set(found.values) == set(VALUES)
     for name in VALUES:
         value, true = found.values[name], Fraction(case[name])
@@ -230,7 +230,7 @@ def test_symplectic_euler_gives_exact_zeros_that_no_kernel_computes(
         n: (found.values[n].value, found.values[n].bound) for n in CLOSED_FORM
     } == dict.fromkeys(CLOSED_FORM, ("0", "0"))
     assert set(found.exact) == set(CLOSED_FORM)
-    assert set(seen) == {frozenset()}
+    assert set().union(*seen) <= {"tangent"}
     assert found.series == ()
 
 
@@ -257,7 +257,7 @@ def test_a_constant_delta_j_gives_lambda_in_closed_form(
     harmonic = Hamiltonian.parse("p**2/2 + omega**2*q**2/2", {"omega": "7/3"})
     at = {"q": "0.3", "p": 1, "step_size": "1/7", "steps": steps, "digits": 40}
     found = run(harmonic, f"lie{eta}", **at, arithmetic=arithmetic)
-    assert set(seen) == {frozenset()}
+    assert set().union(*seen) <= {"tangent"}
     true = harmonic_lambda(eta, Fraction(1, 3), steps)
     one = harmonic_lambda(eta, Fraction(1, 3), 1)
     wanted = {"lambda": true, "delta_j_max": abs(one), "mse": one**2}

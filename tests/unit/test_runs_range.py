@@ -238,8 +238,8 @@ def peak(steps):
     own = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-peak(200_000)  # compiles
-print(*peak(200_000), *peak(20_000_000))
+peak(500_000)  # compiles
+print(*peak(500_000), *peak(20_000_000))
 """
 
 

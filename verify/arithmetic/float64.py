@@ -27,6 +27,7 @@ def make(digits: int) -> Arithmetic:
         functions={
             **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
             "sqrt": math.sqrt,
+            "root": _root,
             "pi": math.pi,
         },
         compile=_compile,
@@ -46,13 +47,13 @@ def _number(value: Fraction) -> float:
 def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     import numba
 
-    scope = {"root": numba.njit(root_of), **namespace}
+    scope = {**namespace, "root": numba.njit(_root)}
     exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
     compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(scope[name])
     return compiled
 
 
-def root_of(x: float, n: int) -> float:
+def _root(x: float, n: int) -> float:
     # 1/n is rounded, which x ** (1/n) magnifies by log x; one Newton step takes that away.
     root: float = x ** (1.0 / n)
     return root - (root**n - x) / (n * root ** (n - 1)) if root > 0 else root

@@ -1,0 +1,246 @@
+"""A rigorous bound for a long run, from what was carried along with it.
+
+Let z_{k+1} = Φ(z_k) be the exact orbit of the exact step map, ẑ_k the computed one, and
+e_k = ẑ_k − z_k, A_k = DΦ(ẑ_k). Then ẑ_{k+1} = Φ(ẑ_k) + r_k with ‖r_k‖ ≤ ε, the rounding of one
+step, counted from the kernel's operations over the box that the orbit has visited
+(`verify.rounding`), and by Taylor's theorem
+
+    e_{k+1} = A_k e_k + s_k,   ‖s_k‖ ≤ ε + ½ B ‖e_k‖²,
+
+B a bound of the second derivatives of Φ over that box, widened by the error. Ball arithmetic would
+multiply norms of A_k here and lose digits like e^(cT). Instead take any matrices M_k, M_0 = 1, that
+nearly follow the tangent map: M_{k+1} = A_k M_k + R_k with ‖R_k‖ ≤ ρ ‖M_k‖ (`verify.tangent`
+carries them in float64; ρ is counted as ε is). With e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2,
+
+    x_{k+1} = x_k + M_{k+1}⁻¹ (s_k − R_k x_k),
+
+and by Gronwall's lemma, with d = min |det M_k|, S = Σ ‖M_k‖, Q = (ρ/d) Σ ‖M_k‖²,
+
+    ‖x_k‖ ≤ X := e^Q (‖x_0‖ + (S/d) (ε + ½ B E²)),   ‖e_k‖ ≤ E := max ‖M_k‖ X.
+
+For integrable motion ‖M_k‖ grows linearly in time, so E grows like N T² ε, and a run of 2·10⁷ steps
+loses some 20 digits and not thousands. The quadratic term is closed by a bootstrap: E* is taken as
+twice the bound without it; if with E* in it the bound is at most E*, then by induction over k it
+holds for all k. (Norms are Euclidean and Frobenius; S ≤ (N Σ ‖M_k‖²)^½.)
+
+Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = ΔJ/h^r over the box
+and η its rounding; their sum bounds how log(1 + Λ) moves. The rounding of the sums themselves is
+counted
+once per step, and multiplied in Λ by the greatest ratio of two of its factors, κ = (1 + max Λ)/(1 +
+min Λ).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import flint
+
+from verify.balls import bounds, rational_ball
+from verify.derivatives import Derivatives
+from verify.number_system import Arithmetic
+from verify.rounding import FLOAT, PRECISION, Ball, Rounded, Rounding, analyse, rounding_of
+from verify.stepping import Job, Outcome
+
+_MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
+METHOD = "a-posteriori bound with the tangent map carried along"
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """One step's rounding: of the state, of D, of the tangent map relative to its size."""
+
+    state: Ball
+    delta_j: Ball
+    tangent: Ball
+    size: Ball  # a bound of |D|
+
+
+def certify(job: Job, arithmetic: Arithmetic, outcome: Outcome) -> dict[str, Fraction] | None:
+    """Bounds of the errors of a run's final values, rigorous; None where there is none.
+
+    The run must have carried the tangent map. Errors are those against the exact orbit of the exact
+    map for the exact h, parameters and initial values.
+    """
+    return certify_at(job, arithmetic, outcome, len(outcome.trail) - 1)
+
+
+def certify_at(
+    job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int
+) -> dict[str, Fraction] | None:
+    """`certify` for the values at one of the run's checkpoints."""
+    with flint.ctx.workprec(PRECISION):
+        found = _Certificate(job, arithmetic, outcome, note).bounds()
+    return found
+
+
+class _Certificate:
+    def __init__(self, job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
+        assert outcome.kernel is not None  # noqa: S101 - the caller's condition
+        self.job, self.arithmetic, self.kernel = job, arithmetic, outcome.kernel
+        self.rounding = rounding_of(arithmetic)
+        self.steps = int(outcome.tangents[note]["done"])
+        self.values = outcome.trail[note]
+        self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
+        self.h = rational_ball(job.start["h"])
+        self.derivatives = Derivatives.of(job.generic, job.scheme)
+
+    # -- the orbit ----------------------------------------------------------------------------
+
+    def bounds(self) -> dict[str, Fraction] | None:
+        steps = self.one_step()
+        if steps is None:
+            return None
+        orbit = self.orbit(steps)
+        if orbit is None:
+            return None
+        error, summed = orbit
+        found = {"p": error, "q": error} | self.observables(steps, error, summed)
+        return {name: bounds(x)[1] for name, x in found.items() if x.is_finite()}
+
+    def box(self, margin: Ball) -> dict[str, Ball]:
+        """The states visited, widened; float64's rounding of them is within 2^−50."""
+        around = flint.arb(0, 1)
+        found = {}
+        for n in ("p", "q"):
+            low, high = self.seen[f"{n}_low"], self.seen[f"{n}_high"]
+            rounded = flint.arb(2) ** -50 * (1 + abs(low) + abs(high))
+            found[n] = low.union(high) + around * (margin + rounded)
+        return found
+
+    def one_step(self) -> _Steps | None:
+        kernel, program = self.kernel, self.kernel.lowering.program
+        inputs = self.inputs(self.rounding)
+        found = analyse(program, kernel.lowering.live(kernel.roots), inputs, self.rounding)
+        if found is None or kernel.tangent is None:
+            return None
+        values = {name: found[index] for name, index in kernel.outputs.items()}
+        tangent = self.one_tangent(found)
+        if tangent is None:
+            return None
+        added = [self.adding(name, values[f"d{name}"]) for name in ("p", "q")]
+        state = (added[0] * added[0] + added[1] * added[1]).sqrt().abs_upper()
+        return _Steps(state, values["dj"].error, tangent, values["dj"].magnitude)
+
+    def inputs(self, rounding: Rounding) -> dict[str, Rounded]:
+        """The state, which is data and has no error, and h and the parameters as rounded."""
+        given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
+        unit = flint.arb(2) ** -self.arithmetic.bits
+        for name, exact in self.job.inputs(self.kernel).items():
+            x = rational_ball(exact)
+            held = self.arithmetic.exact(self.arithmetic.number(exact)) == exact
+            size = flint.arb(1) if self.arithmetic.absolute else abs(x)
+            given[name] = Rounded(x, flint.arb(0) if held else unit * size)
+        return given
+
+    def adding(self, name: str, increment: Rounded) -> Ball:
+        """The error of a component's increment, and of adding it."""
+        if self.arithmetic.absolute:
+            return increment.error
+        size = self.box(flint.arb(0))[name].abs_upper() + increment.magnitude
+        return increment.error + size * flint.arb(2) ** -self.arithmetic.bits
+
+    def one_tangent(self, main: Mapping[int, Rounded]) -> Ball | None:
+        """ρ: the error of one step of the tangent map, relative to ‖M‖."""
+        tangent = self.kernel.tangent
+        assert tangent is not None  # noqa: S101 - the caller's condition
+        unit = flint.arb(2) ** -52
+        inputs = {}
+        for at in tangent.needed:
+            x = main[at]
+            lost = x.magnitude * unit + flint.arb(2) ** -96
+            inputs[f"approx(v{at})"] = Rounded(x.interval, x.error + lost)
+        live = tangent.lowering.live(tangent.change)
+        found = analyse(tangent.program, live, inputs, FLOAT)
+        if found is None:
+            return None
+        entries = [found[index] for index in tangent.change]
+        size, error = (
+            _norm([getattr(x, part) for x in entries]) for part in ("magnitude", "error")
+        )
+        return (error + 2 * unit * size + unit * unit).abs_upper()
+
+    def orbit(self, steps: _Steps) -> tuple[Ball, Ball] | None:
+        """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
+        seen, count = self.seen, self.steps
+        slack = 1 + flint.arb(count) * flint.arb(2) ** -50  # of float64's own sums
+        growth, top = seen["growth"] * slack, (seen["growth_top"] * slack).sqrt()
+        least = seen["det_low"] - flint.arb(2) ** -48 * seen["growth_top"]
+        if not (growth.is_finite() and least > 0):
+            return None
+        rate = steps.tangent * growth / least
+        if not rate < _MOST_GROWTH:
+            return None
+        path = (count * growth).sqrt()  # Σ ‖M_k‖
+        first = self.first_error()
+        alone = rate.exp() * (first + path / least * steps.state)
+        error = (2 * top * alone).abs_upper()
+        second = self.derivatives.second(self.values_of_inputs(), self.box(error))
+        more = rate.exp() * path / least * second * error * error / 2
+        if not top * (alone + more) <= error:
+            return None
+        return error, ((alone + more) * path).abs_upper()
+
+    def first_error(self) -> Ball:
+        start, number, exact = self.job.start, self.arithmetic.number, self.arithmetic.exact
+        lost = [rational_ball(exact(number(start[n])) - start[n]) for n in ("p", "q")]
+        return _norm(lost)
+
+    def values_of_inputs(self) -> dict[str, Ball]:
+        named = {n: rational_ball(x) for n, x in self.job.parameters.items()}
+        return {"h": self.h, **named}
+
+    # -- the observables ----------------------------------------------------------------------
+
+    def observables(self, steps: _Steps, error: Ball, summed: Ball) -> dict[str, Ball]:
+        asked, count = self.job.observables, self.steps
+        if not asked & {"delta_j_max", "mse", "lambda"}:
+            return {}
+        scale = self.h**self.kernel.power
+        slope = self.derivatives.gradient(
+            self.values_of_inputs(), self.box(error), self.kernel.power
+        )
+        moved = slope * summed + count * steps.delta_j  # Σ |D̂_k − D(z_k)|
+        size = steps.size + slope * error
+        result = {}
+        if "delta_j_max" in asked:
+            result["delta_j_max"] = scale * (slope * error + steps.delta_j)
+        if "mse" in asked:
+            added = self.added(
+                rational_ball(self.values["mse"]) * count / scale / scale, size * size
+            )
+            result["mse"] = scale * scale * (2 * size * moved / count + added)
+        if "lambda" in asked:
+            result["lambda"] = self.of_lambda(scale, moved, size)
+        return {name: x.abs_upper() for name, x in result.items()}
+
+    def added(self, total: Ball, term: Ball) -> Ball:
+        """The rounding of one term and of its addition to a sum of non-negative terms."""
+        unit = flint.arb(2) ** -self.arithmetic.bits
+        return unit if self.arithmetic.absolute else unit * (total + term) * 2
+
+    def of_lambda(self, scale: Ball, moved: Ball, size: Ball) -> Ball:
+        count, unit = self.steps, flint.arb(2) ** -self.arithmetic.bits
+        low, high = self.seen["least"], self.seen["most"]
+        largest = abs(low).max(abs(high)) + unit
+        jump = scale * size
+        if not (jump < flint.arb("0.5") and low > -1):
+            return flint.arb.nan()
+        # log(1 + Λ) moves by Σ |δ_k| / (1 − |ΔJ|).
+        shift = ((scale * moved) / (1 - jump)).expm1() * (1 + high)
+        ratio = (1 + high + unit) / (1 + low - unit) * 2
+        grown = size * (1 + largest)
+        if self.arithmetic.absolute:
+            # D Λ and h^r (D + D Λ) are rounded, and h^r itself; Λ as a factor feels all of it.
+            scale_error = unit * 4 * (1 + self.kernel.power)
+            factor = ratio * count * (scale * unit + unit + scale_error * grown)
+            return shift + scale * (count * unit + count * size * factor) + scale * count * unit
+        each = unit * (largest + 4 * jump * (1 + largest)) * 2
+        return shift + ratio * count * each
+
+
+def _norm(entries: list[Ball]) -> Ball:
+    total = flint.arb(0)
+    for x in entries:
+        total += x * x
+    return total.sqrt().abs_upper()

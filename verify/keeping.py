@@ -1,0 +1,97 @@
+"""What is kept on disk, so that an interruption loses little: atomically, one file a thing."""
+
+import contextlib
+import hashlib
+import json
+import os
+import sys
+import tempfile
+import time
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
+_SECONDS = 5.0  # between two checkpoints of a run
+
+
+def write_atomically(path: Path, content: str) -> None:
+    """The whole content or the old one, never a part: written beside it, then renamed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    python = ".".join(map(str, sys.version_info[:3]))
+    return {"Python": python} | {name: version(name) for name in _VERSIONED}
+
+
+@cache
+def fingerprint() -> str:
+    """A name for this package's source and its libraries: results of others are not taken up."""
+    digest = hashlib.sha256(json.dumps(versions()).encode())
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+class Keeper:
+    """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
+
+    A checkpoint is written every few seconds and where the run is interrupted, and is of use to the
+    same task and the same code only.
+    """
+
+    def __init__(self, folder: Path | None, name: str) -> None:
+        self._folder, self._name = folder, name
+        self._written: dict[str, float] = {}
+
+    def _path(self, label: str) -> Path | None:
+        if self._folder is None:
+            return None
+        short = hashlib.sha256(label.encode()).hexdigest()[:12]
+        return self._folder / f"{self._name}-{fingerprint()}-{short}.checkpoint"
+
+    def load(self, label: str) -> dict[str, Any] | None:
+        """What was kept under the label; None where that is nothing, or damaged."""
+        path = self._path(label)
+        if path is None:
+            return None
+        try:
+            found = json.loads(path.read_text())
+        except (OSError, ValueError):
+            return None
+        return found if isinstance(found, dict) and found.get("label") == label else None
+
+    def due(self, label: str) -> bool:
+        """Whether some seconds have passed since the last checkpoint under the label."""
+        last = self._written.setdefault(label, time.monotonic())
+        return self._folder is not None and time.monotonic() - last >= _SECONDS
+
+    def save(self, label: str, data: dict[str, Any]) -> None:
+        path = self._path(label)
+        if path is not None:
+            write_atomically(path, json.dumps({"label": label, **data}))
+            self._written[label] = time.monotonic()
+
+    def clear(self) -> None:
+        """Forgets all checkpoints of the task, which is done."""
+        if self._folder is not None:
+            for path in self._folder.glob(f"{self._name}-*.checkpoint"):
+                with contextlib.suppress(OSError):
+                    path.unlink()
+
+
+NOTHING = Keeper(None, "")

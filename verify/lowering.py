@@ -1,0 +1,98 @@
+"""A program's operations → lines of source, those before the loop apart from those in it."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from verify.program import Program
+
+_INFIX = {"add": "+", "sub": "-", "mul": "*"}
+_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi")
+
+
+@dataclass
+class Lowering:
+    """Writes a program's values as variables `prefix` + index.
+
+    `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
+    where it has `cos_sin` or `sin_cos`.
+    """
+
+    program: Program
+    functions: Collection[str]
+    prefix: str = "v"
+    _written: set[int] = field(default_factory=set)
+
+    def name(self, index: int) -> str:
+        return f"{self.prefix}{index}"
+
+    def live(self, roots: Sequence[int]) -> list[int]:
+        """The operations that the roots need, in their order."""
+        live, stack = set(roots), list(roots)
+        while stack:
+            new = set(self.program.ops[stack.pop()].args) - live
+            live |= new
+            stack += new
+        return sorted(live)
+
+    def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
+        """The lines that compute the roots: those before the loop, and those in it."""
+        program, live = self.program, self.live(roots)
+        static: list[str] = []
+        dynamic: list[str] = []
+        for index in live:
+            if index in self._written or program.ops[index].kind == "const":
+                continue
+            line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
+            (static if program.static[index] else dynamic).append(line)
+        return static, dynamic
+
+    def _pair(self, index: int, live: Sequence[int]) -> str | None:
+        """cos and sin of one argument in one call, where the arithmetic has that."""
+        op = self.program.ops[index]
+        both = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
+        if op.kind not in ("cos", "sin") or both is None:
+            return None
+        found = {
+            self.program.ops[i].kind: i
+            for i in live
+            if self.program.ops[i].kind in ("cos", "sin") and self.program.ops[i].args == op.args
+        }
+        if len(found) < 2:
+            return None
+        self._written |= set(found.values())
+        first, second = (self.name(found[kind]) for kind in both.split("_"))
+        return f"{first}, {second} = {both}({self.name(op.args[0])})"
+
+    def function(self, index: int) -> str | None:
+        """The name of the function that an operation calls, where it calls one."""
+        op = self.program.ops[index]
+        if op.kind == "root":
+            return "sqrt" if op.degree == 2 else "root"
+        return None if op.kind in _OPERATORS else op.kind
+
+    def _operation(self, index: int) -> str:
+        op = self.program.ops[index]
+        args = [self.name(a) for a in op.args]
+        match op.kind:
+            case "input":
+                return op.name
+            case "add" | "sub" | "mul":
+                return f" {_INFIX[op.kind]} ".join(args)
+            case "neg":
+                return f"-{args[0]}"
+            case "inverse":
+                return f"1 / {args[0]}"
+            case "root" if op.degree != 2:
+                return f"root({args[0]}, {op.degree})"
+            case "pi":
+                return "pi"
+        return f"{self.function(index)}({args[0]})"
+
+    def constants(self) -> Mapping[int, Fraction]:
+        return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
+
+    def named_constants(self, number: Any) -> dict[str, Any]:
+        """The constants as numbers, by their variables' names."""
+        return {self.name(i): number(value) for i, value in self.constants().items()}

@@ -1,0 +1,84 @@
+"""How far an orbit may go in a fixed-point format: limits within which nothing can overflow.
+
+Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step. The
+largest box of powers of two for which all of them stay in the format is found before the run; the
+kernel ends the loop where the orbit leaves it. So an overflow is not looked for at every operation,
+and cannot happen.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+import flint
+
+from verify.balls import rational_ball
+from verify.kernel import Kernel
+from verify.rounding import PRECISION, Ball, Rounded, analyse
+
+_TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
+_VALUE_LIMITS = tuple(Fraction(2) ** n for n in (13, 11, 9, 7, 5, 4, 3, 2, 1))
+_SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1))
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What p, q, Λ and the values of functions stay below in size; see `verify.kernel.LIMITS`."""
+
+    p: Fraction
+    q: Fraction
+    part: Fraction
+    value: Fraction
+
+    def __iter__(self) -> Iterator[Fraction]:
+        return iter((self.p, self.q, self.part, self.value))
+
+
+def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
+    """The kernel's limits for these h and parameters, by the names that its source has for them.
+
+    None where no box is safe, however small.
+    """
+
+    def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
+        return _room(kernel, inputs, p, q, value)
+
+    with flint.ctx.workprec(PRECISION):
+        for value in _VALUE_LIMITS:
+            for common in _SIDES:
+                if safe(common, common, value) is None:
+                    continue
+                p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
+                q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
+                part = safe(p, q, value)
+                return Limits(p, q, part, value) if part is not None else None
+    return None
+
+
+def _room(
+    kernel: Kernel, inputs: Mapping[str, Fraction], p: Fraction, q: Fraction, value: Fraction
+) -> Fraction | None:
+    """How large Λ may become; None where an operation may leave the format in this box."""
+    given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs.items()}
+    around = flint.arb(0, 1)
+    given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in (("p", p), ("q", q))}
+    program, live = kernel.lowering.program, kernel.lowering.live(kernel.roots)
+    found = analyse(program, live, given, lambda *_: flint.arb(0), rational_ball(value))
+    if found is None:
+        return None
+    sizes = [x.magnitude for x in found.values()]
+    size = {name: found[index].magnitude for name, index in kernel.outputs.items()}
+    sizes += [rational_ball(p) + size["dp"], rational_ball(q) + size["dq"]]
+    sizes.append(size["dj"] * size["dj"])
+    top = rational_ball(_TOP)
+    return _part_limit(size) if all(x < top for x in sizes) else None
+
+
+def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
+    """The power of two that Λ may reach: D (1 + Λ) and h^r D (1 + Λ) + Λ stay below 2^15."""
+    scale = size.get("scale", flint.arb(0))
+    for n in range(13, -1, -1):
+        grown = size["dj"] * (1 + 2**n)
+        if grown < 2**14 and scale * grown < 2**14:
+            return Fraction(2**n)
+    return None

@@ -1,0 +1,151 @@
+"""What rounding does to a program's values, counted operation by operation over a box of states.
+
+Every value gets an interval that holds it for all states in the box, and a bound on the error of
+its computed value there. The rules are those of forward error analysis, without linearisation:
+with |x̂ − x| ≤ a and |ŷ − y| ≤ b, |x̂ŷ − xy| ≤ |x| b + |y| a + a b, and a function's error is its
+greatest slope over the interval, widened by a, times a; each operation adds its own rounding.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.enclosure import BALLS
+from verify.number_system import Arithmetic
+from verify.program import Op, Program
+
+Ball = Any  # flint.arb
+PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digits
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """An interval that holds the exact value, and a bound on the computed one's error."""
+
+    interval: Ball
+    error: Ball
+
+    @property
+    def magnitude(self) -> Ball:
+        """An upper bound of |exact value| and |computed value|."""
+        return self.interval.abs_upper() + self.error
+
+    @property
+    def widened(self) -> Ball:
+        return self.interval + self.error * flint.arb(0, 1)
+
+
+Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
+
+
+def rounding_of(arithmetic: Arithmetic) -> Rounding:
+    """The error of one operation of the arithmetic."""
+    unit = flint.arb(2) ** -arithmetic.bits
+    if arithmetic.absolute:
+        return lambda op, size: unit * _FIXED[op.kind](size)
+    functions = (
+        1 if arithmetic.name == "mpfr" else 4
+    )  # mpmath's functions are not all rounded right
+    return lambda op, size: size * unit * (1 if op.kind in _CORRECT else functions)
+
+
+# In units of the last place, by the size of the result; see `verify.wide.functions`.
+_FIXED: dict[str, Callable[[Ball], Ball]] = {
+    "add": lambda _: flint.arb(0), "sub": lambda _: flint.arb(0), "neg": lambda _: flint.arb(0),
+    "const": lambda _: flint.arb("0.5"), "input": lambda _: flint.arb("0.5"),
+    "pi": lambda _: flint.arb("0.5"), "mul": lambda _: flint.arb("0.501"),
+    "sin": lambda _: flint.arb("0.6"), "cos": lambda _: flint.arb("0.6"),
+    "log": lambda _: flint.arb("0.6"), "inverse": lambda y: 1 + y,
+    "exp": lambda y: 1 + y / 64, "sinh": lambda y: 2 + y / 64, "cosh": lambda y: 2 + y / 64,
+    # √x is taken for x ≥ 2^−26 only
+    "root": lambda _: flint.arb(2**13 + 1),
+}  # fmt: skip
+_CORRECT = ("add", "sub", "mul", "neg", "inverse", "const", "input", "pi")
+
+FLOAT: Rounding = lambda op, size: size * flint.arb(2) ** -52 + flint.arb(2) ** -1000  # noqa: E731
+
+
+def analyse(
+    program: Program,
+    live: Sequence[int],
+    inputs: Mapping[str, Rounded],
+    rounding: Rounding,
+    limit: Ball = None,
+) -> dict[int, Rounded] | None:
+    """Each live operation's value over the inputs' intervals; None where one may be undefined.
+
+    `limit`: where a function may leave a range, its values are taken to be within ±limit, since the
+    kernel's guard ends the loop otherwise.
+    """
+    found: dict[int, Rounded] = {}
+    for index in live:
+        op = program.ops[index]
+        if op.kind == "input":
+            found[index] = inputs[op.name]
+            continue
+        interval, error = _value(op, [found[a] for a in op.args])
+        if limit is not None and op.kind in _SLOPES and not _within(interval, limit):
+            interval = limit * flint.arb(0, 1)
+        if not (interval.is_finite() and error.is_finite()):
+            return None
+        own = rounding(op, interval.abs_upper() + error)
+        if op.kind == "const" and _held_exactly(op.value):
+            own = flint.arb(0)
+        found[index] = Rounded(interval, (error + own).abs_upper())
+    return found
+
+
+def _within(interval: Ball, limit: Ball) -> bool:
+    return bool(interval.is_finite() and abs(interval) < limit)
+
+
+def _held_exactly(value: Fraction) -> bool:
+    """Whether every number system holds this constant: a small multiple of 1/64."""
+    return 64 % value.denominator == 0 and abs(value) < 1024
+
+
+def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
+    """The interval of the exact result, and the error that the arguments' errors make."""
+    zero = flint.arb(0)
+    match op.kind:
+        case "const":
+            return flint.arb(flint.fmpq(op.value.numerator, op.value.denominator)), zero
+        case "pi":
+            return flint.arb.pi(), zero
+        case "neg":
+            return -args[0].interval, args[0].error
+        case "add" | "sub":
+            x, y = args
+            total = x.interval + y.interval if op.kind == "add" else x.interval - y.interval
+            return total, x.error + y.error
+        case "mul":
+            x, y = args
+            sizes = [a.interval.abs_upper() for a in args]
+            error = sizes[0] * y.error + sizes[1] * x.error + x.error * y.error
+            square = op.args[0] == op.args[1]
+            return (_square(x.interval) if square else x.interval * y.interval), error
+    x = args[0]
+    slope = _SLOPES[op.kind](x.widened, op.degree)
+    return BALLS[op.kind](x.interval, op.degree), slope.abs_upper() * x.error
+
+
+def _square(x: Ball) -> Ball:
+    """x² of an interval: as narrow as its ends are, which x · x is not."""
+    low, high = x.abs_lower(), x.abs_upper()
+    return (low * low).union(high * high)
+
+
+_SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
+    "sin": lambda x, _: flint.arb(1),
+    "cos": lambda x, _: flint.arb(1),
+    "atan": lambda x, _: flint.arb(1),
+    "exp": lambda x, _: x.exp(),
+    "sinh": lambda x, _: x.cosh(),
+    "cosh": lambda x, _: x.sinh(),
+    "log": lambda x, _: 1 / x,
+    "inverse": lambda x, _: 1 / _square(x),
+    "root": lambda x, n: x.root(n) / (n * x),
+}

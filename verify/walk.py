@@ -1,0 +1,192 @@
+"""A walk: one kernel's loop in chunks, what is noted on the way, and its checkpoints."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from verify import tangent
+from verify.exact import decimal
+from verify.kernel import Kernel
+from verify.number_system import Arithmetic
+from verify.results import SeriesPoint
+
+if TYPE_CHECKING:
+    from verify.stepping import Job
+
+Progress = Callable[[int], None]  # called with the number of steps done
+State = tuple[Any, ...]
+_SECTIONS = 16
+_ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
+_POWERS = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # of h^r, which the kernel has divided out
+_EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
+
+
+class Walk:
+    """Steps a job with one kernel from its start, or from where a checkpoint was kept."""
+
+    def __init__(
+        self, job: "Job", kernel: Kernel, arithmetic: Arithmetic, limits: Sequence[Fraction]
+    ) -> None:
+        self.job, self.kernel, self.arithmetic = job, kernel, arithmetic
+        number = arithmetic.number
+        self.fixed = [number(x) for x in (*job.inputs(kernel).values(), *limits)]
+        self.state = self._first_state()
+        self.section = -(-job.steps // (job.points or _SECTIONS))  # steps between two notes
+        self.done, self.seconds = 0, 0.0
+        self.trail: list[dict[str, Fraction]] = []
+        self.tangents: list[dict[str, Fraction]] = []
+        self.series: list[SeriesPoint] = []
+        self._seen: dict[str, Fraction] = {}  # extremes since the last note
+        kinds = f"{arithmetic.name} {arithmetic.bits} {kernel.power} {' '.join(kernel.carried)}"
+        self._label = f"{kinds} {' '.join(map(str, limits))}"
+        self._restore(job.keeper.load(self._label))
+
+    def _first_state(self) -> State:
+        start, number = self.job.start, self.arithmetic.number
+        state = [number(start["p"]), number(start["q"])]
+        for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
+            value = start[first] if isinstance(first, str) else Fraction(first)
+            state.append(float(value) if kind == "float" else number(value))
+        return tuple(state)
+
+    # -- steps --------------------------------------------------------------------------------
+
+    def chunks(self) -> Iterator[int]:
+        """Steps to the end, and tells the steps done after every chunk; ends early where a number
+        left the arithmetic's range, with `done` the steps that stayed in it."""
+        job = self.job
+        self._advance(0)  # compiles: `seconds` is the stepping alone
+        while self.done < job.steps:
+            left = self.section - self.done % self.section
+            count = min(self.arithmetic.chunk, left, job.steps - self.done)
+            begun = time.perf_counter()
+            after = self._advance(count)
+            self.seconds += time.perf_counter() - begun
+            if after is None:
+                self.done += self._last_good(count)
+                return
+            self.state, self.done = after, self.done + count
+            self._note()
+            yield self.done
+            if job.keeper.due(self._label):
+                self.keep()
+
+    def _advance(self, count: int) -> State | None:
+        """The state after `count` steps, or None where a number left the arithmetic's range."""
+        try:
+            with self.arithmetic.context():
+                done, *after = self.kernel.function(count, *self.fixed, *self.state)
+        except (ArithmeticError, ValueError):  # not float64: a pole, the log or root of a negative
+            return None
+        if done < count or not all(map(self._finite, after)):
+            return None
+        return tuple(after)
+
+    def _finite(self, x: Any) -> bool:
+        return x - x == 0 if isinstance(x, float) else self.arithmetic.finite(x)
+
+    def _last_good(self, count: int) -> int:
+        """The greatest number of steps below `count` that stays in range, by bisection."""
+        good, bad = 0, count
+        while bad - good > 1:
+            middle = (good + bad) // 2
+            if self._advance(middle) is None:
+                bad = middle
+            else:
+                good = middle
+        return good
+
+    # -- what is noted ------------------------------------------------------------------------
+
+    def _note(self) -> None:
+        raw = {n: self._exact(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
+        for name in _EXTREMES:
+            if name in raw:
+                choose = min if name.endswith("low") else max
+                self._seen[name] = choose(raw[name], self._seen.get(name, raw[name]))
+        if self.done % self.section and self.done < self.job.steps:
+            return
+        self.trail.append(self._finals(raw))
+        if "growth" in raw:
+            seen = {name: raw[name] for name in tangent.NAMES if name in raw}
+            self.tangents.append(seen | {"done": Fraction(self.done)})
+        if self._seen:
+            first = (len(self.trail) - 1) * self.section + 1
+            self.series.append(self._point(first))
+            self._seen = {}
+
+    def _exact(self, x: Any) -> Fraction:
+        return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
+
+    def _unscaled(self, name: str, value: Fraction) -> Fraction:
+        power = self.kernel.power * _POWERS.get(name, 0)
+        return value * self.job.start["h"] ** power
+
+    def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
+        """p, q and the observables after the steps done, as the exact rationals that they are."""
+        total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
+        result = {"p": total["p"], "q": total["q"]}
+        for name in self.job.observables & set(_ACCUMULATORS):
+            carried = _ACCUMULATORS[name]
+            result[name] = self._unscaled(carried, total[carried])
+        if "mse" in result:
+            result["mse"] /= self.done
+        if "lambda_plain" in result:
+            result["lambda_plain"] -= 1
+        return result
+
+    def _point(self, first: int) -> SeriesPoint:
+        def pair(name: str) -> tuple[str, str]:
+            ends = (self._seen[f"{name}_{end}"] for end in ("low", "high"))
+            low, high = (self._unscaled(name, x) for x in ends)
+            return decimal(low, 7), decimal(high, 7)
+
+        return SeriesPoint(first=first, last=self.done, delta_j=pair("dj"), lam=pair("lam"))
+
+    # -- checkpoints --------------------------------------------------------------------------
+
+    def keep(self) -> None:
+        """Writes a checkpoint: all that is needed to go on with the same bits."""
+        data = {
+            "done": self.done,
+            "seconds": self.seconds,
+            "state": [_text(self._exact(x)) for x in self.state],
+            "seen": _texts(self._seen),
+            "trail": list(map(_texts, self.trail)),
+            "tangents": list(map(_texts, self.tangents)),
+            "series": [point.model_dump(mode="json") for point in self.series],
+        }
+        self.job.keeper.save(self._label, data)
+
+    def _restore(self, kept: dict[str, Any] | None) -> None:
+        if kept is None:
+            return
+        self.done, self.seconds = kept["done"], kept["seconds"]
+        number, kinds = self.arithmetic.number, self.kernel.kinds
+        values = [_fraction(x) for x in kept["state"]]
+        self.state = tuple(
+            float(x) if kind == "float" else number(x)
+            for kind, x in zip(kinds, values, strict=True)
+        )
+        self._seen = _fractions(kept["seen"])
+        self.trail = list(map(_fractions, kept["trail"]))
+        self.tangents = list(map(_fractions, kept["tangents"]))
+        self.series = [SeriesPoint.model_validate(point) for point in kept["series"]]
+
+
+def _text(x: Fraction) -> str:
+    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
+
+
+def _fraction(x: str) -> Fraction:
+    numerator, denominator = (int(part, 16) for part in x.split("/"))
+    return Fraction(numerator, denominator)
+
+
+def _texts(note: Mapping[str, Fraction]) -> dict[str, str]:
+    return {name: _text(x) for name, x in note.items()}
+
+
+def _fractions(note: Mapping[str, str]) -> dict[str, Fraction]:
+    return {name: _fraction(x) for name, x in note.items()}

@@ -1,0 +1,135 @@
+"""Products of wide integers from 64-bit limbs, as LLVM IR; only the limbs that are kept are formed.
+
+LLVM has integers of any width, and adds and shifts them well. Its product of two of them forms
+every partial product twice over (once for the sign), so products are written here.
+
+A product xᵢ yⱼ of limbs stands in column i + j. Where the low columns are not kept, the lowest kept
+column still needs the carry from below: of the column beneath it only the high halves are added.
+What is left out is less than `count` units of the lowest kept column, where `count` is the number
+of limbs; each routine says what that means for its result.
+"""
+
+from typing import Any
+
+from llvmlite import ir
+
+I64 = ir.IntType(64)
+I128 = ir.IntType(128)
+
+Value = Any  # an LLVM value
+
+
+def bits(count: int) -> ir.IntType:
+    return ir.IntType(count)
+
+
+def constant(value: int, width: int) -> Value:
+    return ir.Constant(bits(width), value % (1 << width))
+
+
+def limb(b: ir.IRBuilder, x: Value, index: int) -> Value:
+    """The limb of that index; limb 0 is the lowest."""
+    if x.type.width == 64:
+        return x
+    return b.trunc(shifted_down(b, x, 64 * index), I64)
+
+
+def shifted_down(b: ir.IRBuilder, x: Value, by: int) -> Value:
+    return b.lshr(x, ir.Constant(x.type, by)) if by else x
+
+
+def shifted_up(b: ir.IRBuilder, x: Value, by: int) -> Value:
+    return b.shl(x, ir.Constant(x.type, by)) if by else x
+
+
+def resized(b: ir.IRBuilder, x: Value, width: int, *, signed: bool = False) -> Value:
+    """x in so many bits: extended, or cut to its low ones."""
+    if x.type.width == width:
+        return x
+    if x.type.width > width:
+        return b.trunc(x, bits(width))
+    return (b.sext if signed else b.zext)(x, bits(width))
+
+
+def top(b: ir.IRBuilder, x: Value, count: int) -> Value:
+    """The highest `count` limbs of x."""
+    return resized(b, shifted_down(b, x, x.type.width - 64 * count), 64 * count)
+
+
+def _columns(
+    b: ir.IRBuilder, x: Value, y: Value, lowest: int, *, signed: bool, start: int = 0
+) -> Value:
+    """Σ xᵢ yⱼ 2^(64 (i + j − lowest)) over the columns ≥ lowest, plus `start` and the high halves
+    of the column below: 2·count − lowest limbs."""
+    count = x.type.width // 64
+    width = 64 * (2 * count - lowest)
+    xs = [limb(b, x, i) for i in range(count)]
+    ys = [limb(b, y, i) for i in range(count)]
+
+    def extended(v: Value, i: int) -> Value:
+        return resized(b, v, 128, signed=signed and i == count - 1)
+
+    total = constant(start, width)
+    for i in range(count):
+        for j in range(max(0, lowest - 1 - i), count):
+            product = b.mul(extended(xs[i], i), extended(ys[j], j))
+            at_top = signed and count - 1 in (i, j)
+            if i + j == lowest - 1:
+                product = b.ashr(product, ir.Constant(I128, 64)) if at_top else limb(b, product, 1)
+            part = resized(b, product, width, signed=at_top)
+            total = b.add(total, shifted_up(b, part, 64 * max(0, i + j - lowest)))
+    return total
+
+
+def _square_columns(b: ir.IRBuilder, x: Value, lowest: int, *, start: int, signed: bool) -> Value:
+    """`_columns` of x·x, each mixed product formed once and doubled."""
+    count = x.type.width // 64
+    width = 64 * (2 * count - lowest)
+    xs = [limb(b, x, i) for i in range(count)]
+    mixed, own = constant(0, width), constant(start, width)
+    for i in range(count):
+        for j in range(max(i, lowest - 1 - i), count):
+            product = b.mul(
+                resized(b, xs[i], 128, signed=signed and i == count - 1),
+                resized(b, xs[j], 128, signed=signed and j == count - 1),
+            )
+            negative = signed and i < j == count - 1
+            if i + j == lowest - 1:
+                product = (
+                    b.ashr(product, ir.Constant(I128, 64)) if negative else limb(b, product, 1)
+                )
+            part = resized(b, product, width, signed=negative)
+            part = shifted_up(b, part, 64 * max(0, i + j - lowest))
+            if i == j:
+                own = b.add(own, part)
+            else:
+                mixed = b.add(mixed, part)
+    return b.add(own, shifted_up(b, mixed, 1))
+
+
+def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> Value:
+    """x y / 2^fraction, rounded: signed, `fraction` in the second highest limb's column or above.
+
+    Within ½ + 2^−40 units of the last place, for 16 integer bits and up to 64 limbs.
+    """
+    width = x.type.width
+    lowest = fraction // 64
+    drop = fraction - 64 * lowest
+    half = 1 << (drop - 1)
+    if x is y:
+        total = _square_columns(b, x, lowest, start=half, signed=True)
+    else:
+        total = _columns(b, x, y, lowest, signed=True, start=half)
+    return resized(b, shifted_down(b, total, drop), width)
+
+
+def high_product(b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:
+    """The high half of x y: for fractions their product, too small by less than 2·count units."""
+    width = x.type.width
+    count = width // 64
+    if count == 1:
+        double = [resized(b, v, 128, signed=signed) for v in (x, y)]
+        return limb(b, b.mul(*double), 1)
+    if x is y:
+        return _square_columns(b, x, count, start=0, signed=signed)
+    return _columns(b, x, y, count, signed=signed)
