@@ -1,24 +1,23 @@
 """Measured values as balls (flint.arb): the printed value with its bound as radius."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any
 
 import flint
 
 from verify.exact import known_digits
+from verify.precision import working_precision
 from verify.results import Value
 
 Ball = Any  # flint.arb, which has no type stubs
 _BITS = 256
 
 
-@contextmanager
-def precision(bits: int = _BITS) -> Iterator[None]:
-    """Ball arithmetic with enough bits for anything float64 can give; leaves flint's as it was."""
-    with flint.ctx.workprec(bits):
-        yield
+def precision() -> AbstractContextManager[None]:
+    """Ball arithmetic with enough bits for anything float64 can give."""
+    return working_precision(_BITS)
 
 
 def rational_ball(value: Fraction) -> Ball:

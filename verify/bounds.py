@@ -56,13 +56,13 @@ def spread(first: Outcome, second: Outcome) -> Fraction:
 def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
     """The values to so many digits, by raising the precision until a rerun confirms them."""
     for _ in range(_ATTEMPTS):
-        finer = number_systems.get(own.name, _digits(own) + _MORE_DIGITS)
+        finer = number_systems.get(own.name, digits_of(own) + _MORE_DIGITS)
         second = job.go(finer)
         method = f"rerun with {_MORE_DIGITS} more digits"
         if first.done != second.done or not second.trail or spread(first, second) > LINEAR:
             if first.done == second.done < job.steps and not second.trail:
                 return Bounds({}, method, "left range", second.done + 1)
-            own = number_systems.get(own.name, 2 * _digits(own))
+            own = number_systems.get(own.name, 2 * digits_of(own))
             first = job.go(own)
             continue
         if second.done < job.steps:
@@ -75,12 +75,12 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
         missing = max(missing_digits(value, bound, digits) for value, bound in found.values())
         if missing <= 0:
             return Bounds(found, method)
-        own = number_systems.get(own.name, _digits(own) + missing + 5)
+        own = number_systems.get(own.name, digits_of(own) + missing + 5)
         first = job.go(own)
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
 
 
-def _digits(own: Arithmetic) -> int:
+def digits_of(own: Arithmetic) -> int:
     return own.bits * 30103 // 100000
 
 

@@ -72,7 +72,11 @@ def prove(
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
-@click.option("--arithmetic", help="float64, mpfr or mpmath; mpmath where --digits is given.")
+@click.option(
+    "--arithmetic",
+    help="float64, mpmath, mpfr (as mpmath, but faster) or ball (enclosures); "
+    "mpmath where --digits is given.",
+)
 def run(
     system: str | None,
     hamiltonian: str | None,

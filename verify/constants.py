@@ -9,6 +9,8 @@ from typing import Any
 import flint
 import sympy
 
+from verify.precision import working_precision
+
 MAX_BITS = 4000
 
 _FUNCTIONS = {
@@ -26,7 +28,7 @@ _FUNCTIONS = {
 
 def within_reach(constant: sympy.Expr) -> bool:
     """Whether the constant is finite and below 2^4000 in size, shown by ball arithmetic."""
-    with flint.ctx.workprec(128):
+    with working_precision(128):
         ball = _ball(constant)
         limit = flint.arb(2) ** MAX_BITS
         return ball is not None and bool(ball.is_finite()) and bool(abs(ball) < limit)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify.ball_bounds import enclosed
 from verify.bounds import Bounds, missing_digits, resolved, working_digits
 from verify.certificate import METHOD, certify, certify_at
 from verify.number_system import Arithmetic, UnsupportedError
@@ -58,6 +59,10 @@ def measure(job: Job, name: str, digits: int, progress: Progress | None = None) 
 
     A fixed-point run that leaves its range, or lacks a function, goes to mpfr.
     """
+    if number_systems.get(name, digits).radius is not None:
+        own = number_systems.get(name, working_digits(digits, job.steps))
+        bounds, run = enclosed(job, own, digits, progress)
+        return Measured(bounds, name, run)
     try:
         found = certified(job, name, digits, progress)
         if isinstance(found, Measured):

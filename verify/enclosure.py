@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import flint
 
+from verify.precision import working_precision
+
 if TYPE_CHECKING:
     from verify.ring import Ring
 
@@ -18,7 +20,7 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
 
     Leaves flint's global context as it was.
     """
-    with flint.ctx.workprec(precision):
+    with working_precision(precision):
         exact = {
             name: flint.arb(flint.fmpq(at.numerator, at.denominator)) for name, at in point.items()
         }

@@ -12,7 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "numba", "numpy")
+_VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
 _SECONDS = 5.0  # between two checkpoints of a run
 
 

@@ -4,10 +4,9 @@ A comparison counts only where the bounds do not touch what it is compared with;
 UNDECIDED. A printed decimal is true where the value's whole ball rounds to it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise, product
-from typing import Any
 
 import flint
 
@@ -18,10 +17,10 @@ from verify.balls import (
     fixed,
     lg,
     middle_and_radius,
-    precision,
     rational_ball,
     shown,
 )
+from verify.claim_runs import LABELS, QUANTITIES, decided, rows_of, start_of
 from verify.claims import (
     Findings,
     LessClaim,
@@ -34,74 +33,11 @@ from verify.claims import (
 from verify.errors import InputError
 from verify.exact import decimal, text
 from verify.results import ClaimResult, RunResult
-from verify.scene import Scene
 from verify.verdict import Verdict
-
-QUANTITIES: dict[str, Callable[[RunResult], Ball]] = {
-    "mse": lambda run: ball(run.values["mse"]),
-    "abs_lambda": lambda run: abs(ball(run.values["lambda"])),
-    "mse_over_lambda": lambda run: ball(run.values["mse"]) / abs(ball(run.values["lambda"])),
-    "delta_j_max": lambda run: ball(run.values["delta_j_max"]),
-}
-_NEEDS = {
-    "mse": ("mse",),
-    "abs_lambda": ("lambda",),
-    "mse_over_lambda": ("mse", "lambda"),
-    "delta_j_max": ("delta_j_max",),
-}
-LABELS = {
-    "mse": "MSE",
-    "abs_lambda": "|Λ|",
-    "mse_over_lambda": "MSE/|Λ|",
-    "delta_j_max": "max |ΔJ|",
-}
-
-
-class _NoValue(Exception):  # noqa: N818 - no error, an answer
-    """A run that the claim needs ended without values; the message says which and how."""
-
-
-def _decided(check: Callable[[Any, Findings], ClaimResult]) -> Callable[..., ClaimResult]:
-    """The check, with UNDECIDED where a run that it needs has no values."""
-
-    def checked(claim: Any, findings: Findings) -> ClaimResult:
-        try:
-            with precision():
-                return check(claim, findings)
-        except _NoValue as reason:
-            return result(claim, Verdict.UNDECIDED, str(reason))
-
-    return checked
-
-
-def _rows(claim: Any, findings: Findings, *quantities: str) -> tuple[Scene, list[list[RunResult]]]:
-    """The grid's runs: one row an initial value, its runs by increasing step size.
-
-    Raises InputError where the scene does not run what the claim speaks of, and _NoValue where a
-    run ended without values.
-    """
-    scene = findings.scene(claim.scene)
-    runs = findings.runs(scene, claim.scheme)
-    if not runs or scene.grid is None:
-        raise InputError("claim", claim.id, "its scene has no runs of that scheme")
-    needed = [o for quantity in quantities for o in _NEEDS[quantity]]
-    for run in runs:
-        if run.status != "finished":
-            why = f"left the range at step {run.failed_step}" if run.failed_step else run.status
-            raise _NoValue(f"the run from {_start(run)} with h = {run.step_size} {why}")
-        if missing := [name for name in needed if name not in run.values]:
-            raise InputError("claim", claim.id, f"its scene does not observe {missing[0]}")
-    width = len(scene.grid.step_sizes)
-    rows = [runs[i : i + width] for i in range(0, len(runs), width)]
-    return scene, [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
-
-
-def _start(run: RunResult) -> str:
-    return f"q₀ = {run.q}, p₀ = {run.p}"
 
 
 def check_table(claim: TableClaim, findings: Findings) -> ClaimResult:
-    scene, rows = _rows(claim, findings, "mse")
+    scene, rows = rows_of(claim, findings, "mse")
     details = [["initial value", *(f"h = {text(h)}" for h in claim.step_sizes)]]
     details.append(["printed, for all", *claim.printed])
     verdicts: list[bool | None] = []
@@ -110,7 +46,7 @@ def check_table(claim: TableClaim, findings: Findings) -> ClaimResult:
         by_h = {Fraction(run.step_size): run for run in row}
         own = [lg(ball(_at(by_h, h, claim).values["mse"])) for h in claim.step_sizes]
         verdicts += [_rounds_to(v, p) for v, p in zip(own, claim.printed, strict=True)]
-        details.append([_start(row[0]), *(fixed(v, 4) for v in own)])
+        details.append([start_of(row[0]), *(fixed(v, 4) for v in own)])
         values += own
     known = sorted((v for v in values if v.is_finite()), key=_middle)
     seen = "no computed lg MSE is known"
@@ -177,7 +113,7 @@ def _factor(name: str, exponent: int) -> str:
 
 
 def check_spread(claim: SpreadClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings, claim.quantity)
+    _, rows = rows_of(claim, findings, claim.quantity)
     details = [["step size", "least", "greatest", "factor"]]
     verdicts: list[bool | None] = []
     worst = Fraction(0)
@@ -217,12 +153,14 @@ def _all(verdicts: Sequence[bool | None]) -> Verdict:
 
 def _table(rows: Sequence[Sequence[RunResult]], quantity: str) -> list[list[str]]:
     head = ["initial value", *(f"h = {run.step_size}" for run in rows[0])]
-    body = [[_start(row[0]), *(shown(QUANTITIES[quantity](run), 5) for run in row)] for row in rows]
+    body = [
+        [start_of(row[0]), *(shown(QUANTITIES[quantity](run), 5) for run in row)] for row in rows
+    ]
     return [head, *body]
 
 
 def check_monotone(claim: MonotoneClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings, claim.quantity)
+    _, rows = rows_of(claim, findings, claim.quantity)
     quantity, sign = QUANTITIES[claim.quantity], 1 if claim.direction == "increases" else -1
     label = LABELS[claim.quantity]
     verdicts: list[bool | None] = []
@@ -233,7 +171,7 @@ def check_monotone(claim: MonotoneClaim, findings: Findings) -> ClaimResult:
             verdicts.append(_sign(gap))
             if gap < 0:
                 counterexamples.append(
-                    f"{_start(one)}: from h = {one.step_size} to {two.step_size}, {label} goes "
+                    f"{start_of(one)}: from h = {one.step_size} to {two.step_size}, {label} goes "
                     f"from {shown(quantity(one), 4)} to {shown(quantity(two), 4)}"
                 )
     details = _table(rows, claim.quantity)
@@ -253,7 +191,7 @@ def _sign(x: Ball) -> bool | None:
 
 
 def check_less(claim: LessClaim, findings: Findings) -> ClaimResult:
-    _, rows = _rows(claim, findings, claim.quantity, claim.than)
+    _, rows = rows_of(claim, findings, claim.quantity, claim.than)
     one, two = QUANTITIES[claim.quantity], QUANTITIES[claim.than]
     runs = [run for row in rows for run in row]
     verdicts = [_sign(two(run) - one(run)) for run in runs]
@@ -268,7 +206,7 @@ def check_less(claim: LessClaim, findings: Findings) -> ClaimResult:
 
 def check_magnitude(claim: MagnitudeClaim, findings: Findings) -> ClaimResult:
     names = list(claim.exponents)
-    _, rows = _rows(claim, findings, *names)
+    _, rows = rows_of(claim, findings, *names)
     details = [["initial value", *(f"{LABELS[n]} (about 10^{claim.exponents[n]}?)" for n in names)]]
     holds: list[bool | None] = []
     failing: list[str] = []
@@ -282,7 +220,7 @@ def check_magnitude(claim: MagnitudeClaim, findings: Findings) -> ClaimResult:
         holds.append(_every(near))
         wrong = [n for n, sign in zip(names, near, strict=True) if sign is False]
         failing.append(", ".join(f"{LABELS[n]} = {shown(values[n], 2)}" for n in wrong))
-        details.append([_start(row[0]), *(shown(values[n], 4) for n in names)])
+        details.append([start_of(row[0]), *(shown(values[n], 4) for n in names)])
     yes = [details[i + 1][0] for i, h in enumerate(holds) if h is True]
     no = [f"{details[i + 1][0]}: {failing[i]}" for i, h in enumerate(holds) if h is False]
     evidence = f"holds for {_list(yes)}; does not hold for {_list(no)}"
@@ -304,9 +242,9 @@ def _list(names: Sequence[str]) -> str:
 
 
 CHECKS = {
-    TableClaim: _decided(check_table),
-    SpreadClaim: _decided(check_spread),
-    MonotoneClaim: _decided(check_monotone),
-    LessClaim: _decided(check_less),
-    MagnitudeClaim: _decided(check_magnitude),
+    TableClaim: decided(check_table),
+    SpreadClaim: decided(check_spread),
+    MonotoneClaim: decided(check_monotone),
+    LessClaim: decided(check_less),
+    MagnitudeClaim: decided(check_magnitude),
 }

@@ -20,8 +20,9 @@ class Arithmetic:
     infinities propagate and are found afterwards). `pipelined`: independent operations overlap, so
     that latency counts and not their number. `chunk`: steps between looks at progress and
     interruption. `absolute`: numbers have so many bits after the point, not so many significant
-    ones; a kernel then scales ΔJ and has limits of its own instead of a guard. Two arithmetics of
-    one name and precision are equal.
+    ones; a kernel then scales ΔJ and has limits of its own instead of a guard. `radius`, where a
+    number is an enclosure: how far from `exact` the true value may be, and `minimum` and `maximum`
+    are then among the functions. Two arithmetics of one name and precision are equal.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Arithmetic:
     pipelined: bool = field(compare=False)
     chunk: int = field(compare=False)
     absolute: bool = field(default=False, compare=False)
+    radius: Callable[[Any], Fraction] | None = field(default=None, compare=False)
 
 
 class UnsupportedError(Exception):

@@ -14,6 +14,7 @@ import flint
 
 from verify.balls import rational_ball
 from verify.kernel import Kernel
+from verify.precision import working_precision
 from verify.rounding import PRECISION, Ball, Rounded, analyse
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
@@ -23,7 +24,7 @@ _SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1
 
 @dataclass(frozen=True)
 class Limits:
-    """What p, q, Λ and the values of functions stay below in size; see `verify.kernel.LIMITS`."""
+    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `verify.kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -43,7 +44,7 @@ def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
     def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
         return _room(kernel, inputs, p, q, value)
 
-    with flint.ctx.workprec(PRECISION):
+    with working_precision(PRECISION):
         for value in _VALUE_LIMITS:
             for common in _SIDES:
                 if safe(common, common, value) is None:
@@ -75,10 +76,10 @@ def _room(
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ may reach: D (1 + Λ) and h^r D (1 + Λ) + Λ stay below 2^15."""
-    scale = size.get("scale", flint.arb(0))
+    """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
+    D (1 + Λ) + Λ and the next product stay below 2^15."""
+    determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
-        grown = size["dj"] * (1 + 2**n)
-        if grown < 2**14 and scale * grown < 2**14:
+        if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:
             return Fraction(2**n)
     return None

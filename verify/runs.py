@@ -11,8 +11,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-import flint
-
 from verify import arithmetic as number_systems
 from verify.balls import middle_and_radius
 from verify.bounds import Bounded
@@ -24,6 +22,7 @@ from verify.float_bounds import bounded
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
+from verify.precision import working_precision
 from verify.results import RunResult, Value
 from verify.schemes import get
 from verify.step_map import StepMap
@@ -141,7 +140,7 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)
     if delta_j is None:
         return {}
-    with flint.ctx.workprec(bits):
+    with working_precision(bits):
         lam = (1 + delta_j) ** steps - 1
         balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
         return {name: middle_and_radius(ball) for name, ball in balls.items()}

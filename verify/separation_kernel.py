@@ -113,7 +113,7 @@ def mixed_kernel(
 def _written(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
     """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
     uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
-    return Writer(step_map, uncompiled, observables, False, 0).kernel()
+    return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()
 
 
 def _check(wide: Kernel, arithmetic: Arithmetic) -> None:

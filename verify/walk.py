@@ -18,7 +18,7 @@ Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
 _SECTIONS = 16
 _ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
-_POWERS = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # of h^r, which the kernel has divided out
+_SCALED = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # powers of the 2^s that the kernel carries
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 
 
@@ -26,11 +26,18 @@ class Walk:
     """Steps a job with one kernel from its start, or from where a checkpoint was kept."""
 
     def __init__(
-        self, job: "Job", kernel: Kernel, arithmetic: Arithmetic, limits: Sequence[Fraction]
+        self,
+        job: "Job",
+        kernel: Kernel,
+        arithmetic: Arithmetic,
+        limits: Sequence[Fraction],
+        shift: int,
     ) -> None:
-        self.job, self.kernel, self.arithmetic = job, kernel, arithmetic
+        self.job, self.kernel, self.arithmetic, self.shift = job, kernel, arithmetic, shift
         number = arithmetic.number
-        self.fixed = [number(x) for x in (*job.inputs(kernel).values(), *limits)]
+        self.fixed: list[Any] = [number(x) for x in job.inputs(kernel, shift).values()]
+        self.fixed += [shift] if kernel.scales else []
+        self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
         self.section = -(-job.steps // (job.points or _SECTIONS))  # steps between two notes
         self.done, self.seconds = 0, 0.0
@@ -38,7 +45,7 @@ class Walk:
         self.tangents: list[dict[str, Fraction]] = []
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
-        kinds = f"{arithmetic.name} {arithmetic.bits} {kernel.power} {' '.join(kernel.carried)}"
+        kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
         self._label = f"{kinds} {' '.join(map(str, limits))}"
         self._restore(job.keeper.load(self._label))
 
@@ -47,7 +54,7 @@ class Walk:
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
-            state.append(float(value) if kind == "float" else number(value))
+            state.append(tangent.number(value) if kind == "float" else number(value))
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------
@@ -101,10 +108,12 @@ class Walk:
 
     def _note(self) -> None:
         raw = {n: self._exact(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
-        for name in _EXTREMES:
-            if name in raw:
-                choose = min if name.endswith("low") else max
-                self._seen[name] = choose(raw[name], self._seen.get(name, raw[name]))
+        radius = self.arithmetic.radius or (lambda _: Fraction(0))
+        for name, x in zip(self.kernel.carried, self.state, strict=True):
+            if name in _EXTREMES:
+                low = name.endswith("low")
+                end = raw[name] - radius(x) if low else raw[name] + radius(x)
+                self._seen[name] = (min if low else max)(end, self._seen.get(name, end))
         if self.done % self.section and self.done < self.job.steps:
             return
         self.trail.append(self._finals(raw))
@@ -120,8 +129,7 @@ class Walk:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
     def _unscaled(self, name: str, value: Fraction) -> Fraction:
-        power = self.kernel.power * _POWERS.get(name, 0)
-        return value * self.job.start["h"] ** power
+        return value / (1 << self.shift * _SCALED.get(name, 0))
 
     def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
         """p, q and the observables after the steps done, as the exact rationals that they are."""
@@ -136,6 +144,18 @@ class Walk:
             result["lambda_plain"] -= 1
         return result
 
+    def radii(self) -> dict[str, Fraction]:
+        """How far the last values may be from the true ones, where numbers are enclosures."""
+        radius = self.arithmetic.radius
+        if radius is None or self.done < self.job.steps:
+            return {}
+        raw = {n: radius(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
+        names = self.job.observables & set(_ACCUMULATORS)
+        found = {"p": raw["p"], "q": raw["q"]} | {n: raw[_ACCUMULATORS[n]] for n in names}
+        if "mse" in found:
+            found["mse"] /= self.done
+        return found
+
     def _point(self, first: int) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:
             ends = (self._seen[f"{name}_{end}"] for end in ("low", "high"))
@@ -148,6 +168,8 @@ class Walk:
 
     def keep(self) -> None:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
+        if self.arithmetic.radius is not None:
+            return  # a ball's radius is not kept; such runs are short
         data = {
             "done": self.done,
             "seconds": self.seconds,

@@ -206,11 +206,24 @@ def test_prove_has_no_order_where_area_is_preserved(capsys: pytest.CaptureFixtur
     assert (found["order"], found["area_preserving"], found["delta_j"]) == (None, True, "0")
 
 
-@pytest.mark.parametrize(("digits", "arithmetic"), [(None, "float64"), ("30", "mpmath")])
+@pytest.mark.parametrize(
+    ("digits", "asked", "arithmetic", "kind"),
+    [
+        (None, None, "float64", "estimated"),
+        ("30", None, "mpmath", "estimated"),
+        ("30", "mpfr", "mpfr", "estimated"),
+        ("30", "ball", "ball", "enclosed"),
+    ],
+)
 def test_run_prints_its_json_keys_with_decimal_strings(
-    capsys: pytest.CaptureFixture[str], digits: str | None, arithmetic: str
+    capsys: pytest.CaptureFixture[str],
+    digits: str | None,
+    asked: str | None,
+    arithmetic: str,
+    kind: str,
 ) -> None:
-    status, out, err = here(capsys, *arguments("run", RUN, digits=digits), "--json")
+    given = arguments("run", RUN, digits=digits, arithmetic=asked)
+    status, out, err = here(capsys, *given, "--json")
     found = json_of(out)
     assert (status, err) == (0, "")
     values = ("lambda", "mse", "delta_j_max", "q", "p")
@@ -222,7 +235,7 @@ def test_run_prints_its_json_keys_with_decimal_strings(
         if digits:
             assert len(Decimal(found[name]).as_tuple().digits) in (29, 30)
     assert (int(found["steps"]), found["arithmetic"]) == (10, arithmetic)
-    assert found["error_kind"] in ("enclosed", "estimated")
+    assert found["error_kind"] == kind
     assert Decimal(found["seconds"]) >= 0
 
 

@@ -1,12 +1,17 @@
 """One conformance suite for every number system that `verify.arithmetic` finds.
 
-Numbers are held against exact rationals, functions against flint's balls at twice the precision.
+The checks themselves are in conformance.py.
 """
 
-from collections.abc import Callable
+import re
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
+import click
 import flint
 import gmpy2
 import mpmath
@@ -14,7 +19,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from verify import arithmetic
+from tests.unit import conformance
+from tests.unit.conformance import function
+from verify import arithmetic, cli
 from verify.enclosure import BALLS
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
@@ -36,32 +43,35 @@ def _systems() -> list[Any]:
 
 
 SYSTEMS = _systems()
-conformance = pytest.mark.parametrize(("name", "digits"), SYSTEMS)
+every_system = pytest.mark.parametrize(("name", "digits"), SYSTEMS)
 numbers = st.builds(
     lambda x, e: x * Fraction(10) ** e,
     st.fractions(min_value=-10, max_value=10, max_denominator=10**9),
     st.integers(-250, 250),
 )
-ULPS = 4  # what a good library of functions keeps to: libm within 2, mpmath within 1
+# Products and quotients of these stay in every arithmetic's range.
+middling = st.builds(
+    lambda x, e: x * Fraction(10) ** e,
+    st.fractions(min_value=-10, max_value=10, max_denominator=10**9),
+    st.integers(-30, 30),
+)
+
+get = cache(arithmetic.get)  # so that what was compiled for one is found again
 
 
-def function(made: Arithmetic, source: str) -> Callable[..., Any]:
-    """A function of the arithmetic, compiled and called the way that its kernels are."""
-    arguments, _, value = source.partition(":")
-    compiled = made.compile(f"def f({arguments}): return {value}\n", "f", made.functions)
-
-    def called(*numbers: Any) -> Any:
-        with made.context():
-            return compiled(*numbers)
-
-    return called
+def test_the_number_systems_are_found() -> None:
+    assert {"float64", "mpmath", "mpfr", "ball"} <= set(arithmetic.names())
 
 
-def test_float64_and_mpmath_are_found() -> None:
-    assert {"float64", "mpmath"} <= set(arithmetic.names())
+def test_the_command_line_names_every_number_system() -> None:
+    """A list by hand, since finding them would cost `verify --help` its imports."""
+    (option,) = (o for o in cli.run.params if o.name == "arithmetic")
+    assert isinstance(option, click.Option)
+    words = re.findall(r"\w+", option.help or "")
+    assert set(arithmetic.names()) <= set(words)
 
 
-@conformance
+@every_system
 def test_an_arithmetic_knows_its_name_and_has_the_digits_asked_for(name: str, digits: int) -> None:
     made = arithmetic.get(name, digits)
     assert made.name == name
@@ -70,24 +80,16 @@ def test_an_arithmetic_knows_its_name_and_has_the_digits_asked_for(name: str, di
     assert made.chunk >= 1
 
 
-@conformance
+@every_system
 @settings(max_examples=60, deadline=None)
 @given(x=numbers)
 def test_a_rational_is_rounded_once_and_read_back_exactly(
     name: str, digits: int, x: Fraction
 ) -> None:
-    made = arithmetic.get(name, digits)
-    number = made.number(x)
-    value = made.exact(number)
-    assert isinstance(value, Fraction)
-    assert abs(value - x) <= abs(x) / 2**made.bits, "not the nearest number"
-    assert made.exact(made.number(value)) == value
-    assert made.finite(number)
-    with made.context():
-        assert made.number(-x) == -number
+    conformance.check_number(get(name, digits), x)
 
 
-@conformance
+@every_system
 @settings(max_examples=60, deadline=None)
 @given(m=st.integers(-(2**53), 2**53), e=st.integers(-300, 300))
 def test_what_the_working_precision_holds_is_kept_exactly(
@@ -95,112 +97,76 @@ def test_what_the_working_precision_holds_is_kept_exactly(
 ) -> None:
     made, x = arithmetic.get(name, digits), m * Fraction(2) ** e
     assert made.exact(made.number(x)) == x
+    assert made.radius is None or made.radius(made.number(x)) == 0
 
 
-@conformance
-@pytest.mark.parametrize("source", ["x: log(x - x)", "x: 1 / (x - x)"], ids=["log-0", "1-over-0"])
+UNDEFINED = [
+    "log(x - x)", "1 / (x - x)", "log(-x)", "sqrt(-x)", "root(-x, 3)", "root(-x, 4)",
+    "(x - x) / (x - x)", "sin(1 / (x - x))", "cosh(1 / (x - x))", "x + log(-x) * 0",
+]  # fmt: skip
+
+
+@every_system
+@pytest.mark.parametrize("source", UNDEFINED)
 def test_what_is_not_a_number_is_raised_or_not_finite(name: str, digits: int, source: str) -> None:
-    made = arithmetic.get(name, digits)
-    try:
-        value = function(made, source)(made.number(Fraction(1, 3)))
-    except (ArithmeticError, ValueError):
-        return
-    assert not made.finite(value)
+    conformance.check_undefined(get(name, digits), f"x: {source}", Fraction(1, 3))
 
 
-@conformance
+@every_system
 @settings(max_examples=60, deadline=None)
-@given(x=numbers, y=numbers.filter(bool))
-def test_the_four_operations_are_each_rounded_once(
+@given(x=middling, y=middling.filter(bool))
+def test_every_operation_is_rounded_once(name: str, digits: int, x: Fraction, y: Fraction) -> None:
+    conformance.check_operations(get(name, digits), x, y)
+
+
+@every_system
+@settings(max_examples=30, deadline=None)
+@given(x=middling, y=middling)
+def test_extremes_are_those_of_the_true_values(
     name: str, digits: int, x: Fraction, y: Fraction
 ) -> None:
     made = arithmetic.get(name, digits)
-    a, b = made.number(x), made.number(y)
-    exact_a, exact_b = made.exact(a), made.exact(b)
-    if not 10**-40 < abs(exact_a) < 10**40 or not 10**-40 < abs(exact_b) < 10**40:
-        return  # products and quotients stay in every arithmetic's range
-    with made.context():
-        results = a + b, a - b, a * b, a / b
-    for found, true in zip(
-        results,
-        (exact_a + exact_b, exact_a - exact_b, exact_a * exact_b, exact_a / exact_b),
-        strict=True,
-    ):
-        assert abs(made.exact(found) - true) <= abs(true) / 2**made.bits
+    assert ("maximum" in made.functions) == ("minimum" in made.functions)
+    assert made.radius is None or "maximum" in made.functions, "an order of balls may be unknown"
+    conformance.check_extremes(made, x, y)
+    conformance.check_extremes(made, x, x)
 
 
 # -- functions ------------------------------------------------------------------------------------
 
-MODERATE = [Fraction(n, 37) for n in (-401, -100, -58, -37, -5, -1, 1, 3, 29, 58, 117, 777)]
-POSITIVE = [Fraction(1, 10**30), *(x for x in MODERATE if x > 0), Fraction(7 * 10**40, 3)]
-HUGE = [Fraction(10**9, 7), Fraction(10**20, 7), Fraction(10**22)]
-POINTS = {
-    "sin": [*MODERATE, *HUGE], "cos": [*MODERATE, *HUGE], "exp": MODERATE, "sinh": MODERATE,
-    "cosh": MODERATE, "atan": [*MODERATE, *HUGE, Fraction(1, 10**30)], "log": POSITIVE,
-}  # fmt: skip
-
-
-def true_value(kind: str, x: Fraction, bits: int, degree: int = 1) -> tuple[Fraction, Fraction]:
-    """The function's value and the radius of its enclosure, by flint at twice the precision."""
-    with flint.ctx.workprec(2 * bits + 200):
-        ball = BALLS[kind](flint.arb(flint.fmpq(x.numerator, x.denominator)), degree)
-        parts = [flint.arb(x).man_exp() for x in (ball.mid(), ball.rad())]
-    middle, radius = (Fraction(int(m)) * Fraction(2) ** int(e) for m, e in parts)
-    return middle, radius
-
-
-def assert_accurate(made: Arithmetic, found: Any, kind: str, x: Any, degree: int = 1) -> None:
-    true, radius = true_value(kind, made.exact(x), made.bits, degree)
-    error = abs(made.exact(found) - true)
-    unit = abs(true) / 2 ** (made.bits - 1)
-    assert error <= ULPS * unit + radius, f"{kind}({x}) is {float(error / unit):.1f} ulp off"
-
 
 def test_the_points_cover_every_function_that_a_hamiltonian_can_need() -> None:
-    assert set(POINTS) | {"root", "inverse"} == set(BALLS)
+    assert set(conformance.POINTS) | {"root", "inverse"} == set(BALLS)
 
 
-@conformance
-@pytest.mark.parametrize("kind", POINTS)
+@every_system
+@pytest.mark.parametrize("kind", conformance.POINTS)
 def test_a_function_is_as_accurate_as_its_arithmetic(name: str, digits: int, kind: str) -> None:
-    made = arithmetic.get(name, digits)
-    compiled = function(made, f"x: {kind}(x)")
-    for point in POINTS[kind]:
-        x = made.number(point)
-        assert_accurate(made, compiled(x), kind, x)
+    for point in conformance.POINTS[kind]:
+        conformance.check_function(get(name, digits), kind, point)
 
 
-@conformance
+@every_system
 @pytest.mark.parametrize("degree", [2, 3, 5, 7])
 def test_a_root_is_as_accurate_as_its_arithmetic(name: str, digits: int, degree: int) -> None:
-    made = arithmetic.get(name, digits)
-    compiled = function(made, "x: sqrt(x)" if degree == 2 else f"x: root(x, {degree})")
-    for point in [*POSITIVE, Fraction(8), Fraction(10**200), Fraction(1, 10**200)]:
-        x = made.number(point)
-        assert_accurate(made, compiled(x), "root", x, degree)
+    for point in conformance.RADICANDS:
+        conformance.check_function(get(name, digits), "root", point, degree)
 
 
-@conformance
-def test_cos_sin_in_one_call_is_cos_and_sin(name: str, digits: int) -> None:
+@every_system
+def test_cos_and_sin_in_one_call_are_cos_and_sin(name: str, digits: int) -> None:
     made = arithmetic.get(name, digits)
     both = [f for f in ("cos_sin", "sin_cos") if f in made.functions]
     if not both:
-        pytest.skip("this arithmetic has no cos_sin")
+        pytest.skip("this arithmetic has no such call")
     for f in both:
-        compiled = function(made, f"x: {f}(x)")
-        for point in MODERATE:
-            x = made.number(point)
-            for found, kind in zip(compiled(x), f.split("_"), strict=True):
-                assert_accurate(made, found, kind, x)
+        for point in conformance.POINTS["sin"]:
+            conformance.check_pair(made, f, point)
 
 
-@conformance
+@every_system
 def test_pi_is_pi(name: str, digits: int) -> None:
-    made = arithmetic.get(name, digits)
-    with flint.ctx.workprec(2 * made.bits):
-        mantissa, exponent = flint.arb.pi().mid().man_exp()
-    true = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    assert abs(made.exact(made.functions["pi"]) - true) <= true / 2**made.bits
+    conformance.check_pi(arithmetic.get(name, digits))
 
 
 # -- runs -----------------------------------------------------------------------------------------
@@ -210,6 +176,7 @@ SMALL = [
     pytest.param(Hamiltonian.parse("p**2/2 - cos(q)"), "lie2", id="pendulum"),
     pytest.param(Hamiltonian.parse("p**2/2 + exp(q) + sqrt(q + 3) + atan(p)/9"), "lie2", id="all"),
 ]
+ESCAPING = Hamiltonian.parse("p**2/2 + q**4/4 + log(q + 9)")
 
 
 def small_run(h: Hamiltonian, scheme: str, name: str, digits: int) -> dict[str, Any]:
@@ -218,7 +185,7 @@ def small_run(h: Hamiltonian, scheme: str, name: str, digits: int) -> dict[str, 
     return made.model_dump(exclude={"seconds"})
 
 
-@conformance
+@every_system
 @pytest.mark.parametrize(("h", "scheme"), SMALL)
 def test_repeated_runs_are_identical_to_the_last_bit(
     name: str, digits: int, h: Hamiltonian, scheme: str
@@ -228,26 +195,91 @@ def test_repeated_runs_are_identical_to_the_last_bit(
     assert small_run(h, scheme, name, digits) == first
 
 
-@conformance
+def global_state() -> tuple[Any, ...]:
+    """What libraries keep for the process or the thread; gmpy2's has its flags in it."""
+    return mpmath.mp.prec, mpmath.iv.prec, flint.ctx.prec, repr(gmpy2.get_context())
+
+
+@contextmanager
+def odd_global_state() -> Iterator[None]:
+    """Other global precisions, roundings and ranges than a number system would want."""
+    before = mpmath.mp.prec, mpmath.iv.prec
+    odd = gmpy2.context(precision=26, round=gmpy2.RoundUp, emax=99, emin=-99, trap_inexact=True)
+    try:
+        mpmath.mp.prec, mpmath.iv.prec = 20, 22
+        with odd, flint.ctx.workprec(24):
+            yield
+    finally:
+        mpmath.mp.prec, mpmath.iv.prec = before
+
+
+@every_system
 @pytest.mark.parametrize(("h", "scheme"), SMALL)
 def test_a_run_neither_uses_nor_changes_a_global_precision(
     name: str, digits: int, h: Hamiltonian, scheme: str
 ) -> None:
-    def state() -> tuple[Any, ...]:
-        return mpmath.mp.prec, mpmath.iv.prec, flint.ctx.prec, gmpy2.get_context().precision
-
-    before = state()
+    before = global_state()
     expected = small_run(h, scheme, name, digits)
-    assert state() == before
-    try:
-        mpmath.mp.prec, mpmath.iv.prec, flint.ctx.prec = 20, 22, 24
-        gmpy2.get_context().precision = 26
-        changed = state()
+    assert global_state() == before
+    with odd_global_state():
+        changed = global_state()
         assert small_run(h, scheme, name, digits) == expected
-        assert state() == changed
-    finally:
-        mpmath.mp.prec, mpmath.iv.prec, flint.ctx.prec = before[:3]
-        gmpy2.get_context().precision = before[3]
+        made = arithmetic.get(name, digits)
+        assert made.exact(made.number(Fraction(1, 3))) == made.exact(made.number(Fraction(1, 3)))
+        conformance.check_number(made, Fraction(1, 3))
+        conformance.check_pi(made)
+        assert global_state() == changed
+    assert global_state() == before
+
+
+@every_system
+def test_nothing_global_is_changed_where_a_run_or_its_user_fails(name: str, digits: int) -> None:
+    def stop(done: int) -> None:
+        raise InterruptedError(done)
+
+    before, made = global_state(), arithmetic.get(name, digits)
+    at: dict[str, Any] = {"step_size": 1, "steps": 50, "arithmetic": name, "digits": digits}
+    assert run(ESCAPING, "lie2", q=5, p=0, **at).status == "left range"
+    with pytest.raises(InterruptedError):
+        run(SMALL[0].values[0], "lie2", q=1, p=0, progress=stop, **at)
+    with pytest.raises(InterruptedError), made.context(), made.context():
+        raise InterruptedError
+    with made.context(), arithmetic.get(name, 2 * digits).context(), made.context():
+        pass
+    assert global_state() == before
+
+
+@every_system
+def test_threads_at_different_precisions_do_not_disturb_each_other(name: str, digits: int) -> None:
+    """A second thread enters its context within the first one's, where it can, and leaves later."""
+    before = global_state()
+    found: dict[int, Fraction] = {}
+    entered, left = threading.Event(), threading.Event()
+
+    def third(asked: int, inside: Callable[[], object]) -> None:
+        made = arithmetic.get(name, asked)
+        one, three = (made.number(Fraction(n)) for n in (1, 3))
+        with made.context():
+            inside()
+            found[asked] = made.exact(one / three)
+
+    def second() -> None:
+        third(digits + 100, lambda: (entered.set(), left.wait(5)))
+
+    def first() -> None:
+        thread.start()
+        entered.wait(0.05)  # in vain where one thread at a time is let in
+
+    thread = threading.Thread(target=second)
+    third(digits, first)
+    left.set()
+    thread.join()
+    assert global_state() == before
+    for asked, value in found.items():
+        alone = arithmetic.get(name, asked)
+        assert value == alone.exact(
+            function(alone, "x, y: x / y")(*map(alone.number, map(Fraction, (1, 3))))
+        )
 
 
 @pytest.mark.parametrize("name", ["", "float32", "mpmath ", "../float64", "__init__"])

@@ -255,4 +255,4 @@ def test_the_measured_verdicts_are_those_of_plain_floats(short: Any, name: str) 
         f"{name}-mse-initial-values": all(max(c) < 2 * min(c) for c in zip(*mse, strict=True)),
     }
     for id_, true in expected.items():
-        assert found[id_].verdict is (Verdict.MEASURED if true else Verdict.REFUTED), id_
+        assert found[id_].verdict is (Verdict.ENCLOSED if true else Verdict.REFUTED), id_

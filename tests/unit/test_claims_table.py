@@ -24,6 +24,7 @@ from verify.plan import plan_scenes
 from verify.verdict import Verdict
 
 MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED
+ENCLOSED = Verdict.ENCLOSED
 H = [Fraction(h) for h in STEP_SIZES]
 LAST = (H[-1], len(STARTS) - 1)  # where a mistake is put: at the last run of all
 ROW = ["-19.3010", "-18.1234", "-17.0000", "-16.5229", "-15.9999", "-15.0001"]
@@ -99,7 +100,7 @@ def test_a_table_row_from_our_own_runs_is_measured_and_refuted_with_a_digit_chan
     logarithms = [mpmath.nstr(mpmath.log10(r.values["mse"].value), 15) for r in runs]
     printed = [f"{Decimal(x):.4f}" for x in logarithms]
     claim = table(printed, [Fraction(r.step_size) for r in runs])
-    assert check_claims([claim], findings)[0].verdict is MEASURED
+    assert check_claims([claim], findings)[0].verdict is ENCLOSED
     last = str((int(printed[1][-1]) + 1) % 10)
     wrong = table([printed[0], printed[1][:-1] + last], list(claim.step_sizes))
     assert check_claims([wrong], findings)[0].verdict is REFUTED

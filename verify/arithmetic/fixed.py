@@ -68,6 +68,8 @@ def _finite(x: Any) -> bool:
 def _pi(bits: int) -> Fraction:
     import flint
 
-    with flint.ctx.workprec(bits + 64):
+    from verify.precision import working_precision
+
+    with working_precision(bits + 64):
         mantissa, exponent = flint.arb.pi().mid().man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -19,6 +19,7 @@ from typing import Any
 import flint
 from llvmlite import ir
 
+from verify.precision import working_precision
 from verify.wide import limbs
 from verify.wide.limbs import I64, Value, bits, constant, high_product, resized
 
@@ -145,7 +146,7 @@ class Functions:
 
     def _cos_sin(self) -> ir.Function:
         b, x = self._define("cos_sin", 2)
-        with flint.ctx.workprec(self.width + 128):
+        with working_precision(self.width + 128):
             unit = 2 * flint.arb.pi() / _ANGLES
             sines = [arb_integer((unit * k).sin(), self.width - 2) for k in range(_ANGLES * 5 // 4)]
             k, r = self._multiple(b, x, unit, Fraction(1, 2))
@@ -186,7 +187,7 @@ class Functions:
 
     def _exponential(self, b: ir.IRBuilder, x: Value) -> tuple[Value, Value]:
         """(m, a): e^x = m·2^a with m in [1, 2) in W − 2 fraction bits, a as i64."""
-        with flint.ctx.workprec(self.width + 128):
+        with working_precision(self.width + 128):
             unit = flint.arb(2).log() / _EXPONENTIALS
             powers = [arb_integer((unit * k).exp(), self.width - 2) for k in range(_EXPONENTIALS)]
             # A little less than the floor, so that r is surely not negative.

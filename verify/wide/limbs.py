@@ -9,6 +9,7 @@ What is left out is less than `count` units of the lowest kept column, where `co
 of limbs; each routine says what that means for its result.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 from llvmlite import ir
@@ -60,24 +61,49 @@ def _columns(
     b: ir.IRBuilder, x: Value, y: Value, lowest: int, *, signed: bool, start: int = 0
 ) -> Value:
     """Σ xᵢ yⱼ 2^(64 (i + j − lowest)) over the columns ≥ lowest, plus `start` and the high halves
-    of the column below: 2·count − lowest limbs."""
+    of the column below: 2·count − lowest limbs.
+
+    Row by row, as one multiplies by hand: product, what stands in the column, and the carry fit
+    into 128 bits. With signed numbers the highest limb is signed, and so is the carry behind it.
+    """
     count = x.type.width // 64
-    width = 64 * (2 * count - lowest)
     xs = [limb(b, x, i) for i in range(count)]
     ys = [limb(b, y, i) for i in range(count)]
 
-    def extended(v: Value, i: int) -> Value:
-        return resized(b, v, 128, signed=signed and i == count - 1)
+    def product(i: int, j: int) -> Value:
+        return b.mul(
+            resized(b, xs[i], 128, signed=signed and i == count - 1),
+            resized(b, ys[j], 128, signed=signed and j == count - 1),
+        )
 
-    total = constant(start, width)
+    def high(value: Value) -> Value:
+        return b.trunc(b.ashr(value, constant(64, 128)), I64)
+
+    columns: dict[int, tuple[Value, bool]] = {}
+    if start:
+        columns[lowest] = constant(start, 64), False
     for i in range(count):
-        for j in range(max(0, lowest - 1 - i), count):
-            product = b.mul(extended(xs[i], i), extended(ys[j], j))
-            at_top = signed and count - 1 in (i, j)
-            if i + j == lowest - 1:
-                product = b.ashr(product, ir.Constant(I128, 64)) if at_top else limb(b, product, 1)
-            part = resized(b, product, width, signed=at_top)
-            total = b.add(total, shifted_up(b, part, 64 * max(0, i + j - lowest)))
+        carry: tuple[Value, bool] | None = None
+        if lowest - 1 - i in range(count):
+            below = product(i, lowest - 1 - i)
+            carry = high(below), signed and count - 1 in (i, lowest - 1 - i)
+        for j in range(max(0, lowest - i), count):
+            total = product(i, j)
+            for part in (columns.get(i + j), carry):
+                if part is not None:
+                    total = b.add(total, resized(b, part[0], 128, signed=part[1]))
+            columns[i + j] = b.trunc(total, I64), False
+            carry = high(total), signed and count - 1 in (i, j)
+        if carry is not None:
+            columns[i + count] = carry
+    return joined(b, [columns[c][0] for c in range(lowest, 2 * count)])
+
+
+def joined(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
+    width = 64 * len(words)
+    total = constant(0, width)
+    for i, word in enumerate(words):
+        total = b.or_(total, shifted_up(b, resized(b, word, width), 64 * i))
     return total
 
 

@@ -5,6 +5,7 @@ from typing import Any
 import flint
 from llvmlite import ir
 
+from verify.precision import working_precision
 from verify.wide import limbs
 from verify.wide.functions import INTEGER_BITS, Functions, arb_integer
 from verify.wide.limbs import I64, Value, constant, high_product, resized
@@ -15,7 +16,7 @@ _LEAST_DIVISOR = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
-    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^(64−W)·2^−48."""
+    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^−101."""
     width = x.type.width
     high = b.sitofp(limbs.limb(b, x, width // 64 - 1), DOUBLE)
     low = b.uitofp(limbs.limb(b, x, width // 64 - 2), DOUBLE)
@@ -98,7 +99,7 @@ class MoreFunctions(Functions):
         total = b.add(b.neg(b.shl(minus, constant(INTEGER_BITS - 2, width))), self._log1p(b, delta))
         # The guess may lie on either side of −½; the sum may be large: one limb more.
         wide = width + 64
-        with flint.ctx.workprec(width + 128):
+        with working_precision(width + 128):
             two = constant(arb_integer(flint.arb(2).log(), places), wide)
         exponent = b.sub(constant(INTEGER_BITS, wide), resized(b, lead, wide))
         total = b.add(resized(b, total, wide, signed=True), b.mul(exponent, two))

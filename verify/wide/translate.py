@@ -9,7 +9,9 @@ is first assigned to it, an argument's is its annotation:
 - `float` IEEE double precision; `int` a 64-bit integer.
 
 `wide(x)` takes a float64 exactly, `approx(x)` goes back to the nearest float64 or its neighbour.
-The name `valid` is true in a pass of the loop as long as every function had a value.
+The name `valid` is true in a pass of the loop as long as every function had a value, in the pass
+and before the loop; `inside(x, limit)` is |x| < limit, seen from the highest limbs, and
+`shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -51,7 +53,7 @@ class Translator:
         main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "main")
         self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
         self.b = ir.IRBuilder(main.append_basic_block("body"))
-        self._assign_valid(True)
+        self._assign("valid", ir.Constant(BOOL, 1))
         offset = 0
         for name, kind in self.arguments:
             value, offset = self._read(main.args[0], offset, kind)
@@ -94,9 +96,6 @@ class Translator:
             value = self._to(value, target)
         self.b.store(value, self._variables[name])
 
-    def _assign_valid(self, value: bool) -> None:
-        self._assign("valid", ir.Constant(BOOL, int(value)))
-
     # -- statements ---------------------------------------------------------------------------
 
     def _block(self, statements: list[ast.stmt]) -> None:
@@ -131,13 +130,14 @@ class Translator:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
+        before = self._load("valid")
         head, body, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
-        self._assign_valid(True)
+        self._assign("valid", before)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
@@ -242,6 +242,8 @@ class Translator:
             return [b.select(negative, b.neg(x), x)]
         if name == "approx":
             return [to_double(b, x, self.fraction)]
+        if name == "shifted":
+            return [self._shifted(x, values[1])]
         if name == "wide":
             return [from_double(b, x, self.types["wide"].width, self.fraction)]
         if x.type == DOUBLE:
@@ -251,6 +253,16 @@ class Translator:
         self.b.store(b.and_(self._load("valid"), b.extract_value(packed, count)),
                      self._variables["valid"])  # fmt: skip
         return [b.extract_value(packed, i) for i in range(count)]
+
+    def _shifted(self, x: Value, by: Value) -> Value:
+        """x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not see by itself."""
+        b, count = self.b, x.type.width // 64
+        kind = ir.FunctionType(I64, [I64] * 3)
+        funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
+        words = [limbs.limb(b, x, i) for i in range(count)]
+        above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
+        moved = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
+        return limbs.joined(b, moved)
 
     def _float_function(self, name: str, x: Value) -> Value:
         plain = name.removeprefix("f_")
@@ -278,7 +290,17 @@ class Translator:
                 return total
             case ast.Compare():
                 return self._comparison(node)
+            case ast.Call(func=ast.Name(id="inside")):
+                return self._inside(*(self._expression(a) for a in node.args))
         raise NotImplementedError(ast.dump(node))
+
+    def _inside(self, x: Value, limit: Value) -> Value:
+        """|x| < limit, by the highest limbs alone: where it says so it is so; limit > 0."""
+        b, last = self.b, x.type.width // 64 - 1
+        x, limit = limbs.limb(b, x, last), limbs.limb(b, limit, last)
+        # −limit < x < limit for integers is 0 < x + limit < 2·limit.
+        moved = b.sub(b.add(x, limit), constant(1, 64))
+        return b.icmp_unsigned("<", moved, b.sub(b.add(limit, limit), constant(1, 64)))
 
     def _comparison(self, node: ast.Compare) -> Value:
         values = [self._expression(e) for e in (node.left, *node.comparators)]
