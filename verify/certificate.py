@@ -31,7 +31,7 @@ nothing grows the bound is the sum of the roundings, and nothing is lost to norm
 
 Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
 and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
-P_{k+1} = P_k (1 + 2^−s D̂_k) + τ_k, so that 1 + 2^−s D̂_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
+P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
 product of the first k factors is P_k but for a factor within exp(± N max |τ|/min P).
 """
 
@@ -165,8 +165,8 @@ class _Certificate:
         size, error = (
             _norm([getattr(x, part) for x in entries]) for part in ("magnitude", "error")
         )
-        # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of the
-        # products. That is 4 times half a unit, and what is of second order.
+        # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of
+        # the products. That is 4 times half a unit, and what is of second order.
         return ((error + 3 * unit * size) * (1 + unit) + unit * unit).abs_upper()
 
     def orbit(self, steps: _Steps, derivatives: Derivatives) -> tuple[Ball, Ball] | None:
@@ -236,7 +236,7 @@ class _Certificate:
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
         if self.arithmetic.absolute:
-            # 2^s Λ sums D + D Λ, in which a product is rounded; Λ adds 2^−s of it, cut.
+            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
             rounded = unit * (1 + scale)
         else:
             rounded = unit * (1 + unit) * (largest + 2 * jump * (1 + largest))

@@ -74,8 +74,14 @@ def prove(
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
 @click.option(
     "--arithmetic",
-    help="float64, mpmath, mpfr (as mpmath, but faster) or ball (enclosures); "
-    "mpmath where --digits is given.",
+    help="float64; auto, the fastest that certifies the digits; fixed (compiled), mpfr, mpmath or "
+    "ball. Without it: float64, or auto where --digits is given.",
+)
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep checkpoints there; the same command goes on from them.",
 )
 def run(
     system: str | None,
@@ -89,22 +95,24 @@ def run(
     p: str,
     digits: int | None,
     arithmetic: str | None,
+    keep: Path | None,
 ) -> None:
-    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound."""
-    from verify.progress import progress_bar
-    from verify.runs import ASKED, CLOSED_FORM
+    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
+
+    With --keep, an interruption costs at most some seconds of work.
+    """
+    from verify.keeping import Keeper, name_of
+    from verify.progress import steps_bar
+    from verify.runs import ASKED, AUTO, CLOSED_FORM
     from verify.runs import run as run_scheme
 
     exact = hamiltonian_of(system, hamiltonian, params)
-    arithmetic = arithmetic or ("mpmath" if digits else "float64")
-    with progress_bar("stepping", steps) as advance:
-        last = 0
-
-        def tell(done: int) -> None:
-            nonlocal last
-            advance(done - last)
-            last = done
-
+    arithmetic = arithmetic or (AUTO if digits else "float64")
+    if keep is not None:
+        _writable(keep)
+    asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
+    keeper = Keeper(keep, name_of(asked))
+    with steps_bar(steps) as tell:
         result = run_scheme(
             exact,
             scheme,
@@ -117,7 +125,9 @@ def run(
             # The plain way shows what rounding does to it; at many digits that is nothing.
             observables=ASKED if arithmetic == "float64" else CLOSED_FORM,
             progress=tell,
+            keeper=keeper,
         )
+    keeper.clear()
     if as_json:
         show.print_json(show.run_json(result))
     else:
@@ -205,7 +215,7 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     planned = plan_scenes(scenes)
     total = sum(cost(task) for task in planned.tasks.values())
     finished = 0
-    with progress_bar(f"{len(planned.tasks)} tasks", total) as advance:
+    with progress_bar(f"{len(planned.tasks)} tasks", total, unit="") as advance:
 
         def done(name: str, _: object) -> None:
             nonlocal finished

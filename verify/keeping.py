@@ -47,6 +47,11 @@ def fingerprint() -> str:
     return digest.hexdigest()[:12]
 
 
+def name_of(asked: object) -> str:
+    """A file's name for what is asked."""
+    return hashlib.sha256(repr(asked).encode()).hexdigest()[:24]
+
+
 class Keeper:
     """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
 

@@ -49,8 +49,9 @@ def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
             for common in _SIDES:
                 if safe(common, common, value) is None:
                     continue
-                p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
-                q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
+                # q first: it is an angle more often than p, and grows where that turns.
+                q = next(r for r in _SIDES if r == common or safe(common, r, value) is not None)
+                p = next(r for r in _SIDES if r == common or safe(r, q, value) is not None)
                 part = safe(p, q, value)
                 return Limits(p, q, part, value) if part is not None else None
     return None
@@ -77,7 +78,7 @@ def _room(
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
     """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
-    D (1 + Λ) + Λ and the next product stay below 2^15."""
+    Λ + D (1 + Λ) and the next product stay below 2^15."""
     determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
         if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:

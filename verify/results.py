@@ -200,7 +200,11 @@ class ClaimResult(Frozen):
 
 
 class SceneResult(Frozen):
-    """Everything found for one scene; `time` is the length of its runs where it has a grid."""
+    """Everything found for one scene; `time` is the length of its runs where it has a grid.
+
+    `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
+    scene asks for beside it.
+    """
 
     name: str
     title: str
@@ -212,6 +216,8 @@ class SceneResult(Frozen):
     criteria: tuple[CriterionResult, ...]
     runs: tuple[RunResult, ...]
     series: tuple[RunResult, ...]
+    separations: tuple[SeparationGrid, ...] = ()
+    crossovers: tuple[SeparationGrid, ...] = ()
 
 
 class Provenance(Frozen):

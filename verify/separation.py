@@ -144,6 +144,11 @@ def separate_grid(
         )
         for h, count in counts
     ]
+    return as_grid(points)
+
+
+def as_grid(points: Sequence[SeparationResult]) -> SeparationGrid:
+    """Separations for several step sizes, with the crossover of each way to evaluate Λ."""
 
     def of(name: str) -> CrossoverResult:
         found = []

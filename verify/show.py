@@ -91,6 +91,7 @@ def run_json(result: "RunResult") -> dict[str, Any]:
         "steps": result.steps,
         "digits": result.digits,
         "arithmetic": result.arithmetic,
+        "fallback": result.fallback,
         "error_bound": {name: value.bound for name, value in values.items() if value},
         "error_kind": result.error_kind,
         "error_method": result.error_method,
@@ -119,6 +120,8 @@ def print_run(result: "RunResult") -> None:
         f"{result.steps} steps in {result.arithmetic}, {result.seconds:.3g} s; bounds "
         f"{result.error_kind} ({result.error_method})"
     )
+    if result.fallback:
+        click.echo(f"taken instead of what was asked for: {result.fallback}")
 
 
 def separation_json(found: "SeparationGrid") -> dict[str, Any]:
