@@ -9,7 +9,7 @@ their determinant, the product), `extremes` the least and greatest ΔJ and Λ of
 Where an arithmetic's numbers have an absolute precision (fixed point), ΔJ = h^r D with the greatest
 such r is carried as D, and so are its sums, so that they keep their significant digits however
 small h is; Λ itself is carried beside them as `part`, since it multiplies. There the loop ends
-where p, q, Λ or a function's value leaves the limits that are given with the parameters.
+where p, q, Λ, Π det J or a function's value leaves the limits that are given with the parameters.
 
 A compensated kernel adds the increments to the state, and ΔJ to its sums, in twice the working
 precision (Knuth's two-sum): what remains is the rounding of the increments, smaller by a factor of
@@ -295,8 +295,8 @@ class _Writer:
             template = self.arithmetic.guard
             return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
         looked_at = {"p": "reach_p", "q": "reach_q"}
-        if any(name == "part" for name, _, _ in self.carried):
-            looked_at["part"] = "reach_part"
+        carried = {name for name, _, _ in self.carried}
+        looked_at |= {name: "reach_part" for name in ("part", "plain") if name in carried}
         for index in self.lowering.live(needed):
             if self.program.ops[index].kind in PARTIAL:
                 looked_at[self.lowering.name(index)] = "reach_value"

@@ -1,9 +1,10 @@
 """How far an orbit may go in a fixed-point format: limits within which nothing can overflow.
 
-Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step. The
-largest box of powers of two for which all of them stay in the format is found before the run; the
-kernel ends the loop where the orbit leaves it. So an overflow is not looked for at every operation,
-and cannot happen.
+Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step, with
+functions' values taken to stay below reach_value. A large box of powers of two for which all of
+them stay in the format is found before the run; the kernel ends the loop where the orbit leaves it,
+or a function's value its limit. So an overflow is not looked for at every operation, and cannot
+happen.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,7 +25,7 @@ _SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1
 
 @dataclass(frozen=True)
 class Limits:
-    """What p, q, Λ and the values of functions stay below in size; see `verify.kernel.LIMITS`."""
+    """What p, q, Λ (as well as Π det J) and functions stay below; see `verify.kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -35,10 +36,12 @@ class Limits:
         return iter((self.p, self.q, self.part, self.value))
 
 
-def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
+def limits(
+    kernel: Kernel, inputs: Mapping[str, Fraction], start: Mapping[str, Fraction]
+) -> Limits | None:
     """The kernel's limits for these h and parameters, by the names that its source has for them.
 
-    None where no box is safe, however small.
+    None where no box that holds the start is safe.
     """
 
     def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
@@ -46,13 +49,14 @@ def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
 
     with working_precision(PRECISION):
         for value in _VALUE_LIMITS:
-            for common in _SIDES:
-                if safe(common, common, value) is None:
-                    continue
-                p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
-                q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
-                part = safe(p, q, value)
-                return Limits(p, q, part, value) if part is not None else None
+            common = next((r for r in _SIDES if safe(r, r, value) is not None), None)
+            if common is None:
+                continue
+            p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
+            q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
+            part = safe(p, q, value)
+            if part is not None and abs(start["p"]) < p and abs(start["q"]) < q:
+                return Limits(p, q, part, value)
     return None
 
 
@@ -76,10 +80,13 @@ def _room(
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ may reach: D (1 + Λ) and h^r D (1 + Λ) + Λ stay below 2^15."""
-    scale = size.get("scale", flint.arb(0))
+    """The power of two that Λ and Π det J may reach before a step.
+
+    In it D (1 + Λ), h^r D (1 + Λ) + Λ and det J Π det J stay below 2^15.
+    """
+    scale, det = size.get("scale", flint.arb(0)), size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
         grown = size["dj"] * (1 + 2**n)
-        if grown < 2**14 and scale * grown < 2**14:
+        if grown < 2**14 and scale * grown < 2**14 and det * 2**n < 2**14:
             return Fraction(2**n)
     return None

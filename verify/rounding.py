@@ -77,8 +77,8 @@ def analyse(
 ) -> dict[int, Rounded] | None:
     """Each live operation's value over the inputs' intervals; None where one may be undefined.
 
-    `limit`: where a function may leave a range, its values are taken to be within ±limit, since the
-    kernel's guard ends the loop otherwise.
+    `limit`, for inputs without an error: where a function may leave a range, its values are taken
+    to be within ±limit, since the kernel's guard ends the loop otherwise.
     """
     found: dict[int, Rounded] = {}
     for index in live:
@@ -88,7 +88,7 @@ def analyse(
             continue
         interval, error = _value(op, [found[a] for a in op.args])
         if limit is not None and op.kind in _SLOPES and not _within(interval, limit):
-            interval = limit * flint.arb(0, 1)
+            interval, error = limit * flint.arb(0, 1), flint.arb(0)
         if not (interval.is_finite() and error.is_finite()):
             return None
         own = rounding(op, interval.abs_upper() + error)

@@ -121,7 +121,7 @@ class Job:
             if found is None:
                 continue
             outcome = self._walk(kernel, arithmetic, tuple(found), progress, enough)
-            if outcome.done == self.steps or not outcome.trail:
+            if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             left = f"left |p| < {text(found.p)}, |q| < {text(found.q)} at step {outcome.done + 1}"
             outcome = replace(
@@ -135,10 +135,7 @@ class Job:
         return {"h": self.start["h"], **named}
 
     def _limits(self, kernel: Kernel) -> Limits | None:
-        found = limits(kernel, self.inputs(kernel))
-        if found is None or abs(self.start["p"]) >= found.p or abs(self.start["q"]) >= found.q:
-            return None
-        return found
+        return limits(kernel, self.inputs(kernel), self.start)
 
     def _walk(
         self,

@@ -8,8 +8,9 @@ is first assigned to it, an argument's is its annotation:
 - `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
 - `float` IEEE double precision; `int` a 64-bit integer.
 
-`wide(x)` takes a float64 exactly, `approx(x)` goes back to the nearest float64 or its neighbour.
-The name `valid` is true in a pass of the loop as long as every function had a value.
+`wide(x)` takes a float64 but for bits below the last place, `approx(x)` goes back to one near x (see
+`verify.wide.newton`).
+The name `valid` is true as long as every function had a value; a loop ends where it is not.
 """
 
 import ast
@@ -50,7 +51,7 @@ class Translator:
         main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "main")
         self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
         self.b = ir.IRBuilder(main.append_basic_block("body"))
-        self._assign_valid(True)
+        self._assign("valid", ir.Constant(BOOL, 1))
         offset = 0
         for name, kind in self.arguments:
             value, offset = self._read(main.args[0], offset, kind)
@@ -93,8 +94,9 @@ class Translator:
             value = self._to(value, target)
         self.b.store(value, self._variables[name])
 
-    def _assign_valid(self, value: bool) -> None:
-        self._assign("valid", ir.Constant(BOOL, int(value)))
+    def _require(self, condition: Value) -> None:
+        """`valid` only where this is true."""
+        self.b.store(self.b.and_(self._load("valid"), condition), self._variables["valid"])
 
     # -- statements ---------------------------------------------------------------------------
 
@@ -136,7 +138,6 @@ class Translator:
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
-        self._assign_valid(True)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
@@ -242,13 +243,16 @@ class Translator:
         if name == "approx":
             return [to_double(b, x, self.fraction)]
         if name == "wide":
-            return [from_double(b, x, self.types["wide"].width, self.fraction)]
+            width = self.types["wide"].width
+            top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
+            size = b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
+            self._require(b.fcmp_ordered("<", size, top))
+            return [from_double(b, x, width, self.fraction)]
         if x.type == DOUBLE:
             return [self._float_function(name, x)]
         packed = b.call(self.functions.get(name), [x])
         count = len(packed.type.elements) - 1
-        self.b.store(b.and_(self._load("valid"), b.extract_value(packed, count)),
-                     self._variables["valid"])  # fmt: skip
+        self._require(b.extract_value(packed, count))
         return [b.extract_value(packed, i) for i in range(count)]
 
     def _float_function(self, name: str, x: Value) -> Value:
