@@ -10,6 +10,7 @@ happen.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 
 import flint
 
@@ -47,17 +48,27 @@ def limits(
     def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
         return _room(kernel, inputs, p, q, value)
 
+    def largest(p: Fraction, q: Fraction, value: Fraction) -> Limits:
+        """Grows a safe box, first to all sides."""
+        boxes = ((max(p, r), max(q, r)) for r in _SIDES)
+        p, q = next((p, q) for p, q in boxes if safe(p, q, value) is not None)
+        p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
+        q = next(r for r in _SIDES if r == q or safe(p, r, value) is not None)
+        part = safe(p, q, value)
+        assert part is not None  # noqa: S101 - as was just seen
+        return Limits(p, q, part, value)
+
     with working_precision(PRECISION):
-        for value in _VALUE_LIMITS:
-            common = next((r for r in _SIDES if safe(r, r, value) is not None), None)
-            if common is None:
-                continue
-            p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
-            q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
-            part = safe(p, q, value)
-            if part is not None and abs(start["p"]) < p and abs(start["q"]) < q:
-                return Limits(p, q, part, value)
+        for room, value in product((4, 1), _VALUE_LIMITS):
+            p, q = (_side(room * abs(start[n])) for n in ("p", "q"))
+            if p and q and safe(p, q, value) is not None:
+                return largest(p, q, value)
     return None
+
+
+def _side(size: Fraction) -> Fraction | None:
+    """The least side beyond a size."""
+    return min((r for r in _SIDES if r > size), default=None)
 
 
 def _room(

@@ -88,7 +88,7 @@ def analyse(
             continue
         interval, error = _value(op, [found[a] for a in op.args])
         if limit is not None and op.kind in _SLOPES and not _within(interval, limit):
-            interval, error = limit * flint.arb(0, 1), flint.arb(0)
+            interval = limit * flint.arb(0, 1)
         if not (interval.is_finite() and error.is_finite()):
             return None
         own = rounding(op, interval.abs_upper() + error)
@@ -128,8 +128,11 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
             square = op.args[0] == op.args[1]
             return (_square(x.interval) if square else x.interval * y.interval), error
     x = args[0]
+    value = BALLS[op.kind](x.interval, op.degree)
+    if x.error.is_zero():  # of no matter then is a slope without a bound
+        return value, zero
     slope = _SLOPES[op.kind](x.widened, op.degree)
-    return BALLS[op.kind](x.interval, op.degree), slope.abs_upper() * x.error
+    return value, slope.abs_upper() * x.error
 
 
 def _square(x: Ball) -> Ball:
@@ -146,6 +149,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: 1 / (x * x),
+    "inverse": lambda x, _: (1 / x) * (1 / x),  # 1/x² is wider for a wide x, or not finite
     "root": lambda x, n: x.root(n) / (n * x),
 }

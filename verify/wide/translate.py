@@ -8,8 +8,8 @@ is first assigned to it, an argument's is its annotation:
 - `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
 - `float` IEEE double precision; `int` a 64-bit integer.
 
-`wide(x)` takes a float64 but for bits below the last place, `approx(x)` goes back to one near x (see
-`verify.wide.newton`).
+`wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
+`verify.wide.newton` says.
 The name `valid` is true as long as every function had a value; a loop ends where it is not.
 """
 
