@@ -21,13 +21,18 @@ and by Gronwall's lemma, with d = min |det M_k|, S = Σ ‖M_k‖, Q = (ρ/d) Σ
 For integrable motion ‖M_k‖ grows linearly in time, so E grows like N T² ε, and a run of 2·10⁷ steps
 loses some 20 digits and not thousands. The quadratic term is closed by a bootstrap: E* is taken as
 twice the bound without it; if with E* in it the bound is at most E*, then by induction over k it
-holds for all k. (Norms are Euclidean and Frobenius; S ≤ (N Σ ‖M_k‖²)^½.)
+holds for all k, and so does the bound with E* in it. Φ must be defined all over the box.
 
-Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = ΔJ/h^r over the box
-and η its rounding; their sum bounds how log(1 + Λ) moves. The rounding of the sums themselves is
-counted
-once per step, and multiplied in Λ by the greatest ratio of two of its factors, κ = (1 + max Λ)/(1 +
-min Λ).
+Norms are those of Euclid: what is carried are the sum and the greatest of F_k² = ‖M_k‖² in
+Frobenius' norm, and ‖M_k‖² ≤ g(F_k²), g(y) = (y + (y² − 4d²)^½)/2, as the eigenvalues of MᵀM have
+the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) over N + 1 matrices is at
+most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
+nothing grows the bound is the sum of the roundings, and nothing is lost to norms.
+
+Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
+and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
+P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
+product of the first k factors is P_k but for a factor within exp(± N max |τ|/min P).
 """
 
 from collections.abc import Mapping
@@ -79,24 +84,25 @@ class _Certificate:
     def __init__(self, job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
         self.job, self.arithmetic, self.kernel = job, arithmetic, outcome.kernel
+        self.shift = outcome.shift
         self.rounding = rounding_of(arithmetic)
         self.steps = int(outcome.tangents[note]["done"])
         self.values = outcome.trail[note]
         self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
         self.h = rational_ball(job.start["h"])
-        self.derivatives = Derivatives.of(job.generic, job.scheme)
 
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
+        derivatives = Derivatives.of(self.job.generic, self.job.scheme)
         steps = self.one_step()
-        if steps is None:
+        if derivatives is None or steps is None:
             return None
-        orbit = self.orbit(steps)
+        orbit = self.orbit(steps, derivatives)
         if orbit is None:
             return None
         error, summed = orbit
-        found = {"p": error, "q": error} | self.observables(steps, error, summed)
+        found = {"p": error, "q": error} | self.observables(steps, derivatives, error, summed)
         return {name: bounds(x)[1] for name, x in found.items() if x.is_finite()}
 
     def box(self, margin: Ball) -> dict[str, Ball]:
@@ -127,7 +133,7 @@ class _Certificate:
         """The state, which is data and has no error, and h and the parameters as rounded."""
         given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
         unit = flint.arb(2) ** -self.arithmetic.bits
-        for name, exact in self.job.inputs(self.kernel).items():
+        for name, exact in self.job.inputs(self.kernel, self.shift).items():
             x = rational_ball(exact)
             held = self.arithmetic.exact(self.arithmetic.number(exact)) == exact
             size = flint.arb(1) if self.arithmetic.absolute else abs(x)
@@ -159,28 +165,30 @@ class _Certificate:
         size, error = (
             _norm([getattr(x, part) for x in entries]) for part in ("magnitude", "error")
         )
-        return (error + 2 * unit * size + unit * unit).abs_upper()
+        # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of
+        # the products. That is 4 times half a unit, and what is of second order.
+        return ((error + 3 * unit * size) * (1 + unit) + unit * unit).abs_upper()
 
-    def orbit(self, steps: _Steps) -> tuple[Ball, Ball] | None:
+    def orbit(self, steps: _Steps, derivatives: Derivatives) -> tuple[Ball, Ball] | None:
         """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
         seen, count = self.seen, self.steps
         slack = 1 + flint.arb(count) * flint.arb(2) ** -50  # of float64's own sums
-        growth, top = seen["growth"] * slack, (seen["growth_top"] * slack).sqrt()
+        growth, highest = seen["growth"] * slack, seen["growth_top"] * slack
         least = seen["det_low"] - flint.arb(2) ** -48 * seen["growth_top"]
         if not (growth.is_finite() and least > 0):
             return None
         rate = steps.tangent * growth / least
         if not rate < _MOST_GROWTH:
             return None
-        path = (count * growth).sqrt()  # Σ ‖M_k‖
-        first = self.first_error()
-        alone = rate.exp() * (first + path / least * steps.state)
+        top = _square_of_norm(highest, least).sqrt()
+        path = (count * (count + 1) * _square_of_norm(growth / (count + 1), least)).sqrt()
+        alone = rate.exp() * (self.first_error() + path / least * steps.state)
         error = (2 * top * alone).abs_upper()
-        second = self.derivatives.second(self.values_of_inputs(), self.box(error))
-        more = rate.exp() * path / least * second * error * error / 2
-        if not top * (alone + more) <= error:
+        second = derivatives.second(self.values_of_inputs(), self.box(error))
+        start = (alone + rate.exp() * path / least * second * error * error / 2).abs_upper()
+        if not top * start <= error:
             return None
-        return error, ((alone + more) * path).abs_upper()
+        return (top * start).abs_upper(), (start * path).abs_upper()
 
     def first_error(self) -> Ball:
         start, number, exact = self.job.start, self.arithmetic.number, self.arithmetic.exact
@@ -193,14 +201,14 @@ class _Certificate:
 
     # -- the observables ----------------------------------------------------------------------
 
-    def observables(self, steps: _Steps, error: Ball, summed: Ball) -> dict[str, Ball]:
+    def observables(
+        self, steps: _Steps, derivatives: Derivatives, error: Ball, summed: Ball
+    ) -> dict[str, Ball]:
         asked, count = self.job.observables, self.steps
         if not asked & {"delta_j_max", "mse", "lambda"}:
             return {}
-        scale = self.h**self.kernel.power
-        slope = self.derivatives.gradient(
-            self.values_of_inputs(), self.box(error), self.kernel.power
-        )
+        scale = flint.arb(2) ** -self.shift
+        slope = derivatives.gradient(self.values_of_inputs(), self.box(error)) / scale
         moved = slope * summed + count * steps.delta_j  # Σ |D̂_k − D(z_k)|
         size = steps.size + slope * error
         result = {}
@@ -212,7 +220,7 @@ class _Certificate:
             )
             result["mse"] = scale * scale * (2 * size * moved / count + added)
         if "lambda" in asked:
-            result["lambda"] = self.of_lambda(scale, moved, size)
+            result["lambda"] = self.of_lambda(moved, size)
         return {name: x.abs_upper() for name, x in result.items()}
 
     def added(self, total: Ball, term: Ball) -> Ball:
@@ -220,24 +228,30 @@ class _Certificate:
         unit = flint.arb(2) ** -self.arithmetic.bits
         return unit if self.arithmetic.absolute else unit * (total + term) * 2
 
-    def of_lambda(self, scale: Ball, moved: Ball, size: Ball) -> Ball:
-        count, unit = self.steps, flint.arb(2) ** -self.arithmetic.bits
+    def of_lambda(self, moved: Ball, size: Ball) -> Ball:
+        scale, count = flint.arb(2) ** -self.shift, self.steps
+        unit = flint.arb(2) ** -self.arithmetic.bits
         low, high = self.seen["least"], self.seen["most"]
-        largest = abs(low).max(abs(high)) + unit
-        jump = scale * size
-        if not (jump < flint.arb("0.5") and low > -1):
+        largest, jump = abs(low).max(abs(high)), scale * size
+        if not (jump < 1 and low > -1):
             return flint.arb.nan()
-        # log(1 + Λ) moves by Σ |δ_k| / (1 − |ΔJ|).
-        shift = ((scale * moved) / (1 - jump)).expm1() * (1 + high)
-        ratio = (1 + high + unit) / (1 + low - unit) * 2
-        grown = size * (1 + largest)
         if self.arithmetic.absolute:
-            # D Λ and h^r (D + D Λ) are rounded, and h^r itself; Λ as a factor feels all of it.
-            scale_error = unit * 4 * (1 + self.kernel.power)
-            factor = ratio * count * (scale * unit + unit + scale_error * grown)
-            return shift + scale * (count * unit + count * size * factor) + scale * count * unit
-        each = unit * (largest + 4 * jump * (1 + largest)) * 2
-        return shift + ratio * count * each
+            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
+            rounded = unit * (1 + scale)
+        else:
+            rounded = unit * (1 + unit) * (largest + 2 * jump * (1 + largest))
+        drift = count * rounded / (1 + low)
+        shift = (scale * moved / (1 - jump)).expm1() * drift.exp() * (1 + high)
+        apart = drift.expm1() * (1 + high)  # of 1 + Λ and the product of the computed factors
+        if self.arithmetic.absolute:
+            return shift + scale * count * (size * apart + unit)
+        return shift + apart
+
+
+def _square_of_norm(squares: Ball, least: Ball) -> Ball:
+    """A bound of ‖M‖², from those of the sum of its entries' squares and of its determinant; or one
+    of the mean of ‖M‖² over several M, from that of those sums."""
+    return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()
 
 
 def _norm(entries: list[Ball]) -> Ball:

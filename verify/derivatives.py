@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from verify.enclosure import enclose_over
+from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
 from verify.ring import Poly, Ring
 from verify.rounding import Ball
@@ -18,33 +19,44 @@ _STATE = ("p", "q")
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Second derivatives of (p', q'), and ΔJ by powers of h with its gradient."""
+    """(p', q') and their second derivatives, and the gradient of ΔJ by powers of h."""
 
     ring: Ring
+    values: tuple[Poly, ...]
     hessians: tuple[tuple[Poly, ...], ...]
     gradients: tuple[tuple[int, tuple[Poly, ...]], ...]
 
     @classmethod
-    def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives":
+    def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives | None":
+        """None where the composition of the scheme's substeps is too large."""
         return _derivatives(hamiltonian, scheme)
 
     def second(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
-        """B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² in the box."""
+        """B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² in the box.
+
+        Not finite where Φ may be undefined in it: derivatives may be defined beyond, as those of
+        log are on the other side of 0.
+        """
+        if not _norm(self.ring, self.values, {**fixed, **box}).is_finite():
+            return flint.arb.nan()
         entries = [x for hessian in self.hessians for x in hessian]
         return _norm(self.ring, entries, {**fixed, **box})
 
-    def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball], power: int) -> Ball:
-        """A bound of ‖∇(ΔJ/h^power)‖ in the box."""
+    def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
+        """A bound of ‖∇ΔJ‖ in the box."""
         total = flint.arb(0)
         for n, gradient in self.gradients:
             size = _norm(self.ring, gradient, {**fixed, **box})
-            total += fixed["h"] ** (n - power) * size
+            total += fixed["h"] ** n * size
         return total
 
 
 @lru_cache(maxsize=64)
-def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives:
-    step = get(scheme).step_map(hamiltonian).flat
+def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
+    try:
+        step = get(scheme).step_map(hamiltonian).flat
+    except InputError:
+        return None
     ring, diff = step.ring, step.ring.diff
     hessians = tuple(
         tuple(diff(diff(x, a), b) for a in _STATE for b in _STATE)
@@ -53,7 +65,7 @@ def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives:
     whole = h_inside(ring, step.delta_j)
     parts = {0: step.delta_j} if whole else ring.powers(step.delta_j, "h")
     gradients = tuple((n, tuple(diff(x, a) for a in _STATE)) for n, x in sorted(parts.items()))
-    return Derivatives(ring, hessians, gradients)
+    return Derivatives(ring, (step.p_next, step.q_next), hessians, gradients)
 
 
 def _norm(ring: Ring, entries: Sequence[Poly], point: Mapping[str, Ball]) -> Ball:

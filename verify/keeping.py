@@ -7,6 +7,7 @@ import os
 import sys
 import tempfile
 import time
+from fractions import Fraction
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -45,6 +46,22 @@ def fingerprint() -> str:
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
+
+
+def name_of(asked: object) -> str:
+    """A file's name for what is asked."""
+    return hashlib.sha256(repr(asked).encode()).hexdigest()[:24]
+
+
+def fraction_text(x: Fraction) -> str:
+    """An exact text of any length."""
+    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
+
+
+def fraction_of(x: str) -> Fraction:
+    """What `fraction_text` has written."""
+    numerator, denominator = (int(part, 16) for part in x.split("/"))
+    return Fraction(numerator, denominator)
 
 
 class Keeper:

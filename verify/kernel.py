@@ -6,10 +6,11 @@ their determinant, the product), `extremes` the least and greatest ΔJ and Λ of
 
 `tangent` carries the tangent map along (see `verify.tangent`), for a rigorous bound.
 
-Where an arithmetic's numbers have an absolute precision (fixed point), ΔJ = h^r D with the greatest
-such r is carried as D, and so are its sums, so that they keep their significant digits however
-small h is; Λ itself is carried beside them as `part`, since it multiplies. There the loop ends
-where p, q, Λ, Π det J or a function's value leaves the limits that are given with the parameters.
+Where an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
+so are its sums, so that they keep their significant digits however small h is; it is evaluated from
+ΔJ/h^r, r as great as can be, with κ = 2^s h^r in its coefficients. Λ itself is carried beside them
+as `part`, since it multiplies. There the loop ends where p, q, Λ, Π det J or a function's value
+leaves the limits that are given with the parameters.
 
 A compensated kernel adds the increments to the state, and ΔJ to its sums, in twice the working
 precision (Knuth's two-sum): what remains is the rounding of the increments, smaller by a factor of
@@ -24,6 +25,7 @@ from typing import Any
 
 from verify import tangent
 from verify.hamiltonian import Hamiltonian
+from verify.increments import increments
 from verify.lowering import Lowering
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.program import Evaluator, Program
@@ -34,22 +36,24 @@ from verify.step_map import StepMap, Substep, h_inside
 OBSERVABLES = ("delta_j_max", "mse", "lambda", "lambda_plain", "extremes", "tangent")
 CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "extremes"})
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
+SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
 
 
 @dataclass(frozen=True)
 class Kernel:
-    """`function(steps, h, *parameters, *limits, *carried)` → (steps done, *carried).
+    """`function(steps, h, *parameters, *scales, *limits, *carried)` → (steps done, *carried).
 
     `carried` names the state and accumulators in their order: p, q, then those of the observables;
     `kinds` says of each what it is (see `verify.wide.translate`), `start` has the initial values,
-    p and q apart; "p" and "q" there are those in float64. `limits` are numbers that the loop's
-    guard compares with. `power`: ΔJ and its sums are carried divided by h^power. `lowering` and
-    `outputs` are what is computed: the program and the indices of its results.
+    p and q apart; "p" and "q" there are those in float64. An arithmetic of absolute precision has
+    `scales` and `limits`, the numbers that the loop's guard compares with, and `power` is the r of
+    κ. `lowering` and `outputs` are what is computed: the program and the indices of its results.
     """
 
     function: Callable[..., tuple[Any, ...]]
     parameters: tuple[str, ...]
+    scales: tuple[str, ...]
     limits: tuple[str, ...]
     carried: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -73,17 +77,13 @@ def kernel_for(
     arithmetic: Arithmetic,
     observables: frozenset[str],
     compensated: bool = False,
-    most_power: int | None = None,
 ) -> Kernel:
-    """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once.
-
-    `most_power`: ΔJ is divided by that power of h at most.
-    """
+    """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once."""
     step_map = get(scheme).step_map(hamiltonian)
-    return _Writer(step_map, arithmetic, observables, compensated, most_power).kernel()
+    return Writer(step_map, arithmetic, observables, compensated).kernel()
 
 
-class _Writer:
+class Writer:
     """Writes the source of one kernel."""
 
     def __init__(
@@ -92,7 +92,7 @@ class _Writer:
         arithmetic: Arithmetic,
         observables: frozenset[str],
         compensated: bool,
-        most_power: int | None,
+        scaled: bool = True,
     ) -> None:
         self.map, self.arithmetic = step_map, arithmetic
         self.observables, self.compensated = observables, compensated
@@ -102,9 +102,8 @@ class _Writer:
         self.parameters = step_map.hamiltonian.symbols
         self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
         self.needs_delta_j = bool(observables & CLOSED_FORM)
-        self.power = self.common_power() if arithmetic.absolute and self.needs_delta_j else 0
-        if most_power is not None:
-            self.power = min(self.power, most_power)
+        self.scaled = scaled and arithmetic.absolute and self.needs_delta_j
+        self.power = self.common_power() if self.scaled else 0
 
     def common_power(self) -> int:
         """The greatest r for which h^r divides ΔJ of every substep."""
@@ -117,18 +116,20 @@ class _Writer:
         outputs = self.outputs()
         lines = self.statements(outputs)
         limits = LIMITS if self.arithmetic.absolute else ()
+        scales = SCALES if self.scaled else ()
         needed = [*outputs.values(), *(self.tangent.needed if self.tangent else ())]
         self.check(needed)
-        source = self.assemble(needed, lines, limits)
+        source = self.assemble(needed, lines, (*scales, *limits))
         scope = {
             **self.arithmetic.functions,
             **self.lowering.named_constants(self.arithmetic.number),
-            **(self.tangent.lowering.named_constants(float) if self.tangent else {}),
+            **(self.tangent.lowering.named_constants(tangent.number) if self.tangent else {}),
         }
         names, kinds, start = zip(*self.carried, strict=True)
         return Kernel(
             function=self.arithmetic.compile(source, "kernel", scope),
             parameters=self.parameters,
+            scales=scales,
             limits=limits,
             carried=names,
             kinds=kinds,
@@ -155,26 +156,27 @@ class _Writer:
         fixed = {n: program.input(a, static=True) for n, a in arguments.items()}
         zero = program.constant(Fraction(0))
         state = {n: program.input(n, static=False) for n in ("p", "q")}
-        scale = program.power(fixed["h"], self.power)
+        scale = program.input("kappa", static=True) if self.scaled else None
         total = {"p": zero, "q": zero}
         delta_j, jacobian = zero, None
         for step in self.map.substeps:
             at = {n: program.add(state[n], total[n]) for n in ("p", "q")}
             evaluator = Evaluator(program, step.ring, fixed | at, self.arithmetic.pipelined)
             if self.needs_delta_j and not step.preserves_area:
-                own = evaluator.evaluate(_divided(step, self.power))
-                both = program.mul(scale, program.mul(delta_j, own))
+                own = evaluator.evaluate(_divided(step, self.power), scale)
+                both = program.mul(delta_j, own)
+                if scale is not None and not program.is_constant(both, 0):
+                    both = program.mul(program.input("down", static=True), both)
                 delta_j = program.add(program.add(delta_j, own), both)
             if "lambda_plain" in self.observables:
                 own_j = [evaluator.evaluate(entry) for entry in step.jacobian]
                 jacobian = own_j if jacobian is None else self.product(own_j, jacobian)
             if self.tangent:
                 self.tangent.follow(step, evaluator)
-            for n, increment in zip(("p", "q"), step.increments, strict=True):
-                total[n] = program.add(total[n], evaluator.evaluate(increment))
+            changes = increments(evaluator, step, fixed["h"])
+            for n, change in zip(("p", "q"), changes, strict=True):
+                total[n] = program.add(total[n], change)
         result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
-        if self.arithmetic.absolute and {"lambda", "extremes"} & self.observables:
-            result["scale"] = scale
         if jacobian is not None:
             a, b, c, d = jacobian
             minus = program.neg(program.mul(b, c))
@@ -201,7 +203,7 @@ class _Writer:
         if asked & CLOSED_FORM:
             lines.append(f"dj = {value['dj']}")
         if {"lambda", "extremes"} & asked:
-            lines += self.product_of_factors(value)
+            lines += self.product_of_factors()
         if "mse" in asked:
             lines += self.accumulate("mse", "dj * dj")
         if "delta_j_max" in asked:
@@ -222,7 +224,7 @@ class _Writer:
             lines += tangent.statements(change)
         return lines + self.accumulate("p", value["dp"]) + self.accumulate("q", value["dq"])
 
-    def product_of_factors(self, value: Mapping[str, str]) -> list[str]:
+    def product_of_factors(self) -> list[str]:
         """Λ ← Λ + ΔJ + Λ ΔJ."""
         lines = self.accumulate("lam", "dj + lam * dj")
         product = "lam"
@@ -231,7 +233,7 @@ class _Writer:
             product = "part"
             lines = [
                 "grown = dj + dj * part",
-                f"part = part + {value['scale']} * grown",
+                "part = part + shifted(grown, shift)",
                 "lam = lam + grown",
             ]
         if self.tangent:
@@ -267,15 +269,18 @@ class _Writer:
             f"{name} = total",
         ]
 
-    def assemble(self, needed: Sequence[int], statements: list[str], limits: Sequence[str]) -> str:
+    def assemble(
+        self, needed: Sequence[int], statements: list[str], more_arguments: Sequence[str]
+    ) -> str:
         static, dynamic = self.lowering.lines(needed)
         if self.tangent:
             more = self.tangent.lowering.lines(self.tangent.change)
             static, dynamic = static + more[0], dynamic + more[1]
         names = ", ".join(name for name, _, _ in self.carried)
         parameters = [f"x{k}" for k in range(len(self.parameters))]
+        given = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]
         annotated = [f"{name}: '{kind}'" for name, kind, _ in self.carried]
-        arguments = ", ".join(["steps: 'int'", "h", *parameters, *limits, *annotated])
+        arguments = ", ".join(["steps: 'int'", "h", *parameters, *given, *annotated])
         guard = self.guard(needed)
         return "\n".join(
             [
@@ -295,12 +300,12 @@ class _Writer:
             template = self.arithmetic.guard
             return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
         looked_at = {"p": "reach_p", "q": "reach_q"}
-        carried = {name for name, _, _ in self.carried}
-        looked_at |= {name: "reach_part" for name in ("part", "plain") if name in carried}
+        products = [name for name, _, _ in self.carried if name in ("part", "plain")]
+        looked_at |= dict.fromkeys(products, "reach_part")
         for index in self.lowering.live(needed):
             if self.program.ops[index].kind in PARTIAL:
                 looked_at[self.lowering.name(index)] = "reach_value"
-        return " and ".join(["valid", *(f"-{m} < {x} < {m}" for x, m in looked_at.items())])
+        return " and ".join(["valid", *(f"inside({x}, {m})" for x, m in looked_at.items())])
 
 
 def _lowest_power(step: Substep) -> int:

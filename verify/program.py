@@ -15,6 +15,8 @@ from verify.ring import Generator, Poly, Ring
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
+_COST = {"input": 0, "add": 1, "sub": 1, "neg": 1, "mul": 4}
+_COST_OF_FUNCTION = 40
 _MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 
 Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
@@ -49,6 +51,22 @@ class Program:
             cost = 0 if static else _LATENCY.get(op.kind, _FUNCTION_LATENCY if op.args else 0)
             self.depth.append(0 if static else ready + cost)
         return self._known[op]
+
+    def copy(self) -> "Program":
+        """One that grows on its own from here."""
+        other = Program()
+        other.ops, other.static, other.depth = self.ops[:], self.static[:], self.depth[:]
+        other._known = dict(self._known)
+        return other
+
+    @property
+    def cost(self) -> int:
+        """What the loop's operations cost; a product is worth several sums."""
+        return sum(
+            _COST.get(op.kind, _COST_OF_FUNCTION)
+            for op, static in zip(self.ops, self.static, strict=True)
+            if not static
+        )
 
     def input(self, name: str, *, static: bool) -> int:
         return self._add(Op("input", name=name), static)
@@ -92,6 +110,14 @@ class Program:
                 return self.neg(self.mul(self.ops[a].args[0], b))
         return self.apply("mul", *sorted((x, y)))
 
+    def times(self, x: int, n: int) -> int:
+        """n x for a positive integer n, by sums."""
+        if n == 1:
+            return x
+        half = self.times(x, n // 2)
+        double = self.add(half, half)
+        return self.add(double, x) if n % 2 else double
+
     def power(self, x: int, n: int) -> int:
         if n == 0:
             return self.constant(Fraction(1))
@@ -118,13 +144,22 @@ class Evaluator:
         self._at: dict[int, int] = {}
         self._inputs = inputs
 
-    def evaluate(self, x: Poly) -> int:
-        """The index of x's value."""
+    def evaluate(self, x: Poly, factor: int | None = None) -> int:
+        """The index of x's value, or of its product with a static value (the index `factor`)."""
         used = self.ring.used(x)
         for generator in used:
             self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
-        return self._nested(self._collect(x, dynamic), [self._at[i] for i in dynamic])
+        terms = self._collect(x, dynamic)
+        if factor is not None:
+            terms = [(outer, self.program.mul(c, factor)) for outer, c in terms]
+        return self._nested(terms, [self._at[i] for i in dynamic])
+
+    def on_a_copy(self) -> "Evaluator":
+        """The same, writing into a copy of the program."""
+        other = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
+        other._at = dict(self._at)
+        return other
 
     def at(self, generator: Generator) -> int:
         """The index of a generator's value."""
@@ -175,9 +210,9 @@ class Evaluator:
         ways = [(order, estrin) for order in orders for estrin in (False, True)]
 
         def cost(way: tuple[tuple[int, ...], bool]) -> tuple[int, int]:
-            trial = Evaluator(_copy(self.program), self.ring, self._inputs, self.pipelined)
+            trial = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
             result = trial._sum(terms, variables, *way)
-            latency, count = trial.program.depth[result], len(trial.program.ops)
+            latency, count = trial.program.depth[result], trial.program.cost
             return (latency, count) if self.pipelined else (count, latency)
 
         return self._sum(terms, variables, *min(ways, key=cost))
@@ -221,10 +256,3 @@ class Evaluator:
                 paired[half] = program.add(paired[half], term) if half in paired else term
             coefficients, x = paired, program.mul(x, x)
         return coefficients[0]
-
-
-def _copy(program: Program) -> Program:
-    copy = Program()
-    copy.ops, copy.static, copy.depth = program.ops[:], program.static[:], program.depth[:]
-    copy._known = dict(program._known)
-    return copy

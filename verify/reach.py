@@ -26,7 +26,7 @@ _SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1
 
 @dataclass(frozen=True)
 class Limits:
-    """What p, q, Λ (as well as Π det J) and functions stay below; see `verify.kernel.LIMITS`."""
+    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `verify.kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
@@ -52,8 +52,9 @@ def limits(
         """Grows a safe box, first to all sides."""
         boxes = ((max(p, r), max(q, r)) for r in _SIDES)
         p, q = next((p, q) for p, q in boxes if safe(p, q, value) is not None)
-        p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
+        # q first: it is an angle more often than p, and grows where that turns.
         q = next(r for r in _SIDES if r == q or safe(p, r, value) is not None)
+        p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
         part = safe(p, q, value)
         assert part is not None  # noqa: S101 - as was just seen
         return Limits(p, q, part, value)
@@ -91,13 +92,10 @@ def _room(
 
 
 def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
-    """The power of two that Λ and Π det J may reach before a step.
-
-    In it D (1 + Λ), h^r D (1 + Λ) + Λ and det J Π det J stay below 2^15.
-    """
-    scale, det = size.get("scale", flint.arb(0)), size.get("det", flint.arb(0))
+    """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
+    Λ + D (1 + Λ) and the next product stay below 2^15."""
+    determinant = size.get("det", flint.arb(0))
     for n in range(13, -1, -1):
-        grown = size["dj"] * (1 + 2**n)
-        if grown < 2**14 and scale * grown < 2**14 and det * 2**n < 2**14:
+        if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:
             return Fraction(2**n)
     return None

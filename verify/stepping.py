@@ -1,6 +1,6 @@
 """Stepping: a job of N steps, in chunks, in whatever arithmetic it is given."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -23,7 +23,8 @@ class Outcome:
 
     `tangents` has what `verify.tangent.NAMES` names, at the same checkpoints; `kernel` made them.
     `radii`: how far from the last values the true ones may be, where numbers are enclosures.
-    `reason` says why the run ended early, where that is the number format's doing.
+    `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run ended early,
+    where that is the number format's doing.
     """
 
     done: int
@@ -33,6 +34,7 @@ class Outcome:
     seconds: float
     kernel: Kernel | None
     radii: Mapping[str, Fraction]
+    shift: int = 0
     reason: str = ""
 
     @property
@@ -40,8 +42,9 @@ class Outcome:
         return self.trail[-1]
 
 
+_FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
 _NOWHERE = Outcome(
-    0, (), (), (), 0.0, None, {}, "an operation of the first step may leave the range of fixed"
+    0, (), (), (), 0.0, None, {}, 0, "an operation of the first step may leave the range of fixed"
 )
 
 
@@ -89,8 +92,7 @@ class Job:
         Raises UnsupportedError where that lacks a function.
         """
         made = (self.generic, self.scheme, arithmetic, self.observables | {"tangent"}, False)
-        highest = kernel_for(*made).power
-        return any(self._limits(kernel_for(*made, n)) for n in range(highest, -1, -1))
+        return any(True for _ in self._formats(kernel_for(*made)))
 
     def go(
         self,
@@ -112,44 +114,54 @@ class Job:
         made = (self.generic, self.scheme, arithmetic, observables, compensated)
         kernel = kernel_for(*made)
         if not arithmetic.absolute:
-            return self._walk(kernel, arithmetic, (), progress, enough)
+            return self._walk(kernel, arithmetic, (), 0, progress, enough)
         outcome = _NOWHERE
-        for power in range(kernel.power, -1, -1):
-            # With less of h divided out ΔJ is smaller, and the orbit may go farther.
-            kernel = kernel_for(*made, power)
-            found = self._limits(kernel)
-            if found is None:
-                continue
-            outcome = self._walk(kernel, arithmetic, tuple(found), progress, enough)
+        for shift, found in self._formats(kernel):
+            outcome = self._walk(kernel, arithmetic, tuple(found), shift, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
-            left = f"left |p| < {text(found.p)}, |q| < {text(found.q)} at step {outcome.done + 1}"
-            outcome = replace(
-                outcome, reason=f"the orbit {left}, or a value was too large for fixed"
+            reason = (
+                f"at step {outcome.done + 1} the orbit left |p| < {text(found.p)}, "
+                f"|q| < {text(found.q)}, or a value was too large for fixed"
             )
+            outcome = replace(outcome, reason=reason)
         return outcome
 
-    def inputs(self, kernel: Kernel) -> dict[str, Fraction]:
-        """h and the parameters by the names that the kernel's source has for them."""
+    def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
+        """h, the parameters and the scales by the names that the kernel's source has for them."""
+        h = self.start["h"]
         named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
-        return {"h": self.start["h"], **named}
+        scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
+        return {"h": h, **named, **(scales if kernel.scales else {})}
 
-    def _limits(self, kernel: Kernel) -> Limits | None:
-        return limits(kernel, self.inputs(kernel), self.start)
+    def _formats(self, kernel: Kernel) -> Iterator[tuple[int, Limits]]:
+        """Scalings s of ΔJ with the limits that they have, the finest first.
+
+        With a smaller s, 2^s ΔJ is smaller and the orbit may go farther.
+        """
+        h_power = self.start["h"] ** kernel.power
+        finest = min(63, max(0, (1 / h_power).__floor__().bit_length() - 1))
+        last = None
+        for shift in range(finest, -1, -_FEWER_BITS):
+            found = limits(kernel, self.inputs(kernel, shift), self.start)
+            if found is not None and found != last:
+                last = found
+                yield shift, found
 
     def _walk(
         self,
         kernel: Kernel,
         arithmetic: Arithmetic,
         limits: tuple[Fraction, ...],
+        shift: int,
         progress: Progress | None,
         enough: Callable[[Outcome], bool] | None,
     ) -> Outcome:
-        walk = Walk(self, kernel, arithmetic, limits)
+        walk = Walk(self, kernel, arithmetic, limits, shift)
 
         def outcome() -> Outcome:
             return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
-                           walk.seconds, kernel, walk.radii())  # fmt: skip
+                           walk.seconds, kernel, walk.radii(), walk.shift)  # fmt: skip
 
         try:
             for done in walk.chunks():

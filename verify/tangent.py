@@ -8,6 +8,7 @@ bounds the orbit's error by what is summed here: `growth` Σ ‖M‖², `growth_
 `most`, between which Λ has been.
 """
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -24,6 +25,14 @@ CARRIED: tuple[tuple[str, int | str], ...] = (
     ("growth", 2), ("growth_top", 2), ("det_low", 1),
     ("p_low", "p"), ("p_high", "p"), ("q_low", "q"), ("q_high", "q"),
 )  # fmt: skip
+
+
+def number(value: Fraction) -> float:
+    """The nearest float64; infinite beyond their range, where the run then ends."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 class Tangent:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify import tangent
 from verify.exact import decimal
+from verify.keeping import fraction_of, fraction_text
 from verify.kernel import Kernel
 from verify.number_system import Arithmetic
 from verify.results import SeriesPoint
@@ -18,7 +19,7 @@ Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
 _SECTIONS = 16
 _ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
-_POWERS = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # of h^r, which the kernel has divided out
+_SCALED = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # powers of the 2^s that the kernel carries
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 
 
@@ -26,11 +27,18 @@ class Walk:
     """Steps a job with one kernel from its start, or from where a checkpoint was kept."""
 
     def __init__(
-        self, job: "Job", kernel: Kernel, arithmetic: Arithmetic, limits: Sequence[Fraction]
+        self,
+        job: "Job",
+        kernel: Kernel,
+        arithmetic: Arithmetic,
+        limits: Sequence[Fraction],
+        shift: int,
     ) -> None:
-        self.job, self.kernel, self.arithmetic = job, kernel, arithmetic
+        self.job, self.kernel, self.arithmetic, self.shift = job, kernel, arithmetic, shift
         number = arithmetic.number
-        self.fixed = [number(x) for x in (*job.inputs(kernel).values(), *limits)]
+        self.fixed: list[Any] = [number(x) for x in job.inputs(kernel, shift).values()]
+        self.fixed += [shift] if kernel.scales else []
+        self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
         self.section = -(-job.steps // (job.points or _SECTIONS))  # steps between two notes
         self.done, self.seconds = 0, 0.0
@@ -38,8 +46,9 @@ class Walk:
         self.tangents: list[dict[str, Fraction]] = []
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
-        kinds = f"{arithmetic.name} {arithmetic.bits} {kernel.power} {' '.join(kernel.carried)}"
-        self._label = f"{kinds} {' '.join(map(str, limits))}"
+        kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
+        inputs = (job.start, job.parameters, job.scheme, job.steps, job.points)
+        self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         self._restore(job.keeper.load(self._label))
 
     def _first_state(self) -> State:
@@ -47,7 +56,7 @@ class Walk:
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
-            state.append(float(value) if kind == "float" else number(value))
+            state.append(tangent.number(value) if kind == "float" else number(value))
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------
@@ -122,8 +131,7 @@ class Walk:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
     def _unscaled(self, name: str, value: Fraction) -> Fraction:
-        power = self.kernel.power * _POWERS.get(name, 0)
-        return value * self.job.start["h"] ** power
+        return value / (1 << self.shift * _SCALED.get(name, 0))
 
     def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
         """p, q and the observables after the steps done, as the exact rationals that they are."""
@@ -167,7 +175,7 @@ class Walk:
         data = {
             "done": self.done,
             "seconds": self.seconds,
-            "state": [_text(self._exact(x)) for x in self.state],
+            "state": [fraction_text(self._exact(x)) for x in self.state],
             "seen": _texts(self._seen),
             "trail": list(map(_texts, self.trail)),
             "tangents": list(map(_texts, self.tangents)),
@@ -180,7 +188,7 @@ class Walk:
             return
         self.done, self.seconds = kept["done"], kept["seconds"]
         number, kinds = self.arithmetic.number, self.kernel.kinds
-        values = [_fraction(x) for x in kept["state"]]
+        values = [fraction_of(x) for x in kept["state"]]
         self.state = tuple(
             float(x) if kind == "float" else number(x)
             for kind, x in zip(kinds, values, strict=True)
@@ -191,18 +199,9 @@ class Walk:
         self.series = [SeriesPoint.model_validate(point) for point in kept["series"]]
 
 
-def _text(x: Fraction) -> str:
-    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
-
-
-def _fraction(x: str) -> Fraction:
-    numerator, denominator = (int(part, 16) for part in x.split("/"))
-    return Fraction(numerator, denominator)
-
-
 def _texts(note: Mapping[str, Fraction]) -> dict[str, str]:
-    return {name: _text(x) for name, x in note.items()}
+    return {name: fraction_text(x) for name, x in note.items()}
 
 
 def _fractions(note: Mapping[str, str]) -> dict[str, Fraction]:
-    return {name: _fraction(x) for name, x in note.items()}
+    return {name: fraction_of(x) for name, x in note.items()}

@@ -36,8 +36,8 @@ COMPARED_STEPS = 2000
 Run = Callable[[int], Result]
 SLICE = 0.3  # seconds of one measurement
 ROUNDING = 4  # allowed error after N steps, in units of N · 2^−bits
-# Fixed point has an absolute precision, and 16 of its bits before the point; a step of lie2 has some
-# ten roundings, which the orbit stretches.
+# Fixed point has an absolute precision, and 16 of its bits before the point; a step of lie2 has
+# some ten roundings, which the orbit stretches.
 ROUNDING_OF_OURS = 16
 
 

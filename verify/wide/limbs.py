@@ -96,10 +96,10 @@ def _columns(
             carry = high(total), signed and count - 1 in (i, j)
         if carry is not None:
             columns[i + count] = carry
-    return _joined(b, [columns[c][0] for c in range(lowest, 2 * count)])
+    return joined(b, [columns[c][0] for c in range(lowest, 2 * count)])
 
 
-def _joined(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
+def joined(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
     width = 64 * len(words)
     total = constant(0, width)
     for i, word in enumerate(words):

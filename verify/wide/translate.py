@@ -9,8 +9,9 @@ is first assigned to it, an argument's is its annotation:
 - `float` IEEE double precision; `int` a 64-bit integer.
 
 `wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
-`verify.wide.newton` says.
-The name `valid` is true as long as every function had a value; a loop ends where it is not.
+`verify.wide.newton` says. The name `valid` is true in a pass of the loop as long as every function
+had a value, in the pass and before the loop; `inside(x, limit)` is |x| < limit, seen from the
+highest limbs, and `shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -26,6 +27,7 @@ from verify.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 BOOL = ir.IntType(1)
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 _FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
+_LIBM_FUNCTIONS = ("log1p", "sinh", "cosh")  # by the C library that this process has
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -132,12 +134,14 @@ class Translator:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
+        before = self._load("valid")
         head, body, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
+        self._assign("valid", before)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
@@ -242,6 +246,8 @@ class Translator:
             return [b.select(negative, b.neg(x), x)]
         if name == "approx":
             return [to_double(b, x, self.fraction)]
+        if name == "shifted":
+            return [self._shifted(x, values[1])]
         if name == "wide":
             width = self.types["wide"].width
             top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
@@ -255,11 +261,25 @@ class Translator:
         self._require(b.extract_value(packed, count))
         return [b.extract_value(packed, i) for i in range(count)]
 
+    def _shifted(self, x: Value, by: Value) -> Value:
+        """x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not see by itself."""
+        b, count = self.b, x.type.width // 64
+        kind = ir.FunctionType(I64, [I64] * 3)
+        funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
+        words = [limbs.limb(b, x, i) for i in range(count)]
+        above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
+        moved = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
+        return limbs.joined(b, moved)
+
     def _float_function(self, name: str, x: Value) -> Value:
         plain = name.removeprefix("f_")
-        if plain not in _FLOAT_FUNCTIONS:
+        if plain in _FLOAT_FUNCTIONS:
+            return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in _LIBM_FUNCTIONS:
             raise NotImplementedError(name)
-        return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in self.module.globals:
+            ir.Function(self.module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
+        return self.b.call(self.module.globals[plain], [x])
 
     def _condition(self, node: Any) -> Value:
         match node:
@@ -277,7 +297,17 @@ class Translator:
                 return total
             case ast.Compare():
                 return self._comparison(node)
+            case ast.Call(func=ast.Name(id="inside")):
+                return self._inside(*(self._expression(a) for a in node.args))
         raise NotImplementedError(ast.dump(node))
+
+    def _inside(self, x: Value, limit: Value) -> Value:
+        """|x| < limit, by the highest limbs alone: where it says so it is so; limit > 0."""
+        b, last = self.b, x.type.width // 64 - 1
+        x, limit = limbs.limb(b, x, last), limbs.limb(b, limit, last)
+        # −limit < x < limit for integers is 0 < x + limit < 2·limit.
+        moved = b.sub(b.add(x, limit), constant(1, 64))
+        return b.icmp_unsigned("<", moved, b.sub(b.add(limit, limit), constant(1, 64)))
 
     def _comparison(self, node: ast.Compare) -> Value:
         values = [self._expression(e) for e in (node.left, *node.comparators)]
