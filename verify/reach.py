@@ -60,8 +60,10 @@ def limits(
         return Limits(p, q, part, value)
 
     with working_precision(PRECISION):
-        for room, value in product((4, 1), _VALUE_LIMITS):
-            p, q = (_side(room * abs(start[n])) for n in ("p", "q"))
+        own = [abs(start[n]) for n in ("p", "q")]
+        roomy = [[room * max(own)] * 2 for room in (16, 2)]
+        for sizes, value in product([*roomy, own], _VALUE_LIMITS):
+            p, q = map(_side, sizes)
             if p and q and safe(p, q, value) is not None:
                 return largest(p, q, value)
     return None

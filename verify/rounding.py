@@ -62,10 +62,11 @@ _FIXED: dict[str, Callable[[Ball], Ball]] = {
     "add": lambda _: flint.arb(0), "sub": lambda _: flint.arb(0), "neg": lambda _: flint.arb(0),
     "pi": lambda _: flint.arb("0.501"), "mul": lambda _: flint.arb("0.501"),
     "sin": lambda _: flint.arb("0.6"), "cos": lambda _: flint.arb("0.6"),
-    "log": lambda _: flint.arb("0.6"), "inverse": lambda y: 1 + y,
-    "exp": lambda y: 1 + y / 64, "sinh": lambda y: 2 + y / 64, "cosh": lambda y: 2 + y / 64,
-    # √x is taken for x ≥ 2^−26 only
-    "root": lambda _: flint.arb(2**13 + 1),
+    "log": lambda _: flint.arb("0.6"), "exp": lambda y: 1 + y / 64,
+    # Half of what e^x and e^−x lose, and of a unit more.
+    "sinh": lambda y: flint.arb("1.04") + y / 64, "cosh": lambda y: flint.arb("1.54") + y / 64,
+    # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
+    "inverse": lambda y: flint.arb("0.51") * (1 + y), "root": lambda _: flint.arb(2**11 + 8),
 }  # fmt: skip
 _CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
 

@@ -163,12 +163,20 @@ class Job:
             return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
                            walk.seconds, kernel, walk.radii(), walk.shift)  # fmt: skip
 
+        def falls_short() -> bool:
+            return enough is not None and walk.done >= walk.section and not enough(outcome())
+
         try:
+            # A run that goes on from beyond its first checkpoint is asked about that one as well.
+            asked = walk.done >= walk.section
+            if asked and falls_short():
+                return replace(_NOWHERE, done=walk.done, seconds=walk.seconds)
             for done in walk.chunks():
                 if progress:
                     progress(done)
-                if enough and done == walk.section and not enough(outcome()):
+                if not asked and falls_short():
                     return replace(_NOWHERE, done=done, seconds=walk.seconds)
+                asked = asked or done >= walk.section
         except KeyboardInterrupt:
             walk.keep()
             raise

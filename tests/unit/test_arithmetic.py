@@ -28,7 +28,6 @@ from verify.hamiltonian import Hamiltonian
 from verify.number_system import Arithmetic
 from verify.runs import ASKED, run
 
-
 DIGITS = {"fixed": (17, 36)}  # to compile it for more takes long; tests/property has all widths
 
 

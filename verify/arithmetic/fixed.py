@@ -36,14 +36,9 @@ def at_bits(bits: int) -> Arithmetic:
         return Fixed(round(value * 2**bits), bits)
 
     def compiled_source(source: str, name: str, names: Mapping[str, Any]) -> Callable[..., Any]:
-        """Compiled when it is first called, since not every kernel that is made is run."""
+        from verify.wide.engine import compiled
 
-        def call(*arguments: Any) -> Any:
-            from verify.wide.engine import compiled
-
-            return compiled(source, width, bits, names)(*arguments)
-
-        return call
+        return compiled(source, width, bits, names)
 
     with_pi = {f: f for f in FUNCTIONS} | {"approx": "approx", "pi": number(_pi(bits))}
     return Arithmetic(

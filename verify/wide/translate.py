@@ -9,9 +9,9 @@ is first assigned to it, an argument's is its annotation:
 - `float` IEEE double precision; `int` a 64-bit integer.
 
 `wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
-`verify.wide.newton` says. The name `valid` is true in a pass of the loop as long as every function
-had a value, in the pass and before the loop; `inside(x, limit)` is |x| < limit, seen from the
-highest limbs, and `shifted(x, s)` is x/2^s.
+`verify.wide.newton` says. The name `valid` is true as long as every function had a value, in all
+passes of the loop and before it; `inside(x, limit)` is |x| < limit, seen from the highest limbs,
+and `shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -134,14 +134,12 @@ class Translator:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
-        before = self._load("valid")
         head, body, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
-        self._assign("valid", before)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
