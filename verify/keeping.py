@@ -64,6 +64,10 @@ def fraction_of(x: str) -> Fraction:
     return Fraction(numerator, denominator)
 
 
+def _digest(content: str) -> str:
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
 class Keeper:
     """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
 
@@ -87,10 +91,12 @@ class Keeper:
         if path is None:
             return None
         try:
-            found = json.loads(path.read_text())
+            digest, _, content = path.read_text().partition("\n")
+            found = json.loads(content)
         except (OSError, ValueError):
             return None
-        return found if isinstance(found, dict) and found.get("label") == label else None
+        intact = digest == _digest(content)
+        return found["data"] if intact and found["label"] == label else None
 
     def due(self, label: str) -> bool:
         """Whether some seconds have passed since the last checkpoint under the label."""
@@ -100,7 +106,8 @@ class Keeper:
     def save(self, label: str, data: dict[str, Any]) -> None:
         path = self._path(label)
         if path is not None:
-            write_atomically(path, json.dumps({"label": label, **data}))
+            content = json.dumps({"label": label, "data": data})
+            write_atomically(path, f"{_digest(content)}\n{content}")
             self._written[label] = time.monotonic()
 
     def clear(self) -> None:

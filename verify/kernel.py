@@ -9,8 +9,8 @@ their determinant, the product), `extremes` the least and greatest ΔJ and Λ of
 Where an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
 so are its sums, so that they keep their significant digits however small h is; it is evaluated from
 ΔJ/h^r, r as great as can be, with κ = 2^s h^r in its coefficients. Λ itself is carried beside them
-as `part`, since it multiplies. There the loop ends where p, q, Λ or a function's value leaves the
-limits that are given with the parameters.
+as `part`, since it multiplies. There the loop ends where p, q, Λ, Π det J or a function's value
+leaves the limits that are given with the parameters.
 
 A compensated kernel adds the increments to the state, and ΔJ to its sums, in twice the working
 precision (Knuth's two-sum): what remains is the rounding of the increments, smaller by a factor of

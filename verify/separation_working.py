@@ -182,10 +182,8 @@ class WorkingRun:
         if not kernel.limits:
             return []
         inputs = {n: Fraction(x) for n, x in self._named(kernel).items()}
-        found = limits(kernel.wide, inputs)
-        if found is None or any(
-            abs(self.inputs[n]) >= reach for n, reach in (("p", found.p), ("q", found.q))
-        ):
+        found = limits(kernel.wide, inputs, {n: Fraction(self.inputs[n]) for n in ("p", "q")})
+        if found is None:
             raise UnsupportedError("a step from the start may leave the range of fixed")
         return [float(found.p), float(found.q), arithmetic.number(found.part)]
 

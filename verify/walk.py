@@ -50,6 +50,7 @@ class Walk:
         inputs = (job.start, job.parameters, job.scheme, job.steps, job.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         self._restore(job.keeper.load(self._label))
+        self._sound = self._mark()
 
     def _first_state(self) -> State:
         start, number = self.job.start, self.arithmetic.number
@@ -77,6 +78,7 @@ class Walk:
                 return
             self.state, self.done = after, self.done + count
             self._note()
+            self._sound = self._mark()
             yield self.done
             if job.keeper.due(self._label):
                 self.keep()
@@ -172,16 +174,22 @@ class Walk:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
         if self.arithmetic.radius is not None:
             return  # a ball's radius is not kept; such runs are short
+        done, seconds, state, seen, (trail, tangents, series) = self._sound
         data = {
-            "done": self.done,
-            "seconds": self.seconds,
-            "state": [fraction_text(self._exact(x)) for x in self.state],
-            "seen": _texts(self._seen),
-            "trail": list(map(_texts, self.trail)),
-            "tangents": list(map(_texts, self.tangents)),
-            "series": [point.model_dump(mode="json") for point in self.series],
+            "done": done,
+            "seconds": seconds,
+            "state": [fraction_text(self._exact(x)) for x in state],
+            "seen": _texts(seen),
+            "trail": list(map(_texts, self.trail[:trail])),
+            "tangents": list(map(_texts, self.tangents[:tangents])),
+            "series": [point.model_dump(mode="json") for point in self.series[:series]],
         }
         self.job.keeper.save(self._label, data)
+
+    def _mark(self) -> tuple[int, float, State, dict[str, Fraction], tuple[int, ...]]:
+        """Where the run is after a chunk and its notes; an interruption may come amid them."""
+        notes = len(self.trail), len(self.tangents), len(self.series)
+        return self.done, self.seconds, self.state, dict(self._seen), notes
 
     def _restore(self, kept: dict[str, Any] | None) -> None:
         if kept is None:

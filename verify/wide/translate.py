@@ -8,10 +8,10 @@ is first assigned to it, an argument's is its annotation:
 - `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
 - `float` IEEE double precision; `int` a 64-bit integer.
 
-`wide(x)` takes a float64 exactly, `approx(x)` goes back to the nearest float64 or its neighbour.
-The name `valid` is true in a pass of the loop as long as every function had a value, in the pass
-and before the loop; `inside(x, limit)` is |x| < limit, seen from the highest limbs, and
-`shifted(x, s)` is x/2^s.
+`wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
+`verify.wide.newton` says. The name `valid` is true as long as every function had a value, in all
+passes of the loop and before it; `inside(x, limit)` is |x| < limit, seen from the highest limbs,
+and `shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -96,6 +96,10 @@ class Translator:
             value = self._to(value, target)
         self.b.store(value, self._variables[name])
 
+    def _require(self, condition: Value) -> None:
+        """`valid` only where this is true."""
+        self.b.store(self.b.and_(self._load("valid"), condition), self._variables["valid"])
+
     # -- statements ---------------------------------------------------------------------------
 
     def _block(self, statements: list[ast.stmt]) -> None:
@@ -130,14 +134,12 @@ class Translator:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
-        before = self._load("valid")
         head, body, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
-        self._assign("valid", before)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
@@ -245,13 +247,16 @@ class Translator:
         if name == "shifted":
             return [self._shifted(x, values[1])]
         if name == "wide":
-            return [from_double(b, x, self.types["wide"].width, self.fraction)]
+            width = self.types["wide"].width
+            top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
+            size = b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
+            self._require(b.fcmp_ordered("<", size, top))
+            return [from_double(b, x, width, self.fraction)]
         if x.type == DOUBLE:
             return [self._float_function(name, x)]
         packed = b.call(self.functions.get(name), [x])
         count = len(packed.type.elements) - 1
-        self.b.store(b.and_(self._load("valid"), b.extract_value(packed, count)),
-                     self._variables["valid"])  # fmt: skip
+        self._require(b.extract_value(packed, count))
         return [b.extract_value(packed, i) for i in range(count)]
 
     def _shifted(self, x: Value, by: Value) -> Value:
