@@ -7,8 +7,9 @@ from typing import Any
 
 from markupsafe import Markup
 
-from reports.axes import decades, grid_lines, lg, line_style
+from reports.axes import decades, grid_lines, line_style
 from reports.figures import Line, canvas, plot_line
+from reports.logarithm import lg
 from reports.svg import INK, drawn
 
 _HEIGHT = 350

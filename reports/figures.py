@@ -18,13 +18,13 @@ from reports.axes import (
     MOST_STYLES,
     decades,
     grid_lines,
-    lg,
     line_style,
     offset_ticks,
     step_sizes,
     time_axis,
     whole_numbers,
 )
+from reports.logarithm import lg
 from reports.svg import INK, SERIES, drawn
 from reports.typography import start, superscript
 from verify.results import RunResult, SeriesPoint, Value

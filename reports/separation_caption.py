@@ -1,13 +1,15 @@
 """What a figure of truncation against rounding says in words, all of it from the grid's data."""
 
 from collections.abc import Iterator, Sequence
+from decimal import Decimal
 from fractions import Fraction
 
-from reports.typography import number, whole
+from reports.typography import NBSP, number, whole
 from verify.exact import text
 from verify.results import CrossoverResult, SeparationGrid, SeparationResult
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
+_NONE = "none in this range: "  # how a crossover's reason begins where there is none
 WAYS = {PLAIN: "the plain way", CLOSED_FORM: "closed form"}
 
 
@@ -24,15 +26,18 @@ def ways_of(grid: SeparationGrid) -> Iterator[tuple[str, list[tuple[str, str]]]]
 
 def caption(grid: SeparationGrid, computed: str) -> str:
     """Where rounding overtakes truncation, each way; N; how it was computed."""
-    found = [_crossover(getattr(grid, way), name) for way, name in WAYS.items()]
+    crossovers = {name: getattr(grid, way) for way, name in WAYS.items()}
+    found = [_crossover(each, name) for name, each in crossovers.items()]
+    if len(set(crossovers.values())) == 1 and not grid.plain.step_size:
+        found = [_crossover(grid.plain, "either way")]
     steps = sorted(point.steps for point in grid.points)
     count = whole(steps[0]) if steps[0] == steps[-1] else f"{whole(steps[0])} … {whole(steps[-1])}"
     return " ".join(
         [
-            "Left of a dashed line h* rounding is the greater, right of it truncation: below h* "
-            "smaller steps make Λ no better."
-            if any(getattr(grid, way).step_size for way in WAYS)
-            else "Where a line of rounding lies below that of truncation, smaller steps still help.",
+            "Rounding is the larger part left of its dashed line h*, where smaller steps make Λ no "
+            "better; truncation is right of it."
+            if any(found.step_size for found in crossovers.values())
+            else "Where rounding lies below truncation, a smaller step size still helps.",
             *found,
             f"N = {count} steps.",
             computed,
@@ -47,8 +52,14 @@ def _crossover(found: CrossoverResult, way: str) -> str:
         low, high = (number(end) for end in found.bracket)
         between = f"between {low} and {high}"
     if found.step_size:
-        return f"{way}: h* ≈ {number(found.step_size)}, {between}."
-    return f"{way}: {between}{': ' if between else 'no crossover, '}{found.reason}."
+        return f"{way}: h* ≈{NBSP}{short(found.step_size)}, {between}."
+    reason = found.reason.removeprefix(_NONE)
+    return f"{way}: {between or 'no crossover'}; {reason}."
+
+
+def short(step_size: str) -> str:
+    """A crossover to two digits: it is interpolated between step sizes that lie far apart."""
+    return number(f"{Decimal(step_size):.1e}").replace(" ", NBSP)
 
 
 def end_of(points: Sequence[SeparationResult]) -> str:

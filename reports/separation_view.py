@@ -13,9 +13,9 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from reports.axes import lg
+from reports.logarithm import lg
 from reports.plots import Plot, few
-from reports.separation_caption import PLAIN, WAYS, caption, end_of, ways_of
+from reports.separation_caption import PLAIN, WAYS, caption, end_of, short, ways_of
 from reports.typography import NBSP, listed, number, start, whole
 from verify.results import (
     EvaluationResult,
@@ -98,11 +98,17 @@ def _finding(points: Sequence[SeparationResult]) -> Iterator[str]:
     yield _against_truncation(held)
     greatest = Counter(part for each in held if (part := _greatest_part(each)))
     if greatest:
-        ranked = [f"{part} in {_of(n, len(held))}" for part, n in greatest.most_common()]
-        yield f"The greatest part of this rounding is {listed(ranked)}."
+        ranked = [
+            Markup("<code>{}</code> in {}").format(part, _of(n, len(held)))
+            for part, n in greatest.most_common()
+        ]
+        yield Markup("Its greatest part is {}.").format(Markup(listed(ranked)))  # noqa: S704
     pairs = [(p.plain, p.closed_form) for p in points if p.plain and p.closed_form]
     if pairs:
         yield _bought(pairs)
+    if len(held) < len(points):
+        lost = _of(len(points) - len(held), len(points))
+        yield f"{lost} could not be separated; the table says why."
 
 
 def _against_truncation(held: Sequence[EvaluationResult]) -> str:
@@ -159,13 +165,17 @@ def _computed(points: Sequence[SeparationResult]) -> str:
     bounds = "all enclosed" if set(kinds) == {"enclosed"} else "all estimated"
     if len(kinds) > 1:
         bounds = listed(f"{n} {kind}" for kind, n in kinds.most_common())
-    return f"In the stead of exact arithmetic stood {systems}; error bounds {bounds} ({methods})."
+    return f"In place of exact arithmetic: {systems}. Error bounds {bounds}: {methods}."
 
 
 def _of(n: int, count: int) -> str:
     if n == count:
-        return "the one entry" if count == 1 else f"all {whole(count)} entries"
-    return f"{whole(n)} of {whole(count)} entries"
+        return "the one entry" if count == 1 else f"all {_entries(count)}"
+    return f"{whole(n)} of {_entries(count)}"
+
+
+def _entries(count: int) -> str:
+    return "1 entry" if count == 1 else f"{whole(count)} entries"
 
 
 def _range(found: Sequence[float]) -> str:
@@ -190,6 +200,8 @@ def _greatest_part(evaluation: EvaluationResult) -> str:
 
 def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
     """A figure for each grid over which truncation and rounding can be drawn."""
+    if not grids:
+        return
     from reports import crossover_figure
 
     for index, grid in enumerate(grids):
@@ -202,7 +214,7 @@ def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
         if len(lines) < 2:
             continue
         marks = [
-            crossover_figure.Mark(found.step_size, f"h* ≈ {number(_short(found.step_size))}, {of}")
+            crossover_figure.Mark(found.step_size, f"h* ≈{NBSP}{short(found.step_size)}, {of}")
             for way, of in WAYS.items()
             if (found := getattr(grid, way)).step_size is not None
         ]
@@ -212,10 +224,6 @@ def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
             lines, marks, name=f"crossover-{index}-of-{name}", label=f"{lead}."
         )
         yield Plot(svg, f"{lead}.", caption(grid, _computed(grid.points)))
-
-
-def _short(step_size: str) -> str:
-    return f"{Decimal(step_size):.1e}"
 
 
 # -- tables ---------------------------------------------------------------------------------------

@@ -15,7 +15,8 @@ from verify.results import RunResult, SeparationResult, Value
 
 NBSP = "\u00a0"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
-_GROUP, _UNGROUPED = 5, 17  # digits to a group, and at most of a number that is left in one piece
+_GROUP, _IN_A_LINE = 5, 3  # digits to a group, groups to a line
+_UNGROUPED = 17  # digits at most of a number that is left in one piece
 _MOST_DIGITS = 60  # of one number on the page; the others are in results.json
 
 _NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
@@ -58,7 +59,7 @@ def value(found: Value) -> Markup:
 
 
 def grouped(text: str) -> Markup:
-    """A number with many digits in groups that a line may break between; any other as it is.
+    """A number with many digits in groups, three to a line; any other as it is.
 
     The gaps are the style sheet's: what is copied has none.
     """
@@ -74,8 +75,9 @@ def grouped(text: str) -> Markup:
     groups = [decimals[i : i + _GROUP] for i in range(0, len(decimals), _GROUP)]
     groups[0] = whole_part + point + groups[0]
     groups[-1] += times + scale
-    spans = Markup("").join(Markup("<span>{}</span>").format(g) for g in groups)
-    return Markup('<span class="digits">{}</span>').format(spans)
+    spans = [Markup("<span>{}</span>").format(group) for group in groups]
+    rows = [Markup("").join(spans[i : i + _IN_A_LINE]) for i in range(0, len(spans), _IN_A_LINE)]
+    return Markup('<span class="digits">{}</span>').format(Markup("<br>").join(rows))
 
 
 def start(run: RunResult | SeparationResult) -> str:
