@@ -135,8 +135,9 @@ def test_each_crossover_is_marked_once_and_told_with_its_bracket() -> None:
 
 def test_the_figure_is_themed_and_its_lines_differ_by_more_than_colour() -> None:
     (svg,) = figures(page_of(wide=(BOTH,)))
-    series = {e.get("style") for e in svg.iter() if "stroke: var(--series" in e.get("style", "")}
-    assert len(series) == 3
+    lines = [e for e in svg.iter() if e.get("style", "").startswith("stroke: var(--series")]
+    assert len({e.get("style") for e in lines}) == 3
+    assert len({e.get("stroke-dasharray") for e in lines if e.tag == "path"}) == 3
     assert all(e.get("fill") == "currentColor" for e in svg.iter() if e.tag == "text")
     assert svg.get("aria-label").startswith("Truncation and rounding in Λ against h")
 
