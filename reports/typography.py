@@ -68,7 +68,7 @@ def grouped(text: str) -> Markup:
     whole_part, point, decimals = digits.partition(".")
     if (
         not decimals
-        or len(whole_part + decimals) <= _UNGROUPED
+        or len((whole_part + decimals).lstrip("−")) <= _UNGROUPED
         or not _PLAIN_NUMBER.fullmatch(text)
     ):
         return escape(shown)
