@@ -133,7 +133,7 @@ def over_time(run: RunResult, *, name: str) -> Plot:
     """det J, ΔJ and Λ along one run."""
     from reports import figures
 
-    source = f"{run.source}: " if run.source else ""
+    source = f"For {run.source}: " if run.source else ""
     lead = f"{source}h = {run.step_size} from {start(run)}: (a) det J, (b) ΔJ and (c) Λ over time"
     bucket = max(point.last - point.first + 1 for point in figures.merged(run.series))
     seen = ""

@@ -75,8 +75,9 @@ def growth_finding(points: Sequence[SeparationResult]) -> str:
         evaluations = [getattr(point, way) for point in points if getattr(point, way)]
         counted = Counter(each.growth["total"].name for each in evaluations)
         if counted:
-            ranked = [f"{kind} in {n}" for kind, n in counted.most_common()]
-            said.append(f"{name}, {listed(ranked)} of {len(evaluations)} entries")
+            *most, (last, n) = counted.most_common()
+            ranked = [f"{kind} in {k}" for kind, k in most]
+            said.append(f"{name}, {listed([*ranked, f'{last} in {_of(n, len(evaluations))}'])}")
     return f"How rounding grows with N: {'; '.join(said)}." if said else ""
 
 

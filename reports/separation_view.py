@@ -182,6 +182,5 @@ def _growth_row(point: SeparationResult) -> GrowthRow:
 def _growth(found: GrowthResult) -> Markup:
     if found.exponent is None:
         return Markup('{} <span class="bound">{}</span>').format(found.name, found.reason)
-    return Markup('{} <span class="bound">N to the {}{}±{}{}</span>').format(
-        found.name, number(found.exponent), NBSP, NBSP, found.standard_error
-    )
+    exponent = f"{number(found.exponent)}{NBSP}±{NBSP}{found.standard_error}"
+    return Markup('{} <span class="muted">{}</span>').format(exponent, found.name)

@@ -267,7 +267,7 @@ def test_the_page_of_a_real_scene_says_what_was_found() -> None:
     assert "The most telling refutation: Table 9" in text
     assert "h = 0.03 gives N = 6" in text  # 0.2/0.03 is not whole
     assert "Computed in float64 with N = 6 … 20 steps" in text
-    assert "Figure 3: h = 0.01 from q₀ = 1, p₀ = 0" in text
+    assert "For Figure 3: h = 0.01 from q₀ = 1, p₀ = 0" in text
     runs = real().scenes[0].runs
     for value in (v for r in runs for name, v in r.values.items() if name not in "pq"):
         shown = number(value.value).replace("\xa0", " ")

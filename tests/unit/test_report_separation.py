@@ -65,7 +65,7 @@ def test_the_first_sentence_counts_what_the_data_say() -> None:
     )
     assert "Its greatest part is determinant in all 6 entries." in text
     assert "rounding is smaller in all 6 entries, by 5.0 to 8.0 decades." in text
-    assert "the plain way, drift in 6 of 6 entries; closed form, drift in 6 of 6 entries" in text
+    assert "the plain way, drift in all 6 entries; closed form, drift in all 6 entries" in text
 
 
 def test_the_closed_form_is_not_said_to_be_better_where_it_is_worse() -> None:
@@ -187,5 +187,5 @@ def test_a_series_names_what_it_repeats_only_where_the_scene_says_so() -> None:
         for i in range(1, 4)
     )
     page = render(report((scene(series=(run(series=points, source="Figure 10"),)),)))
-    assert "Figure 10: h = 0.01 from" in text_of(page)
+    assert "For Figure 10: h = 0.01 from" in text_of(page)
     assert "Figure" not in text_of(render(report((scene(series=(run(series=points),)),))))
