@@ -124,12 +124,14 @@ HARD = [
 
 _COMPARED = "".join(f"    c{i} = 0\n    if x {op} y: c{i} = 1\n" for i, op in enumerate(OPERATORS))
 _FLAGS = ", ".join(f"c{i}" for i in range(len(OPERATORS)))
-OPERATIONS = f"def f(x, y):\n{_COMPARED}    return x + y, x - y, x * y, x * x, -x, abs(x), {_FLAGS}\n"
+OPERATIONS = (
+    f"def f(x, y):\n{_COMPARED}    return x + y, x - y, x * y, x * x, -x, abs(x), {_FLAGS}\n"
+)
 OF_SUMS = f"def f(x: 'sum', y):\n{_COMPARED}    return x + y, x - y, -x, abs(x), {_FLAGS}\n"
 
 
 def check_operations(form: Format, x: int, y: int) -> None:
-    """+ − and comparisons are exact, products within what is stated; all where they are in range."""
+    """+ − and comparisons are exact, products within what is stated, where they are in range."""
     found = form.call(OPERATIONS, form.number(x), form.number(y))
     a, b = form.value(x), form.value(y)
     true = (a + b, a - b, a * b, a * a, -a, abs(a))
