@@ -5,7 +5,6 @@ there is no certificate nothing is claimed, and nothing is checked.
 """
 
 from fractions import Fraction
-from typing import Any
 
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
