@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
 
-from reports.typography import NBSP, number, whole
+from reports.typography import NBSP, number, step, whole
 from verify.exact import text
 from verify.results import CrossoverResult, SeparationGrid, SeparationResult
 
@@ -49,7 +49,7 @@ def _crossover(found: CrossoverResult, way: str) -> str:
     way = way[0].upper() + way[1:]
     between = ""
     if found.bracket:
-        low, high = (number(end) for end in found.bracket)
+        low, high = (step(end) for end in found.bracket)
         between = f"between {low} and {high}"
     if found.step_size:
         return f"{way}: h* ≈{NBSP}{short(found.step_size)}, {between}."

@@ -19,13 +19,16 @@ from verify.results import EvaluationResult, SeparationResult
 PARTS = ("input", "trajectory", "determinant", "product")
 
 
-def finding(points: Sequence[SeparationResult]) -> Iterator[str]:
-    """What the entries say: rounding against truncation, its greatest part, the better way."""
+def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:
+    """What the entries say: rounding against truncation, its greatest part, the better way.
+
+    `where` the entries are, with a space before it, goes into the first sentence.
+    """
     held = [point.plain for point in points if point.plain]
     if not held:
         yield "No entry could be separated; the table says why."
         return
-    yield _against_truncation(held)
+    yield _against_truncation(held, where)
     greatest = Counter(part for each in held if (part := greatest_part(each)))
     if greatest:
         ranked = [
@@ -41,7 +44,7 @@ def finding(points: Sequence[SeparationResult]) -> Iterator[str]:
         yield f"{lost} could not be separated; the table says why."
 
 
-def _against_truncation(held: Sequence[EvaluationResult]) -> str:
+def _against_truncation(held: Sequence[EvaluationResult], where: str) -> str:
     gaps = [gap for each in held if (gap := decades_below(each)) is not None]
     below, above = [g for g in gaps if g > 0], [-g for g in gaps if g <= 0]
     said = [
@@ -51,7 +54,7 @@ def _against_truncation(held: Sequence[EvaluationResult]) -> str:
     ]
     if not said:
         return "Of truncation or of rounding no digit is known, in any entry."
-    return f"Evaluated {WAYS[PLAIN]}, the rounding in Λ is {listed(said)}."
+    return f"Evaluated {WAYS[PLAIN]}{where}, the rounding in Λ is {', and '.join(said)}."
 
 
 def _bought(pairs: Sequence[tuple[EvaluationResult, EvaluationResult]]) -> str:
@@ -65,7 +68,7 @@ def _bought(pairs: Sequence[tuple[EvaluationResult, EvaluationResult]]) -> str:
         for kind, found in (("smaller", better), ("greater", worse))
         if found
     ]
-    return f"{way} {listed(said)}." if said else f"{way} as great."
+    return f"{way} {', and '.join(said)}." if said else f"{way} as great."
 
 
 def growth_finding(points: Sequence[SeparationResult]) -> str:

@@ -17,7 +17,7 @@ from reports.separation_finding import (
     greatest_part,
     growth_finding,
 )
-from reports.typography import NBSP, number, start, whole
+from reports.typography import NBSP, number, start, step, whole
 from verify.results import (
     EvaluationResult,
     GrowthResult,
@@ -76,7 +76,7 @@ def separation_view(
     of_grid = [point for grid in own or wide for point in grid.points]
     rows = [point for grid in (*own, *wide) for point in grid.points]
     return SeparationView(
-        finding=tuple(finding(of_grid)),
+        finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
         plots=tuple(_plots(wide, name)),
         groups=tuple(_groups([*own, *wide])),
         count=len(rows),
@@ -134,7 +134,7 @@ def _groups(grids: Sequence[SeparationGrid]) -> Iterator[Group]:
 
 
 def _parts_row(point: SeparationResult) -> PartsRow:
-    h, steps, none = point.step_size, whole(point.steps), Markup("–")
+    h, steps, none = step(point.step_size), whole(point.steps), Markup("–")
     if point.plain is None:
         failure = point.reason or point.status
         return PartsRow(h, steps, none, none, (), none, failure)
@@ -173,7 +173,7 @@ def _compared(evaluation: EvaluationResult) -> Markup:
 def _growth_row(point: SeparationResult) -> GrowthRow:
     ways = (getattr(point, way) for way in WAYS)
     return GrowthRow(
-        point.step_size,
+        step(point.step_size),
         whole(point.steps),
         tuple(_growth(each.growth["total"]) if each else Markup("–") for each in ways),
     )

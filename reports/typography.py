@@ -17,6 +17,7 @@ NBSP = "\u00a0"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _GROUP, _IN_A_LINE = 5, 3  # digits to a group, groups to a line
 _UNGROUPED = 17  # digits at most of a number that is left in one piece
+_SMALL_STEP = Decimal("0.0001")
 _MOST_DIGITS = 60  # of one number on the page; the others are in results.json
 
 _NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
@@ -40,6 +41,13 @@ def number(text: str) -> str:
     power = int(exponent or 0)
     scale = f"{NBSP}×{NBSP}10{superscript(power)}" if power else ""
     return f"{sign}{digits}{scale}"
+
+
+def step(size: str) -> str:
+    """A step size; a small one as a power of ten, whose zeros nobody needs to count."""
+    if not _PLAIN_NUMBER.fullmatch(size) or Decimal(size) >= _SMALL_STEP:
+        return size
+    return number(f"{Decimal(size).normalize():e}").removeprefix(f"1{NBSP}×{NBSP}")
 
 
 def whole(n: int) -> str:

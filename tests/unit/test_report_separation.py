@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from reports.page import render
-from reports.typography import grouped
+from reports.typography import grouped, step
 from tests.unit.made_separations import BELOW, BOTH, CROSSING, PARTS, evaluation, grid, point
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_page import EVIL, Reader, proof, report, run, scene
@@ -60,8 +60,8 @@ def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
 def test_the_first_sentence_counts_what_the_data_say() -> None:
     text = text_of(page_of(BELOW, CROSSING))
     assert (
-        "the rounding in Λ is below truncation in 5 of 6 entries, by 1.0 to 5.0 decades and above "
-        "truncation in 1 of 6 entries, by 1.0 decades." in text
+        "on the grid of runs, the rounding in Λ is below truncation in 5 of 6 entries, by 1.0 to "
+        "5.0 decades, and above truncation in 1 of 6 entries, by 1.0 decades." in text
     )
     assert "Its greatest part is determinant in all 6 entries." in text
     assert "rounding is smaller in all 6 entries, by 5.0 to 8.0 decades." in text
@@ -70,7 +70,7 @@ def test_the_first_sentence_counts_what_the_data_say() -> None:
 
 def test_the_closed_form_is_not_said_to_be_better_where_it_is_worse() -> None:
     text = text_of(page_of(grid(["1.000e-07"] * 3, ["1.000e-07", "1.000e-06", "1.000e-08"])))
-    assert "smaller in 1 of 3 entries, by 1.0 decades and greater in 1 of 3 entries" in text
+    assert "smaller in 1 of 3 entries, by 1.0 decades, and greater in 1 of 3 entries" in text
 
 
 def test_an_entry_without_known_digits_is_no_number_and_no_decade() -> None:
@@ -145,6 +145,11 @@ def test_the_figure_is_themed_and_its_lines_differ_by_more_than_colour() -> None
 def test_a_grid_of_one_step_size_has_no_figure() -> None:
     only = as_grid([point("0.1", evaluation("1.000e-02", "1.000e-07"), None)])
     assert not figures(page_of(wide=(only,)))
+
+
+def test_a_small_step_size_is_a_power_of_ten() -> None:
+    given = ("0.000002", "0.00001", "0.0001", "0.1", "1/3")
+    assert [step(h) for h in given] == ["2\xa0×\xa010⁻⁶", "10⁻⁵", "0.0001", "0.1", "1/3"]
 
 
 # -- runs and series ------------------------------------------------------------------------------
