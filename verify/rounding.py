@@ -13,7 +13,7 @@ from typing import Any
 import flint
 
 from verify.balls import rational_ball
-from verify.enclosure import BALLS
+from verify.enclosure import BALLS, square
 from verify.number_system import Arithmetic
 from verify.program import Op, Program
 
@@ -122,17 +122,12 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
             x, y = args
             sizes = [a.interval.abs_upper() for a in args]
             error = sizes[0] * y.error + sizes[1] * x.error + x.error * y.error
-            square = op.args[0] == op.args[1]
-            return (_square(x.interval) if square else x.interval * y.interval), error
+            if op.args[0] == op.args[1]:
+                return square(x.interval), error
+            return x.interval * y.interval, error
     x = args[0]
     slope = _SLOPES[op.kind](x.widened, op.degree)
     return BALLS[op.kind](x.interval, op.degree), slope.abs_upper() * x.error
-
-
-def _square(x: Ball) -> Ball:
-    """x² of an interval, which is not negative."""
-    half = x.abs_upper() * x.abs_upper() / 2
-    return half + half * flint.arb(0, 1) if x.contains(0) else x * x
 
 
 _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
@@ -143,6 +138,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: 1 / (x * x),
+    "inverse": lambda x, _: square(1 / x),
     "root": lambda x, n: x.root(n) / (n * x),
 }
