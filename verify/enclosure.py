@@ -48,8 +48,14 @@ def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
 def _power(x: Any, n: int) -> Any:
     # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
     # and is then undefined around 0.
-    half = _power(x, n // 2) if n > 1 else flint.arb(1)
-    return half * half * x if n % 2 else half * half
+    half = square(_power(x, n // 2)) if n > 1 else flint.arb(1)
+    return half * x if n % 2 else half
+
+
+def square(x: Any) -> Any:
+    """x² of a ball, which is not negative."""
+    half = x.abs_upper() * x.abs_upper() / 2
+    return half + half * flint.arb(0, 1) if x.contains(0) else x * x
 
 
 BALLS: dict[str, Callable[[Any, int], Any]] = {

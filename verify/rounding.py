@@ -13,7 +13,7 @@ from typing import Any
 import flint
 
 from verify.balls import rational_ball
-from verify.enclosure import BALLS
+from verify.enclosure import BALLS, square
 from verify.number_system import Arithmetic
 from verify.program import Op, Program
 
@@ -123,20 +123,15 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
             x, y = args
             sizes = [a.interval.abs_upper() for a in args]
             error = sizes[0] * y.error + sizes[1] * x.error + x.error * y.error
-            square = op.args[0] == op.args[1]
-            return (_square(x.interval) if square else x.interval * y.interval), error
+            if op.args[0] == op.args[1]:
+                return square(x.interval), error
+            return x.interval * y.interval, error
     x = args[0]
     value = BALLS[op.kind](x.interval, op.degree)
     if x.error.is_zero():  # of no matter then is a slope without a bound
         return value, zero
     slope = _SLOPES[op.kind](x.widened, op.degree)
     return value, slope.abs_upper() * x.error
-
-
-def _square(x: Ball) -> Ball:
-    """x² of an interval: as narrow as its ends are, which x · x is not."""
-    low, high = x.abs_lower(), x.abs_upper()
-    return (low * low).union(high * high)
 
 
 _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
@@ -147,6 +142,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: 1 / _square(x),
+    "inverse": lambda x, _: square(1 / x),
     "root": lambda x, n: x.root(n) / (n * x),
 }
