@@ -118,7 +118,7 @@ class Job:
         outcome = _NOWHERE
         for shift, found in self._formats(kernel):
             outcome = self._walk(kernel, arithmetic, tuple(found), shift, progress, enough)
-            if outcome.done == self.steps or not outcome.trail:
+            if outcome.done == self.steps or outcome.kernel is None:  # `enough` ended it
                 return outcome
             reason = (
                 f"at step {outcome.done + 1} the orbit left |p| < {text(found.p)}, "
