@@ -5,7 +5,7 @@ The map and det J − 1 are derived by sympy alone, and then evaluated as they s
 holds the values of exact arithmetic.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
@@ -65,12 +65,19 @@ def _step(text: str, scheme: str) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr]:
     return p_next, q_next, plain_delta_j(p_next, q_next)
 
 
-def _function(case: Case, number: Callable[[Fraction], Any], names: Mapping[str, Any]) -> Any:
-    """(p, q) ↦ [p', q', ΔJ] in some numbers; sympy prints a rational as a quotient of ints, so each
-    is handed over as a number."""
+def _function(
+    case: Case,
+    number: Callable[[Fraction], Any],
+    names: Mapping[str, Any],
+    of: Sequence[sympy.Expr] = (),
+) -> Any:
+    """(p, q) ↦ [p', q', ΔJ], or other expressions, in some numbers.
+
+    sympy prints a rational as a quotient of ints, so each is handed over as a number.
+    """
     put = {sympy.Symbol(n, real=True): sympy.Rational(x) for n, x in case.parameters.items()}
     put[H] = sympy.Rational(case.h)
-    expressions = [x.subs(put) for x in _step(case.text, case.scheme)]
+    expressions = [x.subs(put) for x in of or _step(case.text, case.scheme)]
     rationals = {
         r: sympy.Symbol(f"r{k}")
         for k, r in enumerate(sorted({r for x in expressions for r in x.atoms(sympy.Rational)}))
@@ -132,3 +139,12 @@ def assert_contained(
         middle, radius = true[name]
         off = abs(found[name] - middle)
         assert off <= error + radius, f"{name} is {float(off / error):.4g} of its bound off: {what}"
+
+
+def jacobian(case: Case, p: Fraction, q: Fraction) -> list[Any]:
+    """The four derivatives of one step there, row by row, as balls in the present precision."""
+    p_next, q_next, _ = _step(case.text, case.scheme)
+    entries = [x.diff(y) for x in (p_next, q_next) for y in (P, Q)]
+    names = {n: getattr(flint.arb, n) for n in _FUNCTIONS} | {"pi": flint.arb.pi()}
+    values = _function(case, rational_ball, names, entries)(rational_ball(p), rational_ball(q))
+    return [flint.arb(0) + x for x in values]
