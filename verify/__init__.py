@@ -10,10 +10,14 @@ if TYPE_CHECKING:
     from verify.proof.order import prove as prove
     from verify.results import Report as Report
     from verify.results import RunResult as RunResult
+    from verify.results import SeparationGrid as SeparationGrid
+    from verify.results import SeparationResult as SeparationResult
     from verify.runs import run as run
     from verify.scene import Scene as Scene
     from verify.scene import load_scene as load_scene
     from verify.scheme import Scheme as Scheme
+    from verify.separation import separate as separate
+    from verify.separation import separate_grid as separate_grid
     from verify.step_map import StepMap as StepMap
     from verify.system import System as System
     from verify.verdict import Verdict as Verdict
@@ -28,12 +32,16 @@ _HOMES = {
     "RunResult": "verify.results",
     "Scene": "verify.scene",
     "Scheme": "verify.scheme",
+    "SeparationGrid": "verify.results",
+    "SeparationResult": "verify.results",
     "StepMap": "verify.step_map",
     "System": "verify.system",
     "Verdict": "verify.verdict",
     "load_scene": "verify.scene",
     "prove": "verify.proof.order",
     "run": "verify.runs",
+    "separate": "verify.separation",
+    "separate_grid": "verify.separation",
 }
 __all__ = list(_HOMES)
 

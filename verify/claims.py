@@ -15,9 +15,16 @@ from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from verify.criteria import judge
 from verify.errors import InputError
 from verify.execute import Result
-from verify.plan import grid_task, key, proof_task
-from verify.results import ClaimResult, CriterionResult, Frozen, ProofResult, RunResult
-from verify.scene import Number, Scene, StepSize, one_line, read_toml
+from verify.plan import grid_task, key, proof_task, separation_task
+from verify.results import (
+    ClaimResult,
+    CriterionResult,
+    Frozen,
+    ProofResult,
+    RunResult,
+    SeparationResult,
+)
+from verify.scene import Grid, Number, Scene, StepSize, one_line, read_toml
 from verify.verdict import Verdict
 
 
@@ -164,6 +171,16 @@ class Findings:
         ]
         found = [self.results.get(name) for name in names]
         return [r for r in found if isinstance(r, RunResult)]
+
+    def separations(self, scene: Scene, scheme: str, grid: Grid) -> list[SeparationResult]:
+        """The separations over a grid by initial value, then step size."""
+        names = [
+            key(separation_task(scene, scheme, grid, h, start))
+            for start in range(len(grid.initial_values))
+            for h in grid.step_sizes
+        ]
+        found = [self.results.get(name) for name in names]
+        return [r for r in found if isinstance(r, SeparationResult)]
 
     def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:
         return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))

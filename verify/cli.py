@@ -3,38 +3,16 @@
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from verify import show
+from verify.cli_input import hamiltonian_of, with_system
 from verify.errors import InputError
-
-if TYPE_CHECKING:
-    from verify.hamiltonian import Hamiltonian
 
 INTERRUPTED = 130
 BAD_INPUT = 2
-
-_SYSTEM_OPTIONS = (
-    click.option("--system", help="A named system: duffing, pendulum, harmonic."),
-    click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
-    click.option(
-        "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
-    ),
-    click.option(
-        "--scheme",
-        required=True,
-        help="lie1, lie2, …, symplectic-euler, or 'p_next = …; q_next = …'.",
-    ),
-    click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output."),
-)
-
-
-def _with_system(command: Any) -> Any:
-    for option in reversed(_SYSTEM_OPTIONS):
-        command = option(command)
-    return command
 
 
 @click.group(
@@ -59,7 +37,7 @@ def cli(context: click.Context) -> None:
 
 
 @cli.command()
-@_with_system
+@with_system
 def prove(
     system: str | None,
     hamiltonian: str | None,
@@ -77,7 +55,7 @@ def prove(
     from verify.schemes import get
 
     begun = time.perf_counter()
-    exact = _hamiltonian(system, hamiltonian, params)
+    exact = hamiltonian_of(system, hamiltonian, params)
     chosen = get(scheme)
     proof = prove_order(chosen.step_map(exact), chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
@@ -88,7 +66,7 @@ def prove(
 
 
 @cli.command()
-@_with_system
+@with_system
 @click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
 @click.option("--steps", required=True, type=int, metavar="N", help="At least 1.")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
@@ -96,8 +74,14 @@ def prove(
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
 @click.option(
     "--arithmetic",
-    help="float64, mpmath, mpfr (as mpmath, but faster) or ball (enclosures); "
-    "mpmath where --digits is given.",
+    help="float64; auto, the fastest that certifies the digits; fixed (compiled), mpfr, mpmath or "
+    "ball. Without it: float64, or auto where --digits is given.",
+)
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep checkpoints there; the same command goes on from them.",
 )
 def run(
     system: str | None,
@@ -111,22 +95,24 @@ def run(
     p: str,
     digits: int | None,
     arithmetic: str | None,
+    keep: Path | None,
 ) -> None:
-    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound."""
-    from verify.progress import progress_bar
-    from verify.runs import ASKED, CLOSED_FORM
+    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
+
+    With --keep, an interruption costs at most some seconds of work.
+    """
+    from verify.keeping import Keeper, name_of
+    from verify.progress import steps_bar
+    from verify.runs import ASKED, AUTO, CLOSED_FORM
     from verify.runs import run as run_scheme
 
-    exact = _hamiltonian(system, hamiltonian, params)
-    arithmetic = arithmetic or ("mpmath" if digits else "float64")
-    with progress_bar("stepping", steps) as advance:
-        last = 0
-
-        def tell(done: int) -> None:
-            nonlocal last
-            advance(done - last)
-            last = done
-
+    exact = hamiltonian_of(system, hamiltonian, params)
+    arithmetic = arithmetic or (AUTO if digits else "float64")
+    if keep is not None:
+        _writable(keep)
+    asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
+    keeper = Keeper(keep, name_of(asked))
+    with steps_bar(steps) as tell:
         result = run_scheme(
             exact,
             scheme,
@@ -139,11 +125,57 @@ def run(
             # The plain way shows what rounding does to it; at many digits that is nothing.
             observables=ASKED if arithmetic == "float64" else CLOSED_FORM,
             progress=tell,
+            keeper=keeper,
         )
+    keeper.clear()
     if as_json:
         show.print_json(show.run_json(result))
     else:
         show.print_run(result)
+
+
+@cli.command()
+@with_system
+@click.option(
+    "--step-size",
+    "step_sizes",
+    required=True,
+    multiple=True,
+    metavar="H",
+    help="Greater than 0; given several times, a grid of them.",
+)
+@click.option("--steps", type=int, metavar="N", help="At least 1; or:")
+@click.option("--time", metavar="T", help="N = ⌊T/H⌋ steps for each H.")
+@click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
+@click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
+@click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
+@click.option(
+    "--arithmetic", default="auto", help="What stands for exact: auto, fixed, mpfr, mpmath."
+)
+def separate(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    as_json: bool,
+    step_sizes: tuple[str, ...],
+    **options: Any,
+) -> None:
+    """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
+
+    With several step sizes also the one below which rounding is the larger part.
+    """
+    from verify.progress import progress_bar
+    from verify.separation import RUNS, grid, separate_grid
+
+    exact = hamiltonian_of(system, hamiltonian, params)
+    counts = grid(step_sizes, options["steps"], options["time"])
+    with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
+        result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)
+    if as_json:
+        show.print_json(show.separation_json(result))
+    else:
+        show.print_separation(result)
 
 
 @cli.command()
@@ -183,7 +215,7 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     planned = plan_scenes(scenes)
     total = sum(cost(task) for task in planned.tasks.values())
     finished = 0
-    with progress_bar(f"{len(planned.tasks)} tasks", total) as advance:
+    with progress_bar(f"{len(planned.tasks)} tasks", total, unit="") as advance:
 
         def done(name: str, _: object) -> None:
             nonlocal finished
@@ -216,25 +248,6 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
 
 
 # -- input ----------------------------------------------------------------------------------------
-
-
-def _hamiltonian(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
-) -> "Hamiltonian":
-    from verify import systems
-    from verify.hamiltonian import Hamiltonian
-
-    if (system is None) == (hamiltonian is None):
-        raise InputError("--system, --hamiltonian", system or "", "give one of the two")
-    values: dict[str, str | None] = {}
-    for text in params:
-        name, given, value = text.partition("=")
-        if name in values:
-            raise InputError("--param", text, f"{name} is given twice")
-        values[name] = value if given else None
-    if system is not None:
-        return systems.get(system).hamiltonian(values)
-    return Hamiltonian.parse(hamiltonian or "", values)
 
 
 def _target(scene: str) -> tuple[str, list[Any], list[Any]]:

@@ -20,15 +20,21 @@ from verify.exact import text
 from verify.float_bounds import DIRECT_STEPS
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
-from verify.keeping import fingerprint, write_atomically
-from verify.plan import Plan, ProofTask, RunTask, Task
+from verify.keeping import NOTHING, Keeper, fingerprint, write_atomically
+from verify.plan import Plan, ProofTask, RunTask, SeparationTask, Task
 from verify.proof.order import prove
-from verify.results import ProofResult, RunResult
+from verify.results import ProofResult, RunResult, SeparationResult
 from verify.runs import AUTO, run
 from verify.schemes import get
+from verify.separation import separate
 from verify.step_map import grouped
 
-Result = ProofResult | RunResult
+Result = ProofResult | RunResult | SeparationResult
+_MODELS: dict[str, type[ProofResult] | type[RunResult] | type[SeparationResult]] = {
+    "proof": ProofResult,
+    "run": RunResult,
+    "separation": SeparationResult,
+}
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
 _VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
@@ -37,11 +43,22 @@ _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs m
 _STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000}
 
 
-def perform(task: Task) -> Result:
-    """Do one task."""
+def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
+    """Do one task; a run goes on from the checkpoint that the keeper may have."""
     hamiltonian = Hamiltonian.parse(task.hamiltonian, task.parameters)
     if isinstance(task, ProofTask):
         return _proof(hamiltonian, task.scheme)
+    if isinstance(task, SeparationTask):
+        return separate(
+            hamiltonian,
+            task.scheme,
+            q=task.q,
+            p=task.p,
+            step_size=task.step_size,
+            steps=task.steps,
+            digits=task.digits,
+            keeper=keeper,
+        )
     return run(
         hamiltonian,
         task.scheme,
@@ -53,6 +70,7 @@ def perform(task: Task) -> Result:
         digits=task.digits,
         observables=task.observables,
         points=task.points,
+        keeper=keeper,
     )
 
 
@@ -96,9 +114,8 @@ class Store:
         path = self.path(name)
         if path is None or not path.exists():
             return None
-        model = ProofResult if isinstance(task, ProofTask) else RunResult
         try:
-            found: Result = model.model_validate_json(path.read_text())
+            found: Result = _MODELS[task.kind].model_validate_json(path.read_text())
         except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
             return None
         self.taken += 1
@@ -108,6 +125,11 @@ class Store:
         path = self.path(name)
         if path is not None:
             write_atomically(path, result.model_dump_json(indent=1))
+            self.keeper(name).clear()
+
+    def keeper(self, name: str) -> Keeper:
+        """What keeps the checkpoints of that task's runs."""
+        return Keeper(self.folder, name)
 
 
 def execute(
@@ -132,7 +154,7 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
-    for name, result in _performed(waiting, _workers(waiting, workers), store.put):
+    for name, result in _performed(waiting, _workers(waiting, workers), store):
         store.put(name, result)
         finish(name, result)
     return results
@@ -140,6 +162,8 @@ def execute(
 
 def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
+    if isinstance(task, SeparationTask):
+        return 3 * task.steps * _STEP_COST[AUTO]
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
         return task.steps * _STEP_COST.get(AUTO if checked else task.arithmetic, 500)
@@ -154,16 +178,18 @@ def _workers(tasks: Mapping[str, Task], asked: int | None) -> int:
     return max(1, min(os.cpu_count() or 1, len(tasks)))
 
 
-def _performed(tasks: Mapping[str, Task], workers: int, kept: Done) -> Iterator[tuple[str, Result]]:
+def _performed(
+    tasks: Mapping[str, Task], workers: int, store: Store
+) -> Iterator[tuple[str, Result]]:
     # Longest first, so that no worker is left with a long one at the end.
     order = sorted(tasks, key=lambda name: -cost(tasks[name]))
     if workers == 1:
         for name in order:
-            yield name, perform(tasks[name])
+            yield name, perform(tasks[name], store.keeper(name))
         return
     with _pool(workers) as executor:
         futures: dict[Future[Result], str] = {
-            executor.submit(perform, tasks[name]): name for name in order
+            executor.submit(perform, tasks[name], store.keeper(name)): name for name in order
         }
         try:
             for future in as_completed(futures):
@@ -173,7 +199,7 @@ def _performed(tasks: Mapping[str, Task], workers: int, kept: Done) -> Iterator[
             # What other workers had just finished is not lost either.
             for future, name in futures.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
-                    kept(name, future.result())
+                    store.put(name, future.result())
             raise
 
 

@@ -2,9 +2,9 @@
 
 For H = p²/2 + V(q) the Lie-derivative scheme has q' = q + h p + (h²/2) X p + (h³/6) X² p + … beside
 p' = p + h X p + (h²/2) X² p + …: with a_k = h^k/(k+1)! X^k p they are p' = p + 2 a_1 + 3 a_2 + …
-and q' = q + h (p + a_1 + a_2 + …). So wherever the coefficient of h^(k+1) in one of them is the one of
-h^k in the other over a small integer, it is computed once. Both ways are tried, and the cheapest is
-taken; where latency counts and not the number of operations, the increments stay apart.
+and q' = q + h (p + a_1 + a_2 + …). So wherever the coefficient of h^(k+1) in one of them is the one
+of h^k in the other over a small integer, it is computed once. Both ways are tried, and the cheapest
+is taken; where latency counts and not the number of operations, the increments stay apart.
 """
 
 from collections.abc import Mapping

@@ -7,6 +7,7 @@ import os
 import sys
 import tempfile
 import time
+from fractions import Fraction
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -47,6 +48,26 @@ def fingerprint() -> str:
     return digest.hexdigest()[:12]
 
 
+def name_of(asked: object) -> str:
+    """A file's name for what is asked."""
+    return hashlib.sha256(repr(asked).encode()).hexdigest()[:24]
+
+
+def fraction_text(x: Fraction) -> str:
+    """An exact text of any length."""
+    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
+
+
+def fraction_of(x: str) -> Fraction:
+    """What `fraction_text` has written."""
+    numerator, denominator = (int(part, 16) for part in x.split("/"))
+    return Fraction(numerator, denominator)
+
+
+def _digest(content: str) -> str:
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
 class Keeper:
     """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
 
@@ -70,10 +91,12 @@ class Keeper:
         if path is None:
             return None
         try:
-            found = json.loads(path.read_text())
+            digest, _, content = path.read_text().partition("\n")
+            found = json.loads(content)
         except (OSError, ValueError):
             return None
-        return found if isinstance(found, dict) and found.get("label") == label else None
+        intact = digest == _digest(content)
+        return found["data"] if intact and found["label"] == label else None
 
     def due(self, label: str) -> bool:
         """Whether some seconds have passed since the last checkpoint under the label."""
@@ -83,7 +106,8 @@ class Keeper:
     def save(self, label: str, data: dict[str, Any]) -> None:
         path = self._path(label)
         if path is not None:
-            write_atomically(path, json.dumps({"label": label, **data}))
+            content = json.dumps({"label": label, "data": data})
+            write_atomically(path, f"{_digest(content)}\n{content}")
             self._written[label] = time.monotonic()
 
     def clear(self) -> None:

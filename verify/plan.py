@@ -10,7 +10,7 @@ from verify.exact import text
 from verify.formula import to_text
 from verify.results import Frozen
 from verify.runs import CLOSED_FORM
-from verify.scene import Number, Scene, StepSize
+from verify.scene import Grid, Number, Scene, StepSize
 from verify.schemes import get
 
 
@@ -40,7 +40,22 @@ class RunTask(Frozen):
     points: int
 
 
-Task = ProofTask | RunTask
+class SeparationTask(Frozen):
+    """Split Λ of a float64 run into truncation and rounding."""
+
+    kind: Literal["separation"] = "separation"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    step_size: StepSize
+    steps: int
+    q: Number
+    p: Number
+    digits: int
+
+
+Task = ProofTask | RunTask | SeparationTask
+SEPARATED_DIGITS = 6  # of each part
 
 
 def key(task: Task) -> str:
@@ -104,13 +119,31 @@ def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
     )  # fmt: skip
 
 
+def separation_task(
+    scene: Scene, scheme: str, grid: Grid, h: Fraction, start: int
+) -> SeparationTask:
+    """The split of the grid's run for a step size and the index of an initial value."""
+    exact, at = scene.exact_hamiltonian(), grid.initial_values[start]
+    return SeparationTask(
+        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, digits=SEPARATED_DIGITS,
+    )  # fmt: skip
+
+
+def grids_separated(scene: Scene) -> list[Grid]:
+    """The grids whose runs are separated: the scene's own where it says so, then the others."""
+    own = [scene.grid] if scene.grid and scene.grid.separate else []
+    return own + [over.as_grid() for over in scene.separation]
+
+
 def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
     exact, series = scene.exact_hamiltonian(), scene.series[index]
     at = series.initial_value
     return RunTask(
         hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
-        step_size=series.step_size, steps=series.count, q=at.q, p=at.p, arithmetic="float64",
-        digits=17, observables=CLOSED_FORM, points=series.points,
+        step_size=series.step_size, steps=series.count, q=at.q, p=at.p,
+        arithmetic=series.arithmetic, digits=series.digits, observables=CLOSED_FORM,
+        points=series.points,
     )  # fmt: skip
 
 
@@ -122,6 +155,8 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
         preserves = step_map.preserves_area
         if scene.grid:
             _plan_grid(plan, scene, scheme, preserves)
+        for grid in grids_separated(scene):
+            _plan_separation(plan, scene, scheme, grid, preserves)
         for index, series in enumerate(scene.series):
             what = f"{name}: series of {scheme} at h = {text(series.step_size)}"
             if preserves:
@@ -130,10 +165,25 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
                 plan.need(series_task(scene, scheme, index), f"{what}, for its plot")
     if not scene.grid:
         plan.leave_out(f"{name}: runs over step sizes", "the scene has no [grid]")
+    if not grids_separated(scene):
+        why = "the scene has no [[separation]], and its [grid] does not say `separate = true`"
+        plan.leave_out(f"{name}: truncation separated from rounding", why)
     if not scene.series:
         plan.leave_out(f"{name}: trajectories and plots over time", "the scene has no [[series]]")
     if not scene.criteria:
         plan.leave_out(f"{name}: criteria 1–4", "the scene names no criteria")
+
+
+def _plan_separation(plan: Plan, scene: Scene, scheme: str, grid: Grid, preserves: bool) -> None:
+    name = scene.name or scene.title or "scene"
+    if preserves:
+        why = "ΔJ ≡ 0 is proved: the truncation part is exactly 0"
+        plan.leave_out(f"{name}: truncation separated from rounding for {scheme}", why)
+        return
+    for start in range(len(grid.initial_values)):
+        for h in grid.step_sizes:
+            task = separation_task(scene, scheme, grid, h, start)
+            plan.need(task, f"{name}: truncation separated from rounding in Λ")
 
 
 def _plan_grid(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:

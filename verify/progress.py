@@ -3,20 +3,51 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 Advance = Callable[[int], None]
 
 
 @contextmanager
-def progress_bar(label: str, total: int, *, wanted: bool = True) -> Iterator[Advance]:
-    """Yields `advance(units)`; it does nothing where standard error is not a terminal."""
-    if not (wanted and total > 0 and sys.stderr.isatty()):
+def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advance]:
+    """Yields `advance(units)`; it does nothing where standard error is not a terminal.
+
+    Shows units per second where they have a name, and the time left.
+    """
+    if not (total > 0 and sys.stderr.isatty()):
         yield lambda _: None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        ProgressColumn,
+        TaskProgressColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
 
-    columns = ("{task.description}", BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    class Speed(ProgressColumn):
+        def render(self, task: Any) -> Text:
+            return Text(f"{task.speed:,.0f} {unit}/s" if task.speed and task.speed > 0 else "")
+
+    columns: list[ProgressColumn | str] = ["{task.description}", BarColumn(), TaskProgressColumn()]
+    columns += [Speed()] if unit else []
+    columns.append(TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(label, total=total)
         yield lambda units: bar.advance(task, units)
+
+
+@contextmanager
+def steps_bar(total: int) -> Iterator[Callable[[int], None]]:
+    """Yields `tell(done)`, the number of steps done so far, of a run that may be begun anew."""
+    with progress_bar("stepping", total) as advance:
+        last = 0
+
+        def tell(done: int) -> None:
+            nonlocal last
+            advance(done - last)
+            last = done
+
+        yield tell

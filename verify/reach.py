@@ -1,14 +1,16 @@
 """How far an orbit may go in a fixed-point format: limits within which nothing can overflow.
 
-Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step. The
-largest box of powers of two for which all of them stay in the format is found before the run; the
-kernel ends the loop where the orbit leaves it. So an overflow is not looked for at every operation,
-and cannot happen.
+Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step, with
+functions' values taken to stay below reach_value. A large box of powers of two for which all of
+them stay in the format is found before the run; the kernel ends the loop where the orbit leaves it,
+or a function's value its limit. So an overflow is not looked for at every operation, and cannot
+happen.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 
 import flint
 
@@ -35,25 +37,41 @@ class Limits:
         return iter((self.p, self.q, self.part, self.value))
 
 
-def limits(kernel: Kernel, inputs: Mapping[str, Fraction]) -> Limits | None:
+def limits(
+    kernel: Kernel, inputs: Mapping[str, Fraction], start: Mapping[str, Fraction]
+) -> Limits | None:
     """The kernel's limits for these h and parameters, by the names that its source has for them.
 
-    None where no box is safe, however small.
+    None where no box that holds the start is safe.
     """
 
     def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
         return _room(kernel, inputs, p, q, value)
 
+    def largest(p: Fraction, q: Fraction, value: Fraction) -> Limits:
+        """Grows a safe box, first to all sides."""
+        boxes = ((max(p, r), max(q, r)) for r in _SIDES)
+        p, q = next((p, q) for p, q in boxes if safe(p, q, value) is not None)
+        # q first: it is an angle more often than p, and grows where that turns.
+        q = next(r for r in _SIDES if r == q or safe(p, r, value) is not None)
+        p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
+        part = safe(p, q, value)
+        assert part is not None  # noqa: S101 - as was just seen
+        return Limits(p, q, part, value)
+
     with working_precision(PRECISION):
-        for value in _VALUE_LIMITS:
-            for common in _SIDES:
-                if safe(common, common, value) is None:
-                    continue
-                p = next(r for r in _SIDES if r == common or safe(r, common, value) is not None)
-                q = next(r for r in _SIDES if r == common or safe(p, r, value) is not None)
-                part = safe(p, q, value)
-                return Limits(p, q, part, value) if part is not None else None
+        own = [abs(start[n]) for n in ("p", "q")]
+        roomy = [[room * max(own)] * 2 for room in (16, 2)]
+        for sizes, value in product([*roomy, own], _VALUE_LIMITS):
+            p, q = map(_side, sizes)
+            if p and q and safe(p, q, value) is not None:
+                return largest(p, q, value)
     return None
+
+
+def _side(size: Fraction) -> Fraction | None:
+    """The least side beyond a size."""
+    return min((r for r in _SIDES if r > size), default=None)
 
 
 def _room(

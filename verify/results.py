@@ -63,7 +63,8 @@ class RunResult(Frozen):
     and where no digit could be confirmed ("unresolved"). `error_kind`
     is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
     says why another arithmetic was taken than the one that was asked for. `exact` names the
-    observables that a proof gave and no run was needed for.
+    observables that a proof gave and no run was needed for. `source` is what of a paper the scene
+    says that the run repeats.
     """
 
     hamiltonian: str
@@ -84,6 +85,99 @@ class RunResult(Frozen):
     exact: tuple[str, ...]
     series: tuple[SeriesPoint, ...]
     seconds: Seconds
+    source: str = ""
+
+
+class Parts(Frozen):
+    """truncation + input + trajectory + determinant + product = lambda_working (one equation of
+    exact rationals, of which these are the known digits); total is the sum of the last four."""
+
+    lambda_working: Value
+    truncation: Value
+    total: Value
+    input: Value
+    trajectory: Value
+    determinant: Value
+    product: Value
+
+
+class PartsAt(Frozen):
+    """The parts after `steps` steps, as decimals of a few digits, for a figure."""
+
+    steps: int
+    truncation: str
+    total: str
+    input: str
+    trajectory: str
+    determinant: str
+    product: str
+
+
+class GrowthResult(Frozen):
+    """A `verify.separation_growth.Growth`."""
+
+    exponent: str | None
+    standard_error: str | None
+    name: Literal["random walk", "drift", "undecided"]
+    reason: str
+    first: int
+    last: int
+    points: int
+
+
+class EvaluationResult(Frozen):
+    """Λ of a float64 run, split, for one way to evaluate it; `growth`: of total and of each part.
+
+    `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
+    """
+
+    parts: Parts
+    largest: dict[str, str]
+    growth: dict[str, GrowthResult]
+    series: tuple[PartsAt, ...]
+    error_kind: Literal["enclosed", "estimated"]
+
+
+class SeparationResult(Frozen):
+    """Truncation and rounding in Λ of one run in float64; see `verify.separation`.
+
+    `plain` and `closed_form` are None where `status` is not "finished" (`reason` says why), and
+    `closed_form` also where some det J ≤ 0, whose logarithm it would take. `arithmetic` is what
+    stood for exact arithmetic; `seconds` is the stepping of all runs.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    arithmetic: str
+    digits: int
+    step_size: str
+    steps: int
+    q: str
+    p: str
+    status: Literal["finished", "left range", "unresolved"]
+    failed_step: int | None
+    reason: str
+    plain: EvaluationResult | None
+    closed_form: EvaluationResult | None
+    error_method: str
+    seconds: Seconds
+
+
+class CrossoverResult(Frozen):
+    """A `verify.separation_growth.Crossover`."""
+
+    step_size: str | None
+    bracket: tuple[str, str] | None
+    reason: str
+
+
+class SeparationGrid(Frozen):
+    """The separation for several step sizes, in the order given, and the crossover of each way."""
+
+    points: tuple[SeparationResult, ...]
+    plain: CrossoverResult
+    closed_form: CrossoverResult
 
 
 class CriterionResult(Frozen):
@@ -108,7 +202,11 @@ class ClaimResult(Frozen):
 
 
 class SceneResult(Frozen):
-    """Everything found for one scene; `time` is the length of its runs where it has a grid."""
+    """Everything found for one scene; `time` is the length of its runs where it has a grid.
+
+    `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
+    scene asks for beside it.
+    """
 
     name: str
     title: str
@@ -120,6 +218,8 @@ class SceneResult(Frozen):
     criteria: tuple[CriterionResult, ...]
     runs: tuple[RunResult, ...]
     series: tuple[RunResult, ...]
+    separations: tuple[SeparationGrid, ...] = ()
+    crossovers: tuple[SeparationGrid, ...] = ()
 
 
 class Provenance(Frozen):

@@ -62,10 +62,11 @@ _FIXED: dict[str, Callable[[Ball], Ball]] = {
     "add": lambda _: flint.arb(0), "sub": lambda _: flint.arb(0), "neg": lambda _: flint.arb(0),
     "pi": lambda _: flint.arb("0.501"), "mul": lambda _: flint.arb("0.501"),
     "sin": lambda _: flint.arb("0.6"), "cos": lambda _: flint.arb("0.6"),
-    "log": lambda _: flint.arb("0.6"), "inverse": lambda y: 1 + y,
-    "exp": lambda y: 1 + y / 64, "sinh": lambda y: 2 + y / 64, "cosh": lambda y: 2 + y / 64,
-    # √x is taken for x ≥ 2^−26 only
-    "root": lambda _: flint.arb(2**13 + 1),
+    "log": lambda _: flint.arb("0.6"), "exp": lambda y: 1 + y / 64,
+    # Half of what e^x and e^−x lose, and of a unit more.
+    "sinh": lambda y: flint.arb("1.04") + y / 64, "cosh": lambda y: flint.arb("1.54") + y / 64,
+    # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
+    "inverse": lambda y: flint.arb("0.51") * (1 + y), "root": lambda _: flint.arb(2**11 + 8),
 }  # fmt: skip
 _CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
 
@@ -81,8 +82,8 @@ def analyse(
 ) -> dict[int, Rounded] | None:
     """Each live operation's value over the inputs' intervals; None where one may be undefined.
 
-    `limit`: where a function may leave a range, its values are taken to be within ±limit, since the
-    kernel's guard ends the loop otherwise.
+    `limit`, for inputs without an error: where a function may leave a range, its values are taken
+    to be within ±limit, since the kernel's guard ends the loop otherwise.
     """
     found: dict[int, Rounded] = {}
     for index in live:
@@ -126,8 +127,11 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
                 return square(x.interval), error
             return x.interval * y.interval, error
     x = args[0]
+    value = BALLS[op.kind](x.interval, op.degree)
+    if x.error.is_zero():  # of no matter then is a slope without a bound
+        return value, zero
     slope = _SLOPES[op.kind](x.widened, op.degree)
-    return BALLS[op.kind](x.interval, op.degree), slope.abs_upper() * x.error
+    return value, slope.abs_upper() * x.error
 
 
 _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
@@ -138,6 +142,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: square(1 / x),
+    "inverse": lambda x, _: 1 / square(x),
     "root": lambda x, n: x.root(n) / (n * x),
 }

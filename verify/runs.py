@@ -60,11 +60,11 @@ def run(
     N < 1, a parameter without a value, unknown names.
     """
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
-    _check(hamiltonian, steps, digits, observables)
+    check(hamiltonian, steps, digits, observables)
     if isinstance(points, bool) or not isinstance(points, int) or points < 0:
         raise InputError("points", points, "must be a whole number, 0 or more")
     step_map = get(scheme).step_map(hamiltonian)
-    known = _proved(step_map, start["h"], steps, digits)
+    known = proved(step_map, start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
     job = Job(hamiltonian, scheme, start, steps, needed, points, keeper)
     if arithmetic == AUTO:
@@ -108,7 +108,7 @@ def _run(
     return Measured(bounded(job, first, known), arithmetic, first)
 
 
-def _check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:
+def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a run needs one")
     for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
@@ -126,7 +126,7 @@ def _series_needs(known: dict[str, Any], points: int) -> frozenset[str]:
 # -- what a proof gives ---------------------------------------------------------------------------
 
 
-def _proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
+def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them."""
     zero = Fraction(0), Fraction(0)
     if step_map.preserves_area:

@@ -11,9 +11,17 @@
     step_sizes = [0.001, 0.01]
     initial_values = [{ q = 1.5, p = 0 }]
 
+    separate = true                        # truncation and rounding in Λ of each of these runs
+
+    [[separation]]                         # the same against h, for the crossover of the two
+    time = 20
+    step_sizes = [0.1, 0.01, 0.001]
+    initial_value = { q = 1.5, p = 0 }
+
     [[series]]                             # thinned ΔJ(t) and Λ(t), for plots
     step_size = 0.01
     initial_value = { q = 1.5, p = 0 }
+    source = "Figure 2"                    # what it repeats, for its caption; may be left out
 
 Numbers are exact: `0.001` in the file is 1/1000.
 """
@@ -24,7 +32,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    PlainSerializer,
+    ValidationError,
+    model_validator,
+)
 
 from verify import arithmetic as number_systems
 from verify import schemes as scheme_catalogue
@@ -43,7 +58,18 @@ StepSize = Annotated[
 ]
 _MAX_DEPTH = 12
 Time = Annotated[Fraction, BeforeValidator(lambda x: positive(x, "time")), PlainSerializer(text)]
+Digits = Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)]
 Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
+
+
+def _known(name: str) -> str:
+    if name != AUTO and name not in number_systems.names():
+        allowed = ", ".join((AUTO, *number_systems.names()))
+        raise InputError("arithmetic", name, f"unknown; allowed: {allowed}")
+    return name
+
+
+ArithmeticName = Annotated[str, AfterValidator(_known)]
 
 
 class InitialValue(Frozen):
@@ -58,16 +84,15 @@ class Grid(Frozen):
     steps: Steps | None = None
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    arithmetic: str = "float64"
-    digits: Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)] = 17
+    arithmetic: ArithmeticName = "float64"
+    digits: Digits = 17
     observables: tuple[str, ...] = CLOSED_FORM
+    separate: bool = False
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
             raise InputError("grid", "time, steps", "give one of the two")
-        if self.arithmetic not in (AUTO, *number_systems.names()):
-            number_systems.get(self.arithmetic, self.digits)
         for name in self.observables:
             if name not in ASKED:
                 raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
@@ -90,14 +115,43 @@ class Grid(Frozen):
         return count
 
 
+class SeparationOver(Frozen):
+    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
+
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
+    initial_value: InitialValue
+    time: Time | None = None
+    steps: Steps | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        self.as_grid()
+        return self
+
+    def as_grid(self) -> Grid:
+        """The same as a grid, which checks it."""
+        return Grid(
+            time=self.time,
+            steps=self.steps,
+            step_sizes=self.step_sizes,
+            initial_values=(self.initial_value,),
+        )
+
+
 class Series(Frozen):
-    """One run kept as a thinned series of at most `points` points; `time` or `steps` long."""
+    """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
+
+    `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
+    """
 
     step_size: StepSize
     initial_value: InitialValue
     time: Time | None = None
     steps: Steps | None = None
     points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
+    arithmetic: ArithmeticName = "float64"
+    digits: Digits = 17
+    source: Annotated[str, Field(max_length=80)] = ""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -127,6 +181,7 @@ class Scene(Frozen):
     schemes: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
     criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
     grid: Grid | None = None
+    separation: tuple[SeparationOver, ...] = ()
     series: tuple[Series, ...] = ()
 
     @model_validator(mode="after")
@@ -136,7 +191,7 @@ class Scene(Frozen):
         exact = self.exact_hamiltonian()
         for name in self.schemes:
             scheme_catalogue.get(name).step_map(exact)
-        if (self.grid or self.series) and exact.symbols:
+        if (self.grid or self.series or self.separation) and exact.symbols:
             raise InputError("parameter", exact.symbols[0], "has no value; a run needs one")
         return self
 

@@ -9,7 +9,14 @@ import click
 if TYPE_CHECKING:
     from verify.hamiltonian import Hamiltonian
     from verify.proof.order import Proof
-    from verify.results import Report, RunResult
+    from verify.results import (
+        CrossoverResult,
+        EvaluationResult,
+        Report,
+        RunResult,
+        SeparationGrid,
+        SeparationResult,
+    )
 
 _LABELS = {
     "lambda": "Λ",
@@ -18,6 +25,15 @@ _LABELS = {
     "delta_j_max": "max |ΔJ|",
     "q": "q",
     "p": "p",
+}
+_PARTS = {
+    "lambda_working": "Λ in float64",
+    "truncation": "truncation",
+    "total": "rounding",
+    "input": "  input",
+    "trajectory": "  trajectory",
+    "determinant": "  determinant",
+    "product": "  product",
 }
 
 
@@ -75,6 +91,7 @@ def run_json(result: "RunResult") -> dict[str, Any]:
         "steps": result.steps,
         "digits": result.digits,
         "arithmetic": result.arithmetic,
+        "fallback": result.fallback,
         "error_bound": {name: value.bound for name, value in values.items() if value},
         "error_kind": result.error_kind,
         "error_method": result.error_method,
@@ -103,6 +120,83 @@ def print_run(result: "RunResult") -> None:
         f"{result.steps} steps in {result.arithmetic}, {result.seconds:.3g} s; bounds "
         f"{result.error_kind} ({result.error_method})"
     )
+    if result.fallback:
+        click.echo(f"taken instead of what was asked for: {result.fallback}")
+
+
+def separation_json(found: "SeparationGrid") -> dict[str, Any]:
+    """The first step size's parts, and those of all of them as `grid`."""
+    points = [_separated(point) for point in found.points]
+    ways = {"plain": found.plain, "closed_form": found.closed_form}
+    crossover = {name: way.model_dump(mode="json") for name, way in ways.items()}
+    seconds = f"{sum(point.seconds for point in found.points):.6f}"
+    return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
+
+
+def _separated(point: "SeparationResult") -> dict[str, Any]:
+    return {
+        **_evaluated(point.plain),
+        "closed_form": _evaluated(point.closed_form),
+        "step_size": point.step_size,
+        "steps": point.steps,
+        "digits": point.digits,
+        "working_arithmetic": "float64",
+        "arithmetic": point.arithmetic,
+        "error_method": point.error_method,
+        "status": point.status,
+        "failed_step": point.failed_step,
+        "reason": point.reason,
+        "seconds": f"{point.seconds:.6f}",
+    }
+
+
+def _evaluated(way: "EvaluationResult | None") -> dict[str, Any]:
+    values = {n: getattr(way.parts, n) if way else None for n in _PARTS}
+    shown = {n: value.value if value else None for n, value in values.items()}
+    return {
+        "lambda_working": shown.pop("lambda_working"),
+        "truncation": shown.pop("truncation"),
+        "rounding": shown,
+        "error_bound": {n: value.bound for n, value in values.items() if value},
+        "error_kind": way.error_kind if way else None,
+        "largest": way.largest if way else None,
+        "growth": {n: g.model_dump(mode="json") for n, g in way.growth.items()} if way else None,
+        "series": [point.model_dump(mode="json") for point in way.series] if way else [],
+    }
+
+
+def print_separation(found: "SeparationGrid") -> None:
+    for point in found.points:
+        click.echo(f"h = {point.step_size}, {point.steps} steps")
+        if point.status == "finished":
+            _print_parts(point)
+        else:
+            at = f" at step {point.failed_step}" if point.failed_step else ""
+            click.echo(f"  {point.status}{at}: {point.reason}")
+    if len(found.points) > 1:
+        for label, way in (("plain", found.plain), ("closed form", found.closed_form)):
+            click.echo(f"rounding overtakes truncation, {label}: {_crossed(way)}")
+
+
+def _print_parts(point: "SeparationResult") -> None:
+    ways = [way for way in (point.plain, point.closed_form) if way]
+    click.echo(f"  {'':16}{'plain':26}{'closed form' if len(ways) > 1 else ''}")
+    for name, label in _PARTS.items():
+        values = [getattr(way.parts, name) for way in ways]
+        click.echo(f"  {label:16}" + "".join(f"{value.value:26}" for value in values).rstrip())
+    for label, way in zip(("plain", "closed form"), ways, strict=False):
+        growth = way.growth["total"]
+        click.echo(f"  rounding with N, {label}: {growth.name} ({growth.reason})")
+    if len(ways) < 2:
+        click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
+    click.echo(f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
+               f"bounds {ways[0].error_kind} ({point.error_method})")  # fmt: skip
+
+
+def _crossed(way: "CrossoverResult") -> str:
+    if way.bracket is None:
+        return way.reason
+    return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
 
 
 def print_plan(planned: dict[str, Any]) -> None:

@@ -118,7 +118,7 @@ class Job:
         outcome = _NOWHERE
         for shift, found in self._formats(kernel):
             outcome = self._walk(kernel, arithmetic, tuple(found), shift, progress, enough)
-            if outcome.done == self.steps or outcome.kernel is None:  # `enough` ended it
+            if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             reason = (
                 f"at step {outcome.done + 1} the orbit left |p| < {text(found.p)}, "
@@ -143,11 +143,9 @@ class Job:
         finest = min(63, max(0, (1 / h_power).__floor__().bit_length() - 1))
         last = None
         for shift in range(finest, -1, -_FEWER_BITS):
-            found = limits(kernel, self.inputs(kernel, shift))
-            if found is None or found == last:
-                continue
-            last = found
-            if abs(self.start["p"]) < found.p and abs(self.start["q"]) < found.q:
+            found = limits(kernel, self.inputs(kernel, shift), self.start)
+            if found is not None and found != last:
+                last = found
                 yield shift, found
 
     def _walk(
@@ -165,12 +163,20 @@ class Job:
             return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
                            walk.seconds, kernel, walk.radii(), walk.shift)  # fmt: skip
 
+        def falls_short() -> bool:
+            return enough is not None and walk.done >= walk.section and not enough(outcome())
+
         try:
+            # A run that goes on from beyond its first checkpoint is asked about that one as well.
+            asked = walk.done >= walk.section
+            if asked and falls_short():
+                return replace(_NOWHERE, done=walk.done, seconds=walk.seconds)
             for done in walk.chunks():
                 if progress:
                     progress(done)
-                if enough and done == walk.section and not enough(outcome()):
+                if not asked and falls_short():
                     return replace(_NOWHERE, done=done, seconds=walk.seconds)
+                asked = asked or done >= walk.section
         except KeyboardInterrupt:
             walk.keep()
             raise

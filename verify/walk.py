@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify import tangent
 from verify.exact import decimal
+from verify.keeping import fraction_of, fraction_text
 from verify.kernel import Kernel
 from verify.number_system import Arithmetic
 from verify.results import SeriesPoint
@@ -46,8 +47,10 @@ class Walk:
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
-        self._label = f"{kinds} {' '.join(map(str, limits))}"
+        inputs = (job.start, job.parameters, job.scheme, job.steps, job.points)
+        self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         self._restore(job.keeper.load(self._label))
+        self._sound = self._mark()
 
     def _first_state(self) -> State:
         start, number = self.job.start, self.arithmetic.number
@@ -75,6 +78,7 @@ class Walk:
                 return
             self.state, self.done = after, self.done + count
             self._note()
+            self._sound = self._mark()
             yield self.done
             if job.keeper.due(self._label):
                 self.keep()
@@ -170,23 +174,29 @@ class Walk:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
         if self.arithmetic.radius is not None:
             return  # a ball's radius is not kept; such runs are short
+        done, seconds, state, seen, (trail, tangents, series) = self._sound
         data = {
-            "done": self.done,
-            "seconds": self.seconds,
-            "state": [_text(self._exact(x)) for x in self.state],
-            "seen": _texts(self._seen),
-            "trail": list(map(_texts, self.trail)),
-            "tangents": list(map(_texts, self.tangents)),
-            "series": [point.model_dump(mode="json") for point in self.series],
+            "done": done,
+            "seconds": seconds,
+            "state": [fraction_text(self._exact(x)) for x in state],
+            "seen": _texts(seen),
+            "trail": list(map(_texts, self.trail[:trail])),
+            "tangents": list(map(_texts, self.tangents[:tangents])),
+            "series": [point.model_dump(mode="json") for point in self.series[:series]],
         }
         self.job.keeper.save(self._label, data)
+
+    def _mark(self) -> tuple[int, float, State, dict[str, Fraction], tuple[int, ...]]:
+        """Where the run is after a chunk and its notes; an interruption may come amid them."""
+        notes = len(self.trail), len(self.tangents), len(self.series)
+        return self.done, self.seconds, self.state, dict(self._seen), notes
 
     def _restore(self, kept: dict[str, Any] | None) -> None:
         if kept is None:
             return
         self.done, self.seconds = kept["done"], kept["seconds"]
         number, kinds = self.arithmetic.number, self.kernel.kinds
-        values = [_fraction(x) for x in kept["state"]]
+        values = [fraction_of(x) for x in kept["state"]]
         self.state = tuple(
             float(x) if kind == "float" else number(x)
             for kind, x in zip(kinds, values, strict=True)
@@ -197,18 +207,9 @@ class Walk:
         self.series = [SeriesPoint.model_validate(point) for point in kept["series"]]
 
 
-def _text(x: Fraction) -> str:
-    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
-
-
-def _fraction(x: str) -> Fraction:
-    numerator, denominator = (int(part, 16) for part in x.split("/"))
-    return Fraction(numerator, denominator)
-
-
 def _texts(note: Mapping[str, Fraction]) -> dict[str, str]:
-    return {name: _text(x) for name, x in note.items()}
+    return {name: fraction_text(x) for name, x in note.items()}
 
 
 def _fractions(note: Mapping[str, str]) -> dict[str, Fraction]:
-    return {name: _fraction(x) for name, x in note.items()}
+    return {name: fraction_of(x) for name, x in note.items()}

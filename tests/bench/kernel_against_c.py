@@ -29,7 +29,7 @@ def main() -> None:
     observables = frozenset({"delta_j_max", "mse", "lambda"})
     kernel = kernel_for(hamiltonian, "lie2", arithmetic.get("float64", 17), observables)
     start = (0.001, 1.0, 0.0, 1.5, *map(float, kernel.start))
-    kernel.function(1, *start)
+    kernel.function(1_000_000, *start)  # compiles
     ours, theirs = [], []
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "duffing_lie2"

@@ -215,8 +215,8 @@ def short() -> tuple[Findings, dict[str, ClaimResult]]:
     scenes = {}
     for name, scene in SCENES.items():
         assert scene.grid is not None
-        grid = scene.grid.model_copy(update={"time": Fraction(2)})
-        scenes[name] = scene.model_copy(update={"grid": grid, "series": ()})
+        grid = scene.grid.model_copy(update={"time": Fraction(2), "separate": False})
+        scenes[name] = scene.model_copy(update={"grid": grid, "series": (), "separation": ()})
     results = execute(plan_scenes(list(scenes.values())), Store(None), workers=1)
     findings = Findings(scenes, results)
     return findings, {r.id: r for r in check_claims(list(CLAIMS.values()), findings)}

@@ -1,4 +1,4 @@
-"""IEEE double precision, compiled by numba: the arithmetic that is under test.
+"""IEEE double precision, compiled by numba where it repays: the arithmetic that is under test.
 
 No fast-math: operations are rounded one by one, as the source writes them. Division by zero and
 overflow give infinities and NaN, which the run finds.
@@ -10,9 +10,10 @@ from contextlib import nullcontext
 from fractions import Fraction
 from typing import Any
 
-from verify.number_system import Arithmetic
+from verify.number_system import Arithmetic, interpreted
 
 NAME = "float64"
+_REPAID = 200_000  # steps: Python takes some 2 µs each, and numba's import and compilation 1 s
 
 
 def make(digits: int) -> Arithmetic:
@@ -45,6 +46,34 @@ def _number(value: Fraction) -> float:
 
 
 def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """The kernel, compiled once it has so many steps to do that it repays.
+
+    Until then Python does them, with the same bits, as its operators and functions are those of
+    IEEE and of the same C library. What Python refuses, as 1/0, is left to the compiled one.
+    """
+    plain = interpreted(source, name, namespace)
+    compiled: Callable[..., Any] | None = None
+    done = 0
+
+    def kernel(first: Any, *arguments: Any) -> Any:
+        nonlocal compiled, done
+        steps = first if isinstance(first, int) else 1  # a function that is no kernel has none
+        if compiled is None and done + steps <= _REPAID:
+            try:
+                result = plain(first, *arguments)
+            except (ArithmeticError, ValueError):
+                pass
+            else:
+                done += steps
+                return result
+        if compiled is None:
+            compiled = _compiled(source, name, namespace)
+        return compiled(first, *arguments)
+
+    return kernel
+
+
+def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     import numba
 
     scope = {**namespace, "root": numba.njit(_root)}

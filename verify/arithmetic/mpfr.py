@@ -55,6 +55,7 @@ def at_bits(bits: int) -> Arithmetic:
             **{f: getattr(gmpy2, f) for f in names},
             "root": _root,
             "approx": float,
+            "wide": gmpy2.mpfr,  # the exact value of a float64: 53 bits at least are there
             "pi": pi,
             "escape": number(Fraction(2**ESCAPE_BITS)),
             "minus_escape": number(Fraction(-(2**ESCAPE_BITS))),

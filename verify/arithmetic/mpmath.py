@@ -51,6 +51,7 @@ def at_bits(bits: int) -> Arithmetic:
             **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
             "cos_sin": context.cos_sin,
             "approx": float,
+            "wide": context.mpf,  # the exact value of a float64: 53 bits at least are there
             "pi": +context.pi,
         },
         compile=interpreted,

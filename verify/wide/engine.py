@@ -3,7 +3,7 @@
 import ctypes
 import threading
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from operator import itemgetter
 from typing import Any
 
@@ -46,9 +46,10 @@ class Fixed:
 def compiled(
     source: str, width: int, fraction: int, names: Mapping[str, Any]
 ) -> Callable[..., Any]:
-    """The function that the source defines (see `verify.wide.translate`); compiled once.
+    """The function that the source defines (see `verify.wide.translate`).
 
-    It takes and gives `Fixed`, int and float. Raises OverflowError where an argument is outside the
+    It is compiled once, when it is first called, since not every kernel that is made is run. It
+    takes and gives `Fixed`, int and float. Raises OverflowError where an argument is outside the
     format, and ValueError where a function had no value outside a loop.
     """
     return _compiled(source, width, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
@@ -59,7 +60,8 @@ def _compiled(
     source: str, width: int, fraction: int, names: tuple[tuple[str, Any], ...]
 ) -> Callable[..., Any]:
     translator = Translator(source, width, fraction, dict(names))
-    native = _native(translator.translate())
+    module = translator.translate()
+    native = cache(lambda: _native(module))
     sizes = {"wide": width // 64, "sum": width // 64 + 1, "float": 1, "int": 1}
     kinds = [kind for _, kind in translator.arguments]
     room = 8 * (sum(sizes[kind] for kind in translator.results) + 1)
@@ -67,7 +69,7 @@ def _compiled(
     def call(*arguments: Any) -> tuple[Any, ...]:
         given = b"".join(map(_packed, arguments, kinds, (sizes[k] for k in kinds)))
         result = ctypes.create_string_buffer(room)
-        native(given, result)
+        native()(given, result)
         values, at = [], 0
         for kind in translator.results:
             words = result.raw[at : at + 8 * sizes[kind]]

@@ -92,8 +92,9 @@ class Functions:
         """(k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W fraction
         bits.
 
-        k is found from the highest limb alone, so that it is the floor within 2^−30; unit (an arb)
-        is taken with 32 bits beyond the fraction, and k·unit is right to a unit of r.
+        k is found from the highest limb alone, so that it is the floor within 2^−18, or within
+        2^−28 where |x| < 16; unit (an arb) is taken with 32 bits beyond the fraction, and k·unit is
+        right to a unit of r.
         """
         high = resized(b, limbs.limb(b, x, self.count - 1), 128, signed=True)  # 48 fraction bits
         k = b.mul(high, constant(arb_integer(1 / unit, 32), 128))
@@ -186,7 +187,10 @@ class Functions:
     # -- exp and its like -----------------------------------------------------------------------
 
     def _exponential(self, b: ir.IRBuilder, x: Value) -> tuple[Value, Value]:
-        """(m, a): e^x = m·2^a with m in [1, 2) in W − 2 fraction bits, a as i64."""
+        """(m, a): e^x = m·2^a with m in W − 2 fraction bits, a as i64.
+
+        m is in [1, 2], and may exceed 2 by 2^−28 just above an x for which it would be 1.
+        """
         with working_precision(self.width + 128):
             unit = flint.arb(2).log() / _EXPONENTIALS
             powers = [arb_integer((unit * k).exp(), self.width - 2) for k in range(_EXPONENTIALS)]
@@ -206,10 +210,11 @@ class Functions:
         b, x = self._define("exp", 1)
         mantissa, a = self._exponential(b, x)
         shift = b.sub(constant(INTEGER_BITS - 2, 64), a)
-        valid = b.icmp_signed(">=", shift, constant(0, 64))
         most = constant(self.width - 1, 64)
-        shift = b.select(b.icmp_unsigned("<", shift, most), shift, most)
-        return self._result(b, valid, b.lshr(mantissa, resized(b, shift, self.width)))
+        bounded = b.select(b.icmp_unsigned("<", shift, most), shift, most)
+        value = b.lshr(mantissa, resized(b, bounded, self.width))
+        fits = b.icmp_signed(">=", value, constant(0, self.width))
+        return self._result(b, b.and_(fits, b.icmp_signed(">=", shift, constant(0, 64))), value)
 
     def _cosh(self) -> ir.Function:
         return self._half_sum("cosh", b_minus=False)
@@ -224,9 +229,10 @@ class Functions:
         one, two = b.extract_value(up, 0), b.extract_value(down, 0)
         total = b.sub(one, two) if b_minus else b.add(one, two)
         valid = b.and_(b.extract_value(up, 1), b.extract_value(down, 1))
-        # Half of each stays in range where their sum does not.
         half = b.ashr(total, constant(1, self.width))
-        fits = b.icmp_signed(">=", b.or_(one, two), constant(0, self.width))
-        small = limbs.shifted_down(b, b.or_(one, two), self.width - 2)
-        fits = b.and_(fits, b.icmp_unsigned("==", small, constant(0, self.width)))
-        return self._result(b, b.and_(valid, fits), half)
+        # Below 2^14 each, so that their sum stays in range; and not both 0, as they are where −x
+        # is not in range.
+        either = b.or_(one, two)
+        fits = b.icmp_unsigned("<", either, constant(1 << self.width - 2, self.width))
+        some = b.icmp_unsigned("!=", either, constant(0, self.width))
+        return self._result(b, b.and_(valid, b.and_(fits, some)), half)

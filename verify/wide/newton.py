@@ -16,7 +16,10 @@ _LEAST_DIVISOR = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
-    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^−101."""
+    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^−100.
+
+    The second part is 2^−36 for a sum, whose limbs stand for 2^64 times as much.
+    """
     width = x.type.width
     high = b.sitofp(limbs.limb(b, x, width // 64 - 1), DOUBLE)
     low = b.uitofp(limbs.limb(b, x, width // 64 - 2), DOUBLE)
@@ -31,16 +34,17 @@ def from_double(b: ir.IRBuilder, value: Value, width: int, fraction: int) -> Val
     |value| must be below 2^(width − 1 − fraction).
     """
     floor = b.module.declare_intrinsic("llvm.floor", [DOUBLE])
-    count = width // 64
-    rest = b.fmul(value, ir.Constant(DOUBLE, 2.0 ** (fraction - width + 64)))
+    absolute = b.module.declare_intrinsic("llvm.fabs", [DOUBLE])
+    # The size first: what a small negative number is above −1 would be no float64.
+    rest = b.fmul(b.call(absolute, [value]), ir.Constant(DOUBLE, 2.0 ** (fraction - width + 64)))
     total = constant(0, width)
-    for i in reversed(range(count)):
+    for i in reversed(range(width // 64)):
         whole = b.call(floor, [rest])
-        to_integer = b.fptosi if i == count - 1 else b.fptoui
-        part = resized(b, to_integer(whole, I64), width)
+        part = resized(b, b.fptoui(whole, I64), width)
         total = b.or_(total, limbs.shifted_up(b, part, 64 * i))
         rest = b.fmul(b.fsub(rest, whole), ir.Constant(DOUBLE, 2.0**64))
-    return total
+    negative = b.fcmp_ordered("<", value, ir.Constant(DOUBLE, 0.0))
+    return b.select(negative, b.neg(total), total)
 
 
 class MoreFunctions(Functions):
@@ -94,15 +98,19 @@ class MoreFunctions(Functions):
         guess = b.call(logarithm, [b.fmul(near, ir.Constant(DOUBLE, 2.0**-64))])
         minus = from_double(b, b.fneg(guess), width, self.fraction)
         mantissa, a = self._exponential(b, minus)
-        power = b.shl(mantissa, resized(b, a, width))  # e^−guess; a is 0 or 1
+        # e^−guess is m·2^a, with a = 1 near guess = −ln 2, and a = −1 near guess = 0.
+        below = b.icmp_signed("<", a, constant(0, 64))
+        doubled = b.shl(mantissa, resized(b, b.select(below, constant(0, 64), a), width))
+        power = b.select(below, limbs.shifted_down(b, mantissa, 1), doubled)
         delta = b.sub(high_product(b, m, power), constant(1 << places, width))
         total = b.add(b.neg(b.shl(minus, constant(INTEGER_BITS - 2, width))), self._log1p(b, delta))
         # The guess may lie on either side of −½; the sum may be large: one limb more.
         wide = width + 64
         with working_precision(width + 128):
-            two = constant(arb_integer(flint.arb(2).log(), places), wide)
+            two = constant(arb_integer(flint.arb(2).log(), places + 32), wide)
         exponent = b.sub(constant(INTEGER_BITS, wide), resized(b, lead, wide))
-        total = b.add(resized(b, total, wide, signed=True), b.mul(exponent, two))
+        octaves = b.ashr(b.mul(exponent, two), constant(32, wide))
+        total = b.add(resized(b, total, wide, signed=True), octaves)
         by = INTEGER_BITS - 2
         total = b.ashr(b.add(total, constant(1 << (by - 1), wide)), constant(by, wide))
         return self._result(b, valid, resized(b, total, width))

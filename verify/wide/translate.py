@@ -8,10 +8,10 @@ is first assigned to it, an argument's is its annotation:
 - `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
 - `float` IEEE double precision; `int` a 64-bit integer.
 
-`wide(x)` takes a float64 exactly, `approx(x)` goes back to the nearest float64 or its neighbour.
-The name `valid` is true in a pass of the loop as long as every function had a value, in the pass
-and before the loop; `inside(x, limit)` is |x| < limit, seen from the highest limbs, and
-`shifted(x, s)` is x/2^s.
+`wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
+`verify.wide.newton` says. The name `valid` is true as long as every function had a value, in all
+passes of the loop and before it; `inside(x, limit)` is |x| < limit, seen from the highest limbs,
+and `shifted(x, s)` is x/2^s.
 """
 
 import ast
@@ -20,13 +20,14 @@ from typing import Any
 
 from llvmlite import ir
 
-from verify.wide import limbs
+from verify.wide import limbs, memory
 from verify.wide.limbs import I64, Value, constant, resized
 from verify.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 
 BOOL = ir.IntType(1)
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 _FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
+_LIBM_FUNCTIONS = ("log1p", "sinh", "cosh")  # by the C library that this process has
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -55,37 +56,13 @@ class Translator:
         self._assign("valid", ir.Constant(BOOL, 1))
         offset = 0
         for name, kind in self.arguments:
-            value, offset = self._read(main.args[0], offset, kind)
+            value, offset = memory.read(self.b, main.args[0], offset, self.types[kind])
             self._assign(name, value)
         self._block(self.definition.body)
         if not self.b.block.is_terminated:
             self.b.ret_void()
         self.allocations.branch(main.blocks[1])
         return self.module
-
-    # -- memory -------------------------------------------------------------------------------
-
-    def _read(self, memory: Value, offset: int, kind: str) -> tuple[Value, int]:
-        b, kind_type = self.b, self.types[kind]
-        if kind in ("float", "int"):
-            word = b.load(b.gep(memory, [constant(offset, 64)]), typ=I64)
-            return (b.bitcast(word, DOUBLE) if kind == "float" else word), offset + 1
-        value = constant(0, kind_type.width)
-        count = kind_type.width // 64
-        for i in range(count):
-            word = b.load(b.gep(memory, [constant(offset + i, 64)]), typ=I64)
-            part = limbs.shifted_up(b, resized(b, word, kind_type.width), 64 * i)
-            value = b.or_(value, part)
-        return value, offset + count
-
-    def _write(self, memory: Value, offset: int, value: Value) -> int:
-        b = self.b
-        if value.type == DOUBLE:
-            value = b.bitcast(value, I64)
-        count: int = value.type.width // 64
-        for i in range(count):
-            b.store(limbs.limb(b, value, i), b.gep(memory, [constant(offset + i, 64)]))
-        return offset + count
 
     def _assign(self, name: str, value: Value) -> None:
         if name not in self._variables:
@@ -94,6 +71,10 @@ class Translator:
         if value.type != target:
             value = self._to(value, target)
         self.b.store(value, self._variables[name])
+
+    def _require(self, condition: Value) -> None:
+        """`valid` only where this is true."""
+        self.b.store(self.b.and_(self._load("valid"), condition), self._variables["valid"])
 
     # -- statements ---------------------------------------------------------------------------
 
@@ -129,14 +110,12 @@ class Translator:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
-        before = self._load("valid")
         head, body, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
         self.b.branch(head)
         self.b.position_at_end(head)
         at = self.b.load(self._variables[name])
         self.b.cbranch(self.b.icmp_signed("<", at, limit), body, after)
         self.b.position_at_end(body)
-        self._assign("valid", before)
         self._block(statement.body)
         self._assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
@@ -152,8 +131,10 @@ class Translator:
         self.results = [kinds[str(v.type)] for v in values]
         offset = 0
         for v in values:
-            offset = self._write(self.b.function.args[1], offset, v)
-        self._write(self.b.function.args[1], offset, resized(self.b, self._load("valid"), 64))
+            offset = memory.write(self.b, self.b.function.args[1], offset, v)
+        memory.write(
+            self.b, self.b.function.args[1], offset, resized(self.b, self._load("valid"), 64)
+        )
         self.b.ret_void()
 
     def _load(self, name: str) -> Value:
@@ -244,13 +225,16 @@ class Translator:
         if name == "shifted":
             return [self._shifted(x, values[1])]
         if name == "wide":
-            return [from_double(b, x, self.types["wide"].width, self.fraction)]
+            width = self.types["wide"].width
+            top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
+            size = b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
+            self._require(b.fcmp_ordered("<", size, top))
+            return [from_double(b, x, width, self.fraction)]
         if x.type == DOUBLE:
             return [self._float_function(name, x)]
         packed = b.call(self.functions.get(name), [x])
         count = len(packed.type.elements) - 1
-        self.b.store(b.and_(self._load("valid"), b.extract_value(packed, count)),
-                     self._variables["valid"])  # fmt: skip
+        self._require(b.extract_value(packed, count))
         return [b.extract_value(packed, i) for i in range(count)]
 
     def _shifted(self, x: Value, by: Value) -> Value:
@@ -265,9 +249,13 @@ class Translator:
 
     def _float_function(self, name: str, x: Value) -> Value:
         plain = name.removeprefix("f_")
-        if plain not in _FLOAT_FUNCTIONS:
+        if plain in _FLOAT_FUNCTIONS:
+            return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in _LIBM_FUNCTIONS:
             raise NotImplementedError(name)
-        return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in self.module.globals:
+            ir.Function(self.module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
+        return self.b.call(self.module.globals[plain], [x])
 
     def _condition(self, node: Any) -> Value:
         match node:

@@ -1,0 +1,51 @@
+"""Options that commands share, and what they stand for."""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.hamiltonian import Hamiltonian
+
+_SYSTEM_OPTIONS = (
+    click.option("--system", help="A named system: duffing, pendulum, harmonic."),
+    click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
+    click.option(
+        "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
+    ),
+    click.option(
+        "--scheme",
+        required=True,
+        help="lie1, lie2, …, symplectic-euler, or 'p_next = …; q_next = …'.",
+    ),
+    click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output."),
+)
+
+
+def with_system(command: Any) -> Any:
+    """The command with the options that name a system and a scheme, and --json."""
+    for option in reversed(_SYSTEM_OPTIONS):
+        command = option(command)
+    return command
+
+
+def hamiltonian_of(
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
+) -> "Hamiltonian":
+    """The Hamiltonian that the options name; InputError unless they name one."""
+    from verify import systems
+    from verify.hamiltonian import Hamiltonian
+
+    if (system is None) == (hamiltonian is None):
+        raise InputError("--system, --hamiltonian", system or "", "give one of the two")
+    values: dict[str, str | None] = {}
+    for text in params:
+        name, given, value = text.partition("=")
+        if name in values:
+            raise InputError("--param", text, f"{name} is given twice")
+        values[name] = value if given else None
+    if system is not None:
+        return systems.get(system).hamiltonian(values)
+    return Hamiltonian.parse(hamiltonian or "", values)
