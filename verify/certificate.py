@@ -45,7 +45,7 @@ from verify.balls import bounds, rational_ball
 from verify.derivatives import Derivatives
 from verify.number_system import Arithmetic
 from verify.precision import working_precision
-from verify.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
+from verify.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, is_known, rounding_of
 from verify.stepping import Job, Outcome
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
@@ -117,9 +117,11 @@ class _Certificate:
 
     def one_step(self) -> _Steps | None:
         kernel, program = self.kernel, self.kernel.lowering.program
-        live, rounding = kernel.lowering.live(kernel.roots), rounding_of(self.arithmetic)
-        found = analyse(program, live, self.inputs(), rounding)
-        if found is None or kernel.tangent is None:
+        if kernel.tangent is None or not is_known(self.arithmetic):
+            return None
+        live = kernel.lowering.live(kernel.roots)
+        found = analyse(program, live, self.inputs(), rounding_of(self.arithmetic))
+        if found is None:
             return None
         values = {name: found[index] for name, index in kernel.outputs.items()}
         tangent = self.one_tangent(found)

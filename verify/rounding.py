@@ -41,18 +41,21 @@ class Rounded:
 Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
 
 
+def is_known(arithmetic: Arithmetic) -> bool:
+    """Whether the errors of the arithmetic's operations are known."""
+    return arithmetic.name in ("fixed", *_FUNCTIONS)
+
+
 def rounding_of(arithmetic: Arithmetic) -> Rounding:
-    """The error of one operation of the arithmetic."""
+    """The error of one operation of the arithmetic, which must be known."""
     unit = flint.arb(2) ** -arithmetic.bits
-    # mpmath's functions are not all rounded right; the conformance suite holds them to 4 ulp.
-    functions = 1 if arithmetic.name == "mpfr" else 8
 
     def own(op: Op, size: Ball) -> Ball:
         if op.kind == "const":
             return rational_ball(abs(arithmetic.exact(arithmetic.number(op.value)) - op.value))
         if arithmetic.absolute:
             return unit * _FIXED[op.kind](size)
-        return size * unit * (1 if op.kind in _CORRECT else functions)
+        return size * unit * (1 if op.kind in _CORRECT else _FUNCTIONS[arithmetic.name])
 
     return own
 
@@ -68,6 +71,9 @@ _FIXED: dict[str, Callable[[Ball], Ball]] = {
     # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
     "inverse": lambda y: flint.arb("0.51") * (1 + y), "root": lambda _: flint.arb(2**11 + 8),
 }  # fmt: skip
+# Of functions, in half units of the last place or less: MPFR's are all rounded right, mpmath's are
+# held to 4 units by the conformance suite.
+_FUNCTIONS = {"mpfr": 1, "mpmath": 8}
 _CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
 
 FLOAT: Rounding = lambda op, size: size * flint.arb(2) ** -52 + flint.arb(2) ** -1000  # noqa: E731

@@ -167,7 +167,7 @@ def check(text: str, scheme: str, arithmetic: Arithmetic, at: Any, width: Fracti
         assert error <= every[index], f"v{index}, {found.ops[index].kind}, is off more: {error}"
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(hamiltonians, schemes, st.integers(4, 200), st.booleans(), points, widths)
 def test_floating_point_rounds_no_more_than_is_counted(
     text: str, scheme: str, bits: int, other: bool, at: Any, width: Fraction
