@@ -1,13 +1,12 @@
 """Axes that several figures share: logarithmic by decades, step sizes, offsets from one."""
 
 from collections.abc import Sequence
-from decimal import Decimal
-from fractions import Fraction
-from math import floor, inf, isfinite, log10
+from math import floor, isfinite, log10
 from typing import Any
 
 from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter, MaxNLocator
 
+from reports.logarithm import lg
 from reports.svg import INK, SERIES
 from reports.typography import superscript
 
@@ -30,15 +29,6 @@ def line_style(index: int, count: int) -> dict[str, Any]:
         "linewidth": 1.4,
     }
     return style | ({"dashes": DASHES[index]} if DASHES[index] else {})
-
-
-def lg(text: str) -> float:
-    """lg |value| of a decimal or a quotient, however large or small; −∞ for 0."""
-    if "/" in text:
-        value = Fraction(text)
-        return lg(str(abs(value.numerator))) - lg(str(value.denominator))
-    value_ = abs(Decimal(text))
-    return float(value_.log10()) if value_ else -inf
 
 
 def grid_lines(axes: Any, which: str = "y") -> None:

@@ -18,13 +18,13 @@ from reports.axes import (
     MOST_STYLES,
     decades,
     grid_lines,
-    lg,
     line_style,
     offset_ticks,
     step_sizes,
     time_axis,
     whole_numbers,
 )
+from reports.logarithm import lg
 from reports.svg import INK, SERIES, drawn
 from reports.typography import start, superscript
 from verify.results import RunResult, SeriesPoint, Value
@@ -73,9 +73,9 @@ def against_step_size(
     """The lines on logarithmic axes, with a grey guide for each slope in `guides`."""
 
     def draw() -> Figure:
-        figure, axes = _figure(330 if len(plotted) <= MOST_STYLES else 280)
+        figure, axes = canvas(330 if len(plotted) <= MOST_STYLES else 280)
         for index, line in enumerate(plotted):
-            _plot(axes, line, line_style(index, len(plotted)))
+            plot_line(axes, line, line_style(index, len(plotted)))
         _guides(axes, plotted, guides)
         _finish(figure, axes, plotted)
         decades(axes.yaxis)
@@ -91,10 +91,10 @@ def printed_against_computed(
     """lg MSE as it is printed and as it is computed."""
 
     def draw() -> Figure:
-        figure, axes = _figure(350)
-        _plot(axes, printed, {"color": INK, "linewidth": 3})
+        figure, axes = canvas(350)
+        plot_line(axes, printed, {"color": INK, "linewidth": 3})
         for index, line in enumerate(computed):
-            _plot(axes, line, line_style(index, len(computed)))
+            plot_line(axes, line, line_style(index, len(computed)))
         _finish(figure, axes, [printed, *computed])
         whole_numbers(axes.yaxis)
         axes.set_title("lg MSE")
@@ -103,12 +103,12 @@ def printed_against_computed(
     return drawn(draw, name=name, label=label)
 
 
-def _figure(height: float) -> tuple[Figure, Any]:
+def canvas(height: float) -> tuple[Figure, Any]:
     figure = Figure(figsize=(_WIDTH * _POINT, height * _POINT), layout="constrained")
     return figure, figure.add_subplot()
 
 
-def _plot(axes: Any, line: Line, style: dict[str, Any]) -> None:
+def plot_line(axes: Any, line: Line, style: dict[str, Any]) -> None:
     x, y = [lg(h) for h, _ in line.points], [place for _, place in line.points]
     axes.plot(x, y, label=line.label, **style)
 

@@ -133,11 +133,12 @@ def over_time(run: RunResult, *, name: str) -> Plot:
     """det J, ΔJ and Λ along one run."""
     from reports import figures
 
-    lead = f"h = {run.step_size} from {start(run)}: (a) det J, (b) ΔJ and (c) Λ over time"
+    source = f"For {run.source}: " if run.source else ""
+    lead = f"{source}h = {run.step_size} from {start(run)}: (a) det J, (b) ΔJ and (c) Λ over time"
     bucket = max(point.last - point.first + 1 for point in figures.merged(run.series))
     seen = ""
     if {"delta_j_max", "lambda"} <= set(run.values):
-        top, end = (_few(run.values[key].value) for key in ("delta_j_max", "lambda"))
+        top, end = (few(run.values[key].value) for key in ("delta_j_max", "lambda"))
         seen = f" The greatest |ΔJ| is {top}; at the end Λ is {end}."
     if run.status == "left range":
         seen = f" The run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
@@ -150,7 +151,7 @@ def over_time(run: RunResult, *, name: str) -> Plot:
     return Plot(figures.over_time(run, name=name, label=f"{lead}."), f"{lead}.", caption)
 
 
-def _few(text: str) -> str:
+def few(text: str) -> str:
     """The first of the known digits."""
     digits = sum(c.isdigit() for c in text.lower().partition("e")[0])
     if not is_decimal(text) or digits <= _MOST_SHOWN or Decimal(text) == 0:

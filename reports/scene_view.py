@@ -1,45 +1,22 @@
 """A scene as the page shows it: its schemes, each with proof, criteria, figures and runs."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
 from reports import mathml, plots
 from reports.claim_view import ClaimView
 from reports.plots import Plot
-from reports.typography import listed, start, value, whole
+from reports.run_table import RunTable, run_table
+from reports.typography import listed, whole
 from verify.criteria import NAMES
-from verify.results import CriterionResult, ProofResult, RunResult, SceneResult
+from verify.results import CriterionResult, ProofResult, SceneResult
 
-MOST_ROWS = 600  # of a table of runs; the others are in results.json
-_COLUMNS = {
-    "mse": "MSE",
-    "delta_j_max": "max |ΔJ|",
-    "lambda": "Λ by closed form",
-    "lambda_plain": "Λ the plain way",
-}
-
-
-@dataclass(frozen=True)
-class RunRow:
-    step_size: str
-    steps: str
-    cells: tuple[Markup, ...]  # empty where the run left the arithmetic's range
-    failure: str
-
-
-@dataclass(frozen=True)
-class RunTable:
-    """The runs of one scheme: a column an observable, a group an initial value."""
-
-    columns: tuple[str, ...]
-    groups: tuple[tuple[str, tuple[RunRow, ...]], ...]
-    count: int
-    shown: int
-    computed: str
-    proved: tuple[str, ...]  # the columns that a proof gave, for all runs
+if TYPE_CHECKING:
+    from reports.separation_view import SeparationView
 
 
 @dataclass(frozen=True)
@@ -52,6 +29,7 @@ class SchemeView:
     plots: tuple[Plot, ...]
     series: tuple[Plot, ...]
     runs: RunTable | None
+    separation: "SeparationView | None"
 
 
 @dataclass(frozen=True)
@@ -109,8 +87,20 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
             plots.over_time(run, name=f"time-{index}-of-{anchor}")
             for index, run in enumerate(series)
         ),
-        runs=_run_table(runs),
+        runs=run_table(runs),
+        separation=_separation(scene, proof.scheme, anchor),
     )
+
+
+def _separation(scene: SceneResult, scheme: str, anchor: str) -> "SeparationView | None":
+    """Truncation against rounding, imported only where something was separated."""
+    own = [g for g in scene.separations if g.points and g.points[0].scheme == scheme]
+    wide = [g for g in scene.crossovers if g.points and g.points[0].scheme == scheme]
+    if not own and not wide:
+        return None
+    from reports.separation_view import separation_view
+
+    return separation_view(own, wide, name=anchor)
 
 
 def _floors(scene: SceneResult) -> str:
@@ -127,39 +117,3 @@ def _floors(scene: SceneResult) -> str:
         return ""
     shown = listed(f"h = {h} gives N = {whole(n)}" for h, n in rest.items())
     return f"Where T/h is not a whole number, N is T/h rounded down: {shown}."
-
-
-def _run_table(runs: Sequence[RunResult]) -> RunTable | None:
-    names = [n for n in _COLUMNS if any(n in run.values for run in runs)]
-    failed = any(run.status == "left range" for run in runs)
-    if not names and not failed:
-        return None
-    shown = runs[:MOST_ROWS]
-    return RunTable(
-        columns=tuple(_COLUMNS[n] for n in names) or ("outcome",),
-        groups=tuple(_groups(shown, names)),
-        count=len(runs),
-        shown=len(shown),
-        computed=plots.computed(runs),
-        proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),
-    )
-
-
-def _groups(
-    runs: Sequence[RunResult], names: Sequence[str]
-) -> Iterator[tuple[str, tuple[RunRow, ...]]]:
-    groups: dict[str, list[RunRow]] = {}
-    for run in runs:
-        groups.setdefault(start(run), []).append(_row(run, names))
-    for label, rows in groups.items():
-        yield label, tuple(rows)
-
-
-def _row(run: RunResult, names: Sequence[str]) -> RunRow:
-    failure = ""
-    if run.status == "left range":
-        failure = f"left the range of {run.arithmetic}"
-        if run.failed_step is not None:
-            failure += f" at step {whole(run.failed_step)}"
-    cells = tuple(value(run.values[n]) if n in run.values else Markup("–") for n in names)
-    return RunRow(run.step_size, whole(run.steps), () if failure else cells, failure)

@@ -11,10 +11,13 @@ from decimal import Decimal
 from markupsafe import Markup, escape
 
 from reports import mathml
-from verify.results import RunResult, Value
+from verify.results import RunResult, SeparationResult, Value
 
 NBSP = "\u00a0"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
+_GROUP, _IN_A_LINE = 5, 3  # digits to a group, groups to a line
+_UNGROUPED = 17  # digits at most of a number that is left in one piece
+_SMALL_STEP = Decimal("0.0001")
 _MOST_DIGITS = 60  # of one number on the page; the others are in results.json
 
 _NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
@@ -40,6 +43,13 @@ def number(text: str) -> str:
     return f"{sign}{digits}{scale}"
 
 
+def step(size: str) -> str:
+    """A step size; a small one as a power of ten, whose zeros nobody needs to count."""
+    if not _PLAIN_NUMBER.fullmatch(size) or Decimal(size) >= _SMALL_STEP:
+        return size
+    return number(f"{Decimal(size).normalize():e}").removeprefix(f"1{NBSP}×{NBSP}")
+
+
 def whole(n: int) -> str:
     """A count with its thousands set apart."""
     return f"{n:,}"
@@ -48,15 +58,37 @@ def whole(n: int) -> str:
 def value(found: Value) -> Markup:
     """The known digits and, below them, the error bound; a bound alone where no digit is known."""
     if found.bound == "0":
-        return Markup("{}").format(number(found.value))
+        return grouped(found.value)
     if Decimal(found.value) == 0:
         return Markup("|·|{0}≤{0}{1}").format(NBSP, number(found.bound))
     return Markup('{} <span class="bound">±{}{}</span>').format(
-        number(found.value), NBSP, number(found.bound)
+        grouped(found.value), NBSP, number(found.bound)
     )
 
 
-def start(run: RunResult) -> str:
+def grouped(text: str) -> Markup:
+    """A number with many digits in groups, three to a line; any other as it is.
+
+    The gaps are the style sheet's: what is copied has none.
+    """
+    shown = number(text)
+    digits, times, scale = shown.partition(NBSP)
+    whole_part, point, decimals = digits.partition(".")
+    if (
+        not decimals
+        or len((whole_part + decimals).lstrip("−")) <= _UNGROUPED
+        or not _PLAIN_NUMBER.fullmatch(text)
+    ):
+        return escape(shown)
+    groups = [decimals[i : i + _GROUP] for i in range(0, len(decimals), _GROUP)]
+    groups[0] = whole_part + point + groups[0]
+    groups[-1] += times + scale
+    spans = [Markup("<span>{}</span>").format(group) for group in groups]
+    rows = [Markup("").join(spans[i : i + _IN_A_LINE]) for i in range(0, len(spans), _IN_A_LINE)]
+    return Markup('<span class="digits">{}</span>').format(Markup("<br>").join(rows))
+
+
+def start(run: RunResult | SeparationResult) -> str:
     """A run's initial value."""
     q, p = number(run.q), number(run.p)
     return f"q₀{NBSP}={NBSP}{q}, p₀{NBSP}={NBSP}{p}"

@@ -32,6 +32,8 @@ class PageView:
     refuted: tuple[ClaimView, ...]
     highlight: Highlight | None
     scenes: tuple[SceneView, ...]
+    ran: bool  # whether anything was run
+    separated: bool
 
 
 def page_view(report: Report) -> PageView:
@@ -49,6 +51,8 @@ def page_view(report: Report) -> PageView:
     counted = Counter(c.verdict for c in report.claims)
     return PageView(
         report=report,
+        ran=any(s.runs or s.series or s.separations or s.crossovers for s in report.scenes),
+        separated=any(s.separations or s.crossovers for s in report.scenes),
         finding=finding(report),
         counts=tuple((v, counted[v]) for v in Verdict if counted[v]),
         claims=claims,

@@ -45,7 +45,7 @@ from verify.balls import bounds, rational_ball
 from verify.derivatives import Derivatives
 from verify.number_system import Arithmetic
 from verify.precision import working_precision
-from verify.rounding import FLOAT, PRECISION, Ball, Rounded, Rounding, analyse, rounding_of
+from verify.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, is_known, rounding_of
 from verify.stepping import Job, Outcome
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
@@ -85,11 +85,11 @@ class _Certificate:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
         self.job, self.arithmetic, self.kernel = job, arithmetic, outcome.kernel
         self.shift = outcome.shift
-        self.rounding = rounding_of(arithmetic)
         self.steps = int(outcome.tangents[note]["done"])
         self.values = outcome.trail[note]
         self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
         self.h = rational_ball(job.start["h"])
+        self.unit = flint.arb(2) ** -arithmetic.bits
 
     # -- the orbit ----------------------------------------------------------------------------
 
@@ -117,9 +117,11 @@ class _Certificate:
 
     def one_step(self) -> _Steps | None:
         kernel, program = self.kernel, self.kernel.lowering.program
-        inputs = self.inputs(self.rounding)
-        found = analyse(program, kernel.lowering.live(kernel.roots), inputs, self.rounding)
-        if found is None or kernel.tangent is None:
+        if kernel.tangent is None or not is_known(self.arithmetic):
+            return None
+        live = kernel.lowering.live(kernel.roots)
+        found = analyse(program, live, self.inputs(), rounding_of(self.arithmetic))
+        if found is None:
             return None
         values = {name: found[index] for name, index in kernel.outputs.items()}
         tangent = self.one_tangent(found)
@@ -129,15 +131,12 @@ class _Certificate:
         state = (added[0] * added[0] + added[1] * added[1]).sqrt().abs_upper()
         return _Steps(state, values["dj"].error, tangent, values["dj"].magnitude)
 
-    def inputs(self, rounding: Rounding) -> dict[str, Rounded]:
+    def inputs(self) -> dict[str, Rounded]:
         """The state, which is data and has no error, and h and the parameters as rounded."""
         given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
-        unit = flint.arb(2) ** -self.arithmetic.bits
         for name, exact in self.job.inputs(self.kernel, self.shift).items():
-            x = rational_ball(exact)
-            held = self.arithmetic.exact(self.arithmetic.number(exact)) == exact
-            size = flint.arb(1) if self.arithmetic.absolute else abs(x)
-            given[name] = Rounded(x, flint.arb(0) if held else unit * size)
+            lost = self.arithmetic.exact(self.arithmetic.number(exact)) - exact
+            given[name] = Rounded(rational_ball(exact), rational_ball(abs(lost)))
         return given
 
     def adding(self, name: str, increment: Rounded) -> Ball:
@@ -145,7 +144,7 @@ class _Certificate:
         if self.arithmetic.absolute:
             return increment.error
         size = self.box(flint.arb(0))[name].abs_upper() + increment.magnitude
-        return increment.error + size * flint.arb(2) ** -self.arithmetic.bits
+        return increment.error + size * self.unit
 
     def one_tangent(self, main: Mapping[int, Rounded]) -> Ball | None:
         """ρ: the error of one step of the tangent map, relative to ‖M‖."""
@@ -225,27 +224,27 @@ class _Certificate:
 
     def added(self, total: Ball, term: Ball) -> Ball:
         """The rounding of one term and of its addition to a sum of non-negative terms."""
-        unit = flint.arb(2) ** -self.arithmetic.bits
-        return unit if self.arithmetic.absolute else unit * (total + term) * 2
+        return self.unit if self.arithmetic.absolute else self.unit * (total + term) * 2
 
     def of_lambda(self, moved: Ball, size: Ball) -> Ball:
         scale, count = flint.arb(2) ** -self.shift, self.steps
-        unit = flint.arb(2) ** -self.arithmetic.bits
         low, high = self.seen["least"], self.seen["most"]
         largest, jump = abs(low).max(abs(high)), scale * size
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
-        if self.arithmetic.absolute:
-            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
-            rounded = unit * (1 + scale)
-        else:
-            rounded = unit * (1 + unit) * (largest + 2 * jump * (1 + largest))
-        drift = count * rounded / (1 + low)
+        drift = count * self.of_product(scale, jump, largest) / (1 + low)
         shift = (scale * moved / (1 - jump)).expm1() * drift.exp() * (1 + high)
         apart = drift.expm1() * (1 + high)  # of 1 + Λ and the product of the computed factors
         if self.arithmetic.absolute:
-            return shift + scale * count * (size * apart + unit)
+            return shift + scale * count * (size * apart + self.unit)
         return shift + apart
+
+    def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:
+        """The rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""
+        if self.arithmetic.absolute:
+            # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
+            return self.unit * (1 + scale)
+        return self.unit * (1 + self.unit) * (largest + 2 * jump * (1 + largest))
 
 
 def _square_of_norm(squares: Ball, least: Ball) -> Ball:

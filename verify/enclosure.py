@@ -48,8 +48,14 @@ def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
 def _power(x: Any, n: int) -> Any:
     # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
     # and is then undefined around 0.
-    half = _power(x, n // 2) if n > 1 else flint.arb(1)
-    return half * half * x if n % 2 else half * half
+    half = square(_power(x, n // 2)) if n > 1 else flint.arb(1)
+    return half * x if n % 2 else half
+
+
+def square(x: Any) -> Any:
+    """x² of a ball: as narrow as its ends are, which x · x is not."""
+    low, high = x.abs_lower(), x.abs_upper()
+    return (low * low).union(high * high)
 
 
 BALLS: dict[str, Callable[[Any, int], Any]] = {

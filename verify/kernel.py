@@ -29,9 +29,9 @@ from verify.increments import increments
 from verify.lowering import Lowering
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.program import Evaluator, Program
-from verify.ring import Poly
+from verify.scaling import divided, lowest_power
 from verify.schemes import get
-from verify.step_map import StepMap, Substep, h_inside
+from verify.step_map import StepMap
 
 OBSERVABLES = ("delta_j_max", "mse", "lambda", "lambda_plain", "extremes", "tangent")
 CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "extremes"})
@@ -108,7 +108,7 @@ class Writer:
     def common_power(self) -> int:
         """The greatest r for which h^r divides ΔJ of every substep."""
         changing = [step for step in self.map.substeps if not step.preserves_area]
-        return min(map(_lowest_power, changing), default=0)
+        return min(map(lowest_power, changing), default=0)
 
     # -- what is computed ---------------------------------------------------------------------
 
@@ -163,7 +163,7 @@ class Writer:
             at = {n: program.add(state[n], total[n]) for n in ("p", "q")}
             evaluator = Evaluator(program, step.ring, fixed | at, self.arithmetic.pipelined)
             if self.needs_delta_j and not step.preserves_area:
-                own = evaluator.evaluate(_divided(step, self.power), scale)
+                own = evaluator.evaluate(divided(step, self.power), scale)
                 both = program.mul(delta_j, own)
                 if scale is not None and not program.is_constant(both, 0):
                     both = program.mul(program.input("down", static=True), both)
@@ -306,18 +306,3 @@ class Writer:
             if self.program.ops[index].kind in PARTIAL:
                 looked_at[self.lowering.name(index)] = "reach_value"
         return " and ".join(["valid", *(f"inside({x}, {m})" for x, m in looked_at.items())])
-
-
-def _lowest_power(step: Substep) -> int:
-    if h_inside(step.ring, step.p_next, step.q_next):
-        return 0
-    return min(step.ring.powers(step.delta_j, "h"))
-
-
-def _divided(step: Substep, power: int) -> Poly:
-    """ΔJ / h^power, where that divides it."""
-    if power == 0:
-        return step.delta_j
-    h = step.ring.variable("h")
-    parts = step.ring.powers(step.delta_j, "h")
-    return sum((h ** (n - power) * x for n, x in parts.items()), step.ring.zero)

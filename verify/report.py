@@ -3,7 +3,7 @@
 import os
 import platform
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from verify import systems
 from verify.claims import Claim, Findings, check_claims
@@ -53,11 +53,6 @@ def make_report(
 
 def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
     exact = scene.exact_hamiltonian()
-    series = [
-        findings.results.get(key(series_task(scene, scheme, index)))
-        for scheme in scene.schemes
-        for index in range(len(scene.series))
-    ]
     return SceneResult(
         name=scene.name,
         title=scene.title or scene.name,
@@ -72,10 +67,19 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
             for number in scene.criteria
         ),
         runs=tuple(run for scheme in scene.schemes for run in findings.runs(scene, scheme)),
-        series=tuple(run for run in series if isinstance(run, RunResult)),
+        series=tuple(_series(scene, findings)),
         separations=_separations(scene, findings, own=True),
         crossovers=_separations(scene, findings, own=False),
     )
+
+
+def _series(scene: Scene, findings: Findings) -> Iterator[RunResult]:
+    """The series that were run, each with what the scene says it repeats."""
+    for scheme in scene.schemes:
+        for index, asked in enumerate(scene.series):
+            run = findings.results.get(key(series_task(scene, scheme, index)))
+            if isinstance(run, RunResult):
+                yield run.model_copy(update={"source": asked.source})
 
 
 def _separations(scene: Scene, findings: Findings, *, own: bool) -> tuple[SeparationGrid, ...]:

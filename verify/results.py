@@ -63,7 +63,8 @@ class RunResult(Frozen):
     and where no digit could be confirmed ("unresolved"). `error_kind`
     is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
     says why another arithmetic was taken than the one that was asked for. `exact` names the
-    observables that a proof gave and no run was needed for.
+    observables that a proof gave and no run was needed for. `source` is what of a paper the scene
+    says that the run repeats.
     """
 
     hamiltonian: str
@@ -84,6 +85,7 @@ class RunResult(Frozen):
     exact: tuple[str, ...]
     series: tuple[SeriesPoint, ...]
     seconds: Seconds
+    source: str = ""
 
 
 class Parts(Frozen):

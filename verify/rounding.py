@@ -13,7 +13,7 @@ from typing import Any
 import flint
 
 from verify.balls import rational_ball
-from verify.enclosure import BALLS
+from verify.enclosure import BALLS, square
 from verify.number_system import Arithmetic
 from verify.program import Op, Program
 
@@ -41,18 +41,21 @@ class Rounded:
 Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
 
 
+def is_known(arithmetic: Arithmetic) -> bool:
+    """Whether the errors of the arithmetic's operations are known."""
+    return arithmetic.name in ("fixed", *_FUNCTIONS)
+
+
 def rounding_of(arithmetic: Arithmetic) -> Rounding:
-    """The error of one operation of the arithmetic."""
+    """The error of one operation of the arithmetic, which must be known."""
     unit = flint.arb(2) ** -arithmetic.bits
-    # mpmath's functions are not all rounded right; the conformance suite holds them to 4 ulp.
-    functions = 1 if arithmetic.name == "mpfr" else 8
 
     def own(op: Op, size: Ball) -> Ball:
         if op.kind == "const":
             return rational_ball(abs(arithmetic.exact(arithmetic.number(op.value)) - op.value))
         if arithmetic.absolute:
             return unit * _FIXED[op.kind](size)
-        return size * unit * (1 if op.kind in _CORRECT else functions)
+        return size * unit * (1 if op.kind in _CORRECT else _FUNCTIONS[arithmetic.name])
 
     return own
 
@@ -68,6 +71,9 @@ _FIXED: dict[str, Callable[[Ball], Ball]] = {
     # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
     "inverse": lambda y: flint.arb("0.51") * (1 + y), "root": lambda _: flint.arb(2**11 + 8),
 }  # fmt: skip
+# Of functions, in half units of the last place or less: MPFR's are all rounded right, mpmath's are
+# held to 4 units by the conformance suite.
+_FUNCTIONS = {"mpfr": 1, "mpmath": 8}
 _CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
 
 FLOAT: Rounding = lambda op, size: size * flint.arb(2) ** -52 + flint.arb(2) ** -1000  # noqa: E731
@@ -123,20 +129,15 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
             x, y = args
             sizes = [a.interval.abs_upper() for a in args]
             error = sizes[0] * y.error + sizes[1] * x.error + x.error * y.error
-            square = op.args[0] == op.args[1]
-            return (_square(x.interval) if square else x.interval * y.interval), error
+            if op.args[0] == op.args[1]:
+                return square(x.interval), error
+            return x.interval * y.interval, error
     x = args[0]
     value = BALLS[op.kind](x.interval, op.degree)
     if x.error.is_zero():  # of no matter then is a slope without a bound
         return value, zero
     slope = _SLOPES[op.kind](x.widened, op.degree)
     return value, slope.abs_upper() * x.error
-
-
-def _square(x: Ball) -> Ball:
-    """x² of an interval: as narrow as its ends are, which x · x is not."""
-    low, high = x.abs_lower(), x.abs_upper()
-    return (low * low).union(high * high)
 
 
 _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
@@ -147,6 +148,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: 1 / _square(x),
+    "inverse": lambda x, _: square(1 / x),
     "root": lambda x, n: x.root(n) / (n * x),
 }

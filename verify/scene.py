@@ -21,6 +21,7 @@
     [[series]]                             # thinned ΔJ(t) and Λ(t), for plots
     step_size = 0.01
     initial_value = { q = 1.5, p = 0 }
+    source = "Figure 2"                    # what it repeats, for its caption; may be left out
 
 Numbers are exact: `0.001` in the file is 1/1000.
 """
@@ -138,7 +139,10 @@ class SeparationOver(Frozen):
 
 
 class Series(Frozen):
-    """One run kept as a thinned series of at most `points` points; `time` or `steps` long."""
+    """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
+
+    `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
+    """
 
     step_size: StepSize
     initial_value: InitialValue
@@ -147,6 +151,7 @@ class Series(Frozen):
     points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
     arithmetic: ArithmeticName = "float64"
     digits: Digits = 17
+    source: Annotated[str, Field(max_length=80)] = ""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

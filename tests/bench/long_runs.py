@@ -102,8 +102,10 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     asked = {"arithmetic": name, "digits": TABLE_DIGITS, "observables": OBSERVABLES}
     chosen = []
     for scene in scenes:
-        grid = scene.grid.model_copy(update=asked | {"time": scene.grid.time / shrink})
-        chosen.append(scene.model_copy(update={"schemes": ("lie2",), "series": (), "grid": grid}))
+        shorter = {"time": scene.grid.time / shrink, "separate": False}
+        only = {"schemes": ("lie2",), "series": (), "separation": ()}
+        grid = scene.grid.model_copy(update=asked | shorter)
+        chosen.append(scene.model_copy(update=only | {"grid": grid}))
     begun = time.perf_counter()
     results = execute(plan_scenes(chosen), Store(None), workers=CORES).values()
     seconds = time.perf_counter() - begun

@@ -50,9 +50,9 @@ def count_tasks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     seen: list[Any] = []
     perform = execution.perform
 
-    def counting(task: Any) -> Result:
+    def counting(task: Any, *more: Any) -> Result:
         seen.append(task)
-        return perform(task)
+        return perform(task, *more)
 
     monkeypatch.setattr(execution, "perform", counting)
     return seen

@@ -53,6 +53,8 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
     assert dict(plan.left_out) == {
         "mine: runs over step sizes": "the scene has no [grid]",
         "mine: trajectories and plots over time": "the scene has no [[series]]",
+        "mine: truncation separated from rounding": "the scene has no [[separation]], and its "
+        "[grid] does not say `separate = true`",
         "mine: criteria 1–4": "the scene names no criteria",
     }
     plan = plan_scenes([load(tmp_path, GOOD.replace("lie2", "symplectic-euler"))])

@@ -102,7 +102,8 @@ def real() -> Report:
                 "initial_values": [{"q": "1", "p": "0"}, {"q": "0", "p": "-1.5"}],
                 "observables": ["delta_j_max", "mse", "lambda", "lambda_plain"],
             },
-            "series": [{"step_size": "0.01", "time": "1", "initial_value": {"q": "1", "p": "0"}}],
+            "series": [{"step_size": "0.01", "time": "1", "initial_value": {"q": "1", "p": "0"},
+                        "source": "Figure 3"}],
         },
         "duffing",
     )  # fmt: skip
@@ -262,10 +263,11 @@ def test_a_proof_is_shown_without_matplotlib() -> None:
 
 def test_the_page_of_a_real_scene_says_what_was_found() -> None:
     text = " ".join(" ".join(Reader(page_of("real")).texts).replace("\xa0", " ").split())
-    assert "Of 2 claims, 1 is measured and 1 refuted." in text
+    assert "Of 2 claims, 1 is enclosed and 1 refuted." in text
     assert "The most telling refutation: Table 9" in text
     assert "h = 0.03 gives N = 6" in text  # 0.2/0.03 is not whole
     assert "Computed in float64 with N = 6 … 20 steps" in text
+    assert "For Figure 3: h = 0.01 from q₀ = 1, p₀ = 0" in text
     runs = real().scenes[0].runs
     for value in (v for r in runs for name, v in r.values.items() if name not in "pq"):
         shown = number(value.value).replace("\xa0", " ")

@@ -160,6 +160,11 @@ steps = 30
 step_sizes = [0.01, "1/30"]
 initial_values = [{ q = 1.5, p = "-1/3" }, { q = 0, p = 1 }]
 observables = ["delta_j_max", "mse", "lambda", "lambda_plain"]
+separate = true
+[[separation]]
+steps = 20
+step_sizes = [0.01, 0.1]
+initial_value = { q = 1, p = 0 }
 [[series]]
 step_size = 0.25
 steps = 40

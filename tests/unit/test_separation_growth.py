@@ -24,7 +24,7 @@ def walk(seed: int, drift: float = 0, points: int = POINTS) -> list[Fraction]:
 def test_random_walks_are_recognised_and_hardly_ever_called_a_drift() -> None:
     found = [growth(MARKS, walk(seed), Fraction(0)) for seed in range(200)]
     names = [each.name for each in found]
-    assert names.count("random walk") >= 170
+    assert names.count("random walk") >= 160
     assert names.count("drift") <= 5
 
 
@@ -59,6 +59,8 @@ def test_what_is_neither_is_undecided() -> None:
     quadratic = [Fraction(n * n, 10**30) for n in MARKS]
     assert growth(MARKS, bounded, Fraction(0)).name == "undecided"
     assert growth(MARKS, quadratic, Fraction(0)).name == "undecided"
+    slow = [Fraction(round(1e9 * n**0.25), 10**30) for n in MARKS]
+    assert growth(MARKS, slow, Fraction(0)).reason.endswith("holds 0 and ½")
 
 
 def test_an_oscillation_that_grows_like_n_is_a_drift() -> None:

@@ -20,7 +20,7 @@ from typing import Any
 
 from llvmlite import ir
 
-from verify.wide import limbs
+from verify.wide import limbs, memory
 from verify.wide.limbs import I64, Value, constant, resized
 from verify.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 
@@ -56,37 +56,13 @@ class Translator:
         self._assign("valid", ir.Constant(BOOL, 1))
         offset = 0
         for name, kind in self.arguments:
-            value, offset = self._read(main.args[0], offset, kind)
+            value, offset = memory.read(self.b, main.args[0], offset, self.types[kind])
             self._assign(name, value)
         self._block(self.definition.body)
         if not self.b.block.is_terminated:
             self.b.ret_void()
         self.allocations.branch(main.blocks[1])
         return self.module
-
-    # -- memory -------------------------------------------------------------------------------
-
-    def _read(self, memory: Value, offset: int, kind: str) -> tuple[Value, int]:
-        b, kind_type = self.b, self.types[kind]
-        if kind in ("float", "int"):
-            word = b.load(b.gep(memory, [constant(offset, 64)]), typ=I64)
-            return (b.bitcast(word, DOUBLE) if kind == "float" else word), offset + 1
-        value = constant(0, kind_type.width)
-        count = kind_type.width // 64
-        for i in range(count):
-            word = b.load(b.gep(memory, [constant(offset + i, 64)]), typ=I64)
-            part = limbs.shifted_up(b, resized(b, word, kind_type.width), 64 * i)
-            value = b.or_(value, part)
-        return value, offset + count
-
-    def _write(self, memory: Value, offset: int, value: Value) -> int:
-        b = self.b
-        if value.type == DOUBLE:
-            value = b.bitcast(value, I64)
-        count: int = value.type.width // 64
-        for i in range(count):
-            b.store(limbs.limb(b, value, i), b.gep(memory, [constant(offset + i, 64)]))
-        return offset + count
 
     def _assign(self, name: str, value: Value) -> None:
         if name not in self._variables:
@@ -155,8 +131,10 @@ class Translator:
         self.results = [kinds[str(v.type)] for v in values]
         offset = 0
         for v in values:
-            offset = self._write(self.b.function.args[1], offset, v)
-        self._write(self.b.function.args[1], offset, resized(self.b, self._load("valid"), 64))
+            offset = memory.write(self.b, self.b.function.args[1], offset, v)
+        memory.write(
+            self.b, self.b.function.args[1], offset, resized(self.b, self._load("valid"), 64)
+        )
         self.b.ret_void()
 
     def _load(self, name: str) -> Value:
