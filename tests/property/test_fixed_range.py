@@ -22,6 +22,8 @@ from verify.kernel import Writer, kernel_for
 from verify.results import RunResult
 from verify.runs import ASKED, CLOSED_FORM, run
 from verify.stepping import Job, Outcome
+from verify.wide import engine
+from verify.wide.translate import Translator
 
 FIXED, LIKE, TRUE = fixed.at_bits(128 - FRACTION_OF), mpfr.at_bits(112), mpfr.at_bits(500)
 
@@ -90,10 +92,10 @@ def test_a_run_is_right_or_ends_and_says_so(
     check_job(job_of(Hamiltonian.parse(text, given), "lie2", start, steps, observables))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(
-    text=strategies.polynomials() | strategies.trigonometric(),
-    scheme=st.sampled_from(["lie1", "lie3", "symplectic-euler"]),
+    text=strategies.polynomials(degree=5, most_terms=3) | strategies.trigonometric(most_terms=1),
+    scheme=st.sampled_from(["lie1", "lie2", "symplectic-euler"]),
     start=starts,
 )
 def test_a_run_of_any_hamiltonian_is_right_or_ends_and_says_so(
@@ -210,8 +212,8 @@ def jobs() -> list[Job]:
     """What leaves the format for good, only for a while, or before the loop."""
     tasks: list[tuple[tuple[Any, ...], str, tuple[str, ...]]] = [
         (("p**2/2 + q**2/2 + q**4/4", {}, 3, 0, "1", 4), "lie2", CLOSED_FORM),
-        (("p**2/2 - q", {}, 1, 32000, "0.1", 8000), "lie2", ("lambda",)),
-        (("p**2/2 - q**2/2", {}, 1, -1, "0.5", 60), "lie2", ("lambda",)),
+        (("p**2/2 - q", {}, 1, 32000, "0.1", 100), "lie2", ("lambda",)),
+        (("-q", {}, 1, 32000, "10", 200), "lie2", ()),
         (GROWING, "lie1", ("lambda_plain",)),
         (("p**2/2 - 1/q", {}, 1, -1, "0.01", 100), "lie2", ("lambda",)),
         (("p**2/2 + q**2/2", {}, 1, 0, "0.1", 3), SCHEMES["root"], ("lambda",)),
@@ -240,25 +242,27 @@ def test_without_a_loss_no_job_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None
     assert check_jobs() == []
 
 
-def test_a_loop_that_does_not_look_where_the_orbit_is_is_caught(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    anew(monkeypatch)
-    monkeypatch.setattr(Writer, "guard", lambda self, needed: "valid")
-    assert len(check_jobs()) >= 3
-
-
-@pytest.mark.parametrize("unseen", ["valid", "inside(plain, reach_part)"])
-def test_a_loop_that_looks_away_from_one_thing_is_caught(
+@pytest.mark.parametrize("unseen", ["p", "q", "plain"])
+def test_a_loop_that_looks_away_from_one_number_is_caught(
     monkeypatch: pytest.MonkeyPatch, unseen: str
 ) -> None:
     anew(monkeypatch)
     true = Writer.guard
 
     def less(self: Writer, needed: Any) -> str:
-        return true(self, needed).replace(unseen, "steps > 0")
+        looked_at = true(self, needed).split(" and ")
+        return " and ".join(x for x in looked_at if not x.startswith(f"inside({unseen},"))
 
     monkeypatch.setattr(Writer, "guard", less)
+    assert check_jobs()
+
+
+def test_a_function_without_a_value_that_does_not_say_so_is_caught(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    anew(monkeypatch)
+    monkeypatch.setattr(engine, "_compiled", engine._compiled.__wrapped__)
+    monkeypatch.setattr(Translator, "_require", lambda self, condition: None)
     assert check_jobs()
 
 
