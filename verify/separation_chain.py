@@ -50,7 +50,7 @@ _CANCELLED = 20  # digits that the differences between links cancel, float64's a
 _ATTEMPTS = 4
 _DOUBLINGS = 6
 _BESIDE_FLOAT64 = ("fixed", "mpfr", "mpmath")  # what a mixed kernel can be made in
-_INTERPRETED = "mpfr"
+_INTERPRETED, _WIDEST = "mpfr", 1000
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,7 @@ class _Links:
         """The float64 run with exact arithmetic beside it, in mpfr where another cannot follow."""
         run = WorkingRun(self.job, self.inputs, self.constant is None and self.job.steps > 1)
         digits = working_digits(self.digits["beside"], self.job.steps)
-        name = self.arithmetic if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
+        name = self._name(digits) if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
         try:
             return run.go(number_systems.get(name, digits), self.advance)
         except UnsupportedError:
@@ -215,8 +215,13 @@ class _Links:
 
     def _reference(self, job: Job, name: str) -> Link:
         if name not in self.made:
-            self.made[name] = _reference(job, self.arithmetic, self.digits[name], self.advance)
+            digits = self.digits[name]
+            self.made[name] = _reference(job, self._name(digits), digits, self.advance)
         return self.made[name]
+
+    def _name(self, digits: int) -> str:
+        """The arithmetic for so many digits: fixed takes ever longer to compile."""
+        return _INTERPRETED if self.arithmetic == "fixed" and digits > _WIDEST else self.arithmetic
 
 
 def _proved(step_map: StepMap | None, job: Job, digits: int) -> Link | None:
@@ -260,18 +265,20 @@ def _reference(job: Job, arithmetic: str, digits: int, advance: Advance) -> Link
         advance(max(done - last, 0))
         last = max(done, last)
 
+    measured = measure(job, arithmetic, digits, progress)
+    found, run = measured.bounds, measured.outcome
+    if found.status != "finished":
+        reason = f"in exact arithmetic: {found.method}"
+        raise Stopped(found.status, found.failed_step, reason)
+    value, bound = found.values["lambda"]
+    # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may be
+    # that of a run with more digits; the checkpoints must be those of a run that agrees with it.
+    more = working_digits(digits, job.steps)
     for _ in range(_DOUBLINGS):
-        measured = measure(job, arithmetic, digits, progress)
-        found, run = measured.bounds, measured.outcome
-        if found.status != "finished":
-            reason = f"in exact arithmetic: {found.method}"
-            raise Stopped(found.status, found.failed_step, reason)
-        value, bound = found.values["lambda"]
-        # The bound is the last value's, where most has been added up; an estimate is that of the
-        # run's checkpoints, too, if it is the run's own last value that was confirmed.
         if run.done == job.steps and abs(run.values["lambda"] - value) <= bound:
             trail = (*(x["lambda"] for x in run.trail[:-1]), value)
             kind: Kind = "enclosed" if found.rigorous else "estimated"
             return Link(trail, bound, kind, found.method)
-        digits *= 2
+        more *= 2
+        run = job.go(number_systems.get(_INTERPRETED, more))
     raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

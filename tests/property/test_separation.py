@@ -16,7 +16,7 @@ from verify.separation_working import Stopped
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
 step_sizes = st.fractions(min_value="1/50", max_value="1/3", max_denominator=50)
 SHORT = Fraction(1, 2**3000)  # what the oracle rounds off
-quick = settings(deadline=None, max_examples=60)
+quick = settings(deadline=None, max_examples=40)
 
 
 def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> Chains:

@@ -85,7 +85,7 @@ def float64_steps(
     found = []
     for _ in range(steps):
         first = dict(zip(kernel.carried, (p, q, *map(float, kernel.start)), strict=True))
-        _, *after = step.py_func(1, h, *first.values())
+        _, *after = step(1, h, *first.values())
         after = dict(zip(kernel.carried, after, strict=True))
         found.append((p, q, after["plain"], after["lam"]))  # products of one factor each
         p, q = after["p"], after["q"]
