@@ -1,7 +1,7 @@
 """How far an orbit may go in a fixed-point format: limits within which nothing can overflow.
 
 Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step, with
-functions' values taken to stay below reach_value. A large box of powers of two for which all of
+functions' values taken to stay below reach_value. A large box of rounded sides for which all of
 them stay in the format is found before the run; the kernel ends the loop where the orbit leaves it,
 or a function's value its limit. So an overflow is not looked for at every operation, and cannot
 happen.
@@ -21,7 +21,11 @@ from verify.rounding import PRECISION, Ball, Rounded, analyse
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
 _VALUE_LIMITS = tuple(Fraction(2) ** n for n in (13, 11, 9, 7, 5, 4, 3, 2, 1))
-_SIDES = tuple(Fraction(2) ** n * Fraction(1023, 1024) for n in range(15, -8, -1))
+_SIDES = tuple(
+    Fraction(2) ** n * share * Fraction(1023, 1024)
+    for n in range(15, -8, -1)
+    for share in (1, Fraction(3, 4))
+)
 
 
 @dataclass(frozen=True)

@@ -148,6 +148,6 @@ _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),
     "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: 1 / square(x),
+    "inverse": lambda x, _: square(1 / x),
     "root": lambda x, n: x.root(n) / (n * x),
 }

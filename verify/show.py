@@ -212,10 +212,13 @@ def _task_line(task: dict[str, Any]) -> str:
     reasons = "; ".join(task["reasons"])
     if task["kind"] == "proof":
         return f"prove {task['scheme']} for H = {task['hamiltonian']} ({reasons})"
-    return (
-        f"run {task['scheme']}, {task['steps']} steps of {task['step_size']} from "
-        f"q = {task['q']}, p = {task['p']} in {task['arithmetic']} ({reasons})"
+    where = (
+        f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from "
+        f"q = {task['q']}, p = {task['p']}"
     )
+    if task["kind"] == "separation":
+        return f"separate truncation from rounding in {where} ({reasons})"
+    return f"run {where} in {task['arithmetic']} ({reasons})"
 
 
 def print_report(made: "Report", page: Path) -> None:

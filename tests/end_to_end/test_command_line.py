@@ -209,9 +209,9 @@ def test_prove_has_no_order_where_area_is_preserved(capsys: pytest.CaptureFixtur
 @pytest.mark.parametrize(
     ("digits", "asked", "arithmetic", "kind"),
     [
-        (None, None, "float64", "estimated"),
-        ("30", None, "mpmath", "estimated"),
-        ("30", "mpfr", "mpfr", "estimated"),
+        (None, None, "float64", "enclosed"),
+        ("30", None, "mpfr", "enclosed"),
+        ("30", "mpmath", "mpmath", "enclosed"),
         ("30", "ball", "ball", "enclosed"),
     ],
 )

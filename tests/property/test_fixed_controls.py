@@ -15,7 +15,7 @@ import pytest
 from tests.property import fixed_checks
 from tests.property.fixed_checks import FRACTION_OF, HARD, Format, Near
 from verify import rounding
-from verify.wide import engine, functions, limbs, newton
+from verify.wide import engine, functions, limbs, newton, translate
 from verify.wide.functions import Functions
 from verify.wide.limbs import constant, limb, resized, shifted_up
 
@@ -69,6 +69,13 @@ def assert_caught(check: Callable[[Format], None]) -> None:
 @pytest.mark.parametrize("check", CHECKS)
 def test_without_a_loss_every_check_passes(check: Callable[[Format], None]) -> None:
     check(fresh())
+
+
+def test_products_that_are_called_are_those_that_are_inline(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(translate, "_MOST_INLINE", 0)
+    operations(fresh())
 
 
 # -- products -------------------------------------------------------------------------------------

@@ -144,7 +144,8 @@ def test_a_factor_carries_the_others_error_whichever_comes_first(first: bool) ->
     if not first:
         z = program.input("z", static=False)
     root = program.mul(near, z)
-    at = {"x": Fraction(1, 3) + Fraction(1, 3 * 2**22), "z": Fraction(7)}
+    beside = COARSE.exact(COARSE.number(Fraction(1, 3) + Fraction(1, 3 * 2**22)))
+    at = {"x": beside, "z": Fraction(7)}  # inputs are exact
     bound = counted(program, root, {n: (v, v) for n, v in at.items()})
     error = abs(value(program, root, at, COARSE) - value(program, root, at, FINE))
     assert bound is not None

@@ -16,6 +16,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from verify import float_bounds
 from verify.errors import InputError
 from verify.float_bounds import DIRECT_STEPS
 from verify.hamiltonian import Hamiltonian
@@ -126,9 +127,14 @@ def test_estimated_bounds_hold_for_many_steps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("steps", "count"), [(2_000, 30), (DIRECT_STEPS + 1, 120)], ids=["by-mpfr", "compensated"]
+    ("steps", "count", "direct"),
+    [(2_000, 30, DIRECT_STEPS), (20_001, 120, 0)],
+    ids=["certified", "compensated"],
 )
-def test_estimated_bounds_hold_for_every_one_of_many_random_runs(steps: int, count: int) -> None:
+def test_bounds_hold_for_every_one_of_many_random_runs(
+    monkeypatch: pytest.MonkeyPatch, steps: int, count: int, direct: int
+) -> None:
+    monkeypatch.setattr(float_bounds, "DIRECT_STEPS", direct)
     draw = random.Random(4)  # noqa: S311 - repeatable, not secret
     wrong = []
     for index in range(count):

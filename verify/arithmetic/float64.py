@@ -84,5 +84,7 @@ def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[
 
 def _root(x: float, n: int) -> float:
     # 1/n is rounded, which x ** (1/n) magnifies by log x; one Newton step takes that away.
+    if x < 0.0:
+        return math.nan  # Python's power would be complex
     root: float = x ** (1.0 / n)
     return root - (root**n - x) / (n * root ** (n - 1)) if root > 0 else root

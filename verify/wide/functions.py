@@ -133,6 +133,21 @@ class Functions:
         negative = b.icmp_signed("<", like, constant(0, like.type.width))
         return b.select(negative, b.neg(magnitude), magnitude)
 
+    def _product(self) -> ir.Function:
+        return self._alone("product", 2)
+
+    def _square(self) -> ir.Function:
+        return self._alone("square", 1)
+
+    def _alone(self, name: str, arguments: int) -> ir.Function:
+        """A product as a function, which is called; it returns no more than that."""
+        kind = ir.FunctionType(self.type, [self.type] * arguments)
+        function = ir.Function(self.module, kind, f"fixed_{name}")
+        function.linkage = "internal"
+        b = ir.IRBuilder(function.append_basic_block("entry"))
+        b.ret(limbs.product(b, function.args[0], function.args[-1], self.fraction))
+        return function
+
     def _mul(self, b: ir.IRBuilder, x: Value, y: Value) -> Value:
         return limbs.product(b, x, y, self.fraction)
 

@@ -28,6 +28,9 @@ BOOL = ir.IntType(1)
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 _FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
 _LIBM_FUNCTIONS = ("log1p", "sinh", "cosh")  # by the C library that this process has
+# What products may add to a kernel, in some three instructions. Beyond it they are called: it runs
+# up to a third slower, but LLVM's time grows like the square of a function's length.
+_MOST_INLINE = 3500
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -42,6 +45,8 @@ class Translator:
         self.functions = MoreFunctions(self.module, width)
         self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + 64),
                       "float": DOUBLE, "int": I64}  # fmt: skip
+        products = sum(isinstance(node, ast.Mult) for node in ast.walk(parsed))
+        self.calls_products = products * ((width // 64) ** 2 + 4) > _MOST_INLINE
         self.arguments = [(a.arg, _annotation(a)) for a in parsed.args.args]
         self.results: list[str] = []
         self.returns_tuple = False
@@ -187,6 +192,9 @@ class Translator:
 
     def _product(self, node: ast.BinOp, x: Value, y: Value) -> Value:
         same = ast.dump(node.left) == ast.dump(node.right)
+        if self.calls_products and x.type == self.types["wide"]:
+            name = "square" if same else "product"
+            return self.b.call(self.functions.get(name), [x] if same else [x, y])
         return limbs.product(self.b, x, x if same else y, self.fraction)
 
     def _alike(self, x: Value, y: Value) -> tuple[Value, Value]:
