@@ -83,11 +83,26 @@ def _function(
         for k, r in enumerate(sorted({r for x in expressions for r in x.atoms(sympy.Rational)}))
         if not r.is_Integer
     }
-    shared, results = sympy.cse([x.xreplace(rationals) for x in expressions], order="none")
+    numbered = [_with_powers(x.xreplace(rationals)) for x in expressions]
+    shared, results = sympy.cse(numbered, order="none")
     known = {str(s): number(Fraction(int(r.p), int(r.q))) for r, s in rationals.items()}
+    known["power"] = _power
     return sympy.lambdify(
         (P, Q), results, modules=[{**known, **names}], cse=lambda _: (shared, results)
     )
+
+
+def _with_powers(x: sympy.Expr) -> sympy.Expr:
+    """Powers to integers by `_power`, as Arb's own are not defined around 0."""
+    power = sympy.Function("power")
+    return x.replace(lambda e: e.is_Pow and e.exp.is_Integer, lambda e: power(e.base, e.exp))
+
+
+def _power(x: Any, n: int) -> Any:
+    if n < 0:
+        return 1 / _power(x, -n)
+    half = _power(x, n // 2) if n > 1 else 1
+    return half * half * x if n % 2 else half * half
 
 
 def _values(step: Any, p: Any, q: Any, steps: int, zero: Any, greatest: Any) -> dict[str, Any]:
