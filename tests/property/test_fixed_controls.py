@@ -15,7 +15,7 @@ import pytest
 from tests.property import fixed_checks
 from tests.property.fixed_checks import FRACTION_OF, HARD, Format, Near
 from verify import rounding
-from verify.wide import engine, functions, limbs, newton, translate
+from verify.wide import engine, functions, limbs, newton, products
 from verify.wide.functions import Functions
 from verify.wide.limbs import constant, limb, resized, shifted_up
 
@@ -74,8 +74,10 @@ def test_without_a_loss_every_check_passes(check: Callable[[Format], None]) -> N
 def test_products_that_are_called_are_those_that_are_inline(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(translate, "_MOST_INLINE", 0)
-    operations(fresh())
+    monkeypatch.setattr(products, "_MOST_IN_KERNEL", 0)
+    monkeypatch.setattr(products, "_LEAST_CALLED", 1)
+    for check in CHECKS:
+        check(fresh())
 
 
 # -- products -------------------------------------------------------------------------------------

@@ -21,7 +21,8 @@ from llvmlite import ir
 
 from verify.precision import working_precision
 from verify.wide import limbs
-from verify.wide.limbs import I64, Value, bits, constant, high_product, resized
+from verify.wide.limbs import I64, Value, bits, constant, resized
+from verify.wide.products import Products
 
 INTEGER_BITS = 16
 _ANGLES = 512  # table steps of a full turn
@@ -43,6 +44,7 @@ class Functions:
         self.module, self.width = module, width
         self.count, self.fraction = width // 64, width - INTEGER_BITS
         self.type = bits(width)
+        self.products = Products(module, width, self.fraction)
         self._made: dict[str, ir.Function] = {}
         self._tables: dict[str, ir.GlobalVariable] = {}
 
@@ -122,7 +124,7 @@ class Functions:
             size = 64 * -(-scaled.bit_length() // 64)
             value = constant(scaled, size)
             if total is not None:
-                part = high_product(b, limbs.top(b, t, total.type.width // 64), total)
+                part = self.products.high(b, limbs.top(b, t, total.type.width // 64), total)
                 part = resized(b, part, size)
                 value = b.sub(value, part) if sign < 0 else b.add(value, part)
             total = value
@@ -132,24 +134,6 @@ class Functions:
         """The magnitude with the sign of `like`."""
         negative = b.icmp_signed("<", like, constant(0, like.type.width))
         return b.select(negative, b.neg(magnitude), magnitude)
-
-    def _product(self) -> ir.Function:
-        return self._alone("product", 2)
-
-    def _square(self) -> ir.Function:
-        return self._alone("square", 1)
-
-    def _alone(self, name: str, arguments: int) -> ir.Function:
-        """A product as a function, which is called; it returns no more than that."""
-        kind = ir.FunctionType(self.type, [self.type] * arguments)
-        function = ir.Function(self.module, kind, f"fixed_{name}")
-        function.linkage = "internal"
-        b = ir.IRBuilder(function.append_basic_block("entry"))
-        b.ret(limbs.product(b, function.args[0], function.args[-1], self.fraction))
-        return function
-
-    def _mul(self, b: ir.IRBuilder, x: Value, y: Value) -> Value:
-        return limbs.product(b, x, y, self.fraction)
 
     def _rounded(self, b: ir.IRBuilder, mantissa: Value) -> Value:
         """From W − 2 fraction bits to a number."""
@@ -170,19 +154,20 @@ class Functions:
         index = b.and_(k, constant(_ANGLES - 1, 64))
         sine = self._entry(b, table, index)
         cosine = self._entry(b, table, b.add(index, constant(_ANGLES // 4, 64)))
+        high = self.products.high
         # |r| < 2^−7: u = |r|·2^7 and t = r²·2^14 are fractions.
         u = limbs.shifted_up(b, self._signed(b, r, r), 7)
-        t = high_product(b, u, u)
+        t = high(b, u, u)
         sine_series = [Fraction(1, factorial(2 * j + 1)) for j in range(8 * self.count)]
         versine_series = [Fraction(1, factorial(2 * j + 2)) for j in range(8 * self.count)]
-        small = high_product(b, u, self._series(b, t, sine_series, 14, -1))
+        small = high(b, u, self._series(b, t, sine_series, 14, -1))
         sin_r = self._signed(b, limbs.shifted_down(b, small, 7), r)
-        versine = high_product(b, t, self._series(b, t, versine_series, 14, -1))
+        versine = high(b, t, self._series(b, t, versine_series, 14, -1))
         versine = limbs.shifted_down(b, versine, 14)  # 1 − cos r
 
         def turned(base: Value, side: Value) -> Value:
-            back = high_product(b, base, versine, signed=True)
-            return b.add(b.sub(base, back), high_product(b, side, sin_r, signed=True))
+            back = high(b, base, versine, signed=True)
+            return b.add(b.sub(base, back), high(b, side, sin_r, signed=True))
 
         sin_x = self._rounded(b, turned(sine, cosine))
         cos_x = self._rounded(b, turned(cosine, b.neg(sine)))
@@ -214,11 +199,12 @@ class Functions:
         if "powers" not in self._tables:
             self._tables["powers"] = self._table("powers", powers)
         base = self._entry(b, self._tables["powers"], b.and_(k, constant(_EXPONENTIALS - 1, 64)))
+        high = self.products.high
         u = limbs.shifted_up(b, r, 8)  # r < 2^−8
         series = [Fraction(1, factorial(j + 2)) for j in range(8 * self.count)]
-        rest = high_product(b, high_product(b, u, u), self._series(b, u, series, 8, 1))
+        rest = high(b, high(b, u, u), self._series(b, u, series, 8, 1))
         growth = b.add(r, limbs.shifted_down(b, rest, 16))  # e^r − 1
-        mantissa = b.add(base, high_product(b, base, growth, signed=True))
+        mantissa = b.add(base, high(b, base, growth, signed=True))
         return mantissa, b.ashr(k, constant(8, 64))
 
     def _exp(self) -> ir.Function:

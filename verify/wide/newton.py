@@ -8,7 +8,7 @@ from llvmlite import ir
 from verify.precision import working_precision
 from verify.wide import limbs
 from verify.wide.functions import INTEGER_BITS, Functions, arb_integer
-from verify.wide.limbs import I64, Value, constant, high_product, resized
+from verify.wide.limbs import I64, Value, constant, resized
 
 DOUBLE = ir.DoubleType()
 _LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
@@ -67,9 +67,10 @@ class MoreFunctions(Functions):
         one = ir.Constant(DOUBLE, 1.0)
         guess = b.fdiv(one, b.select(valid, to_double(b, x, self.fraction), one))
         y = from_double(b, guess, self.width, self.fraction)
+        product = self.products.product
         for _ in range(self._iterations(quadratic=True)):
-            error = b.sub(constant(1 << self.fraction, self.width), self._mul(b, x, y))
-            y = b.add(y, self._mul(b, y, error))
+            error = b.sub(constant(1 << self.fraction, self.width), product(b, x, y))
+            y = b.add(y, product(b, y, error))
         return self._result(b, valid, y)
 
     def _sqrt(self) -> ir.Function:
@@ -81,8 +82,9 @@ class MoreFunctions(Functions):
         half = b.fdiv(ir.Constant(DOUBLE, 0.5), guess)
         s = from_double(b, guess, self.width, self.fraction)
         slope = from_double(b, half, self.width, self.fraction)
+        product = self.products.product
         for _ in range(self._iterations(quadratic=False)):
-            s = b.add(s, self._mul(b, b.sub(x, self._mul(b, s, s)), slope))
+            s = b.add(s, product(b, b.sub(x, product(b, s, s)), slope))
         return self._result(b, valid, s)
 
     def _log(self) -> ir.Function:
@@ -102,7 +104,7 @@ class MoreFunctions(Functions):
         below = b.icmp_signed("<", a, constant(0, 64))
         doubled = b.shl(mantissa, resized(b, b.select(below, constant(0, 64), a), width))
         power = b.select(below, limbs.shifted_down(b, mantissa, 1), doubled)
-        delta = b.sub(high_product(b, m, power), constant(1 << places, width))
+        delta = b.sub(self.products.high(b, m, power), constant(1 << places, width))
         total = b.add(b.neg(b.shl(minus, constant(INTEGER_BITS - 2, width))), self._log1p(b, delta))
         # The guess may lie on either side of −½; the sum may be large: one limb more.
         wide = width + 64
@@ -117,12 +119,12 @@ class MoreFunctions(Functions):
 
     def _log1p(self, b: ir.IRBuilder, delta: Any) -> Value:
         """log(1 + δ) by its series, δ below 2^−44, all in W − 2 fraction bits."""
-        width, places = self.width, self.width - 2
+        width, places, high = self.width, self.width - 2, self.products.high
         stretched = limbs.shifted_up(b, delta, 40)
         terms = -(-width // 44)
         total = constant((1 << places) // terms, width)
         for j in reversed(range(1, terms)):
             # (δ 2^(W+38)) (s 2^(W−2)) / 2^W = δ s 2^(W+36)
-            part = b.ashr(high_product(b, stretched, total, signed=True), constant(38, width))
+            part = b.ashr(high(b, stretched, total, signed=True), constant(38, width))
             total = b.sub(constant((1 << places) // j, width), part)
-        return b.ashr(high_product(b, stretched, total, signed=True), constant(38, width))
+        return b.ashr(high(b, stretched, total, signed=True), constant(38, width))

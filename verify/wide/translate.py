@@ -28,9 +28,6 @@ BOOL = ir.IntType(1)
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 _FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
 _LIBM_FUNCTIONS = ("log1p", "sinh", "cosh")  # by the C library that this process has
-# What products may add to a kernel, in some three instructions. Beyond it they are called: it runs
-# up to a third slower, but LLVM's time grows like the square of a function's length.
-_MOST_INLINE = 3500
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -46,7 +43,7 @@ class Translator:
         self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + 64),
                       "float": DOUBLE, "int": I64}  # fmt: skip
         products = sum(isinstance(node, ast.Mult) for node in ast.walk(parsed))
-        self.calls_products = products * ((width // 64) ** 2 + 4) > _MOST_INLINE
+        self.calls_products = self.functions.products.too_many(products)
         self.arguments = [(a.arg, _annotation(a)) for a in parsed.args.args]
         self.results: list[str] = []
         self.returns_tuple = False
@@ -180,22 +177,21 @@ class Translator:
                 return b.fadd(x, y) if floating else b.add(x, y)
             case ast.Sub():
                 return b.fsub(x, y) if floating else b.sub(x, y)
+            case ast.Mult() if floating:
+                return b.fmul(x, y)
             case ast.Mult():
-                return b.fmul(x, y) if floating else self._product(node, x, y)
+                same = ast.dump(node.left) == ast.dump(node.right)
+                return self._product(x, x if same else y)
             case ast.Div() if floating:
                 return b.fdiv(x, y)
             case ast.Div():
                 inverse = self._function("inverse", [y])[0]
                 one = isinstance(node.left, ast.Constant) and node.left.value == 1
-                return inverse if one else limbs.product(b, x, inverse, self.fraction)
+                return inverse if one else self._product(x, inverse)
         raise NotImplementedError(ast.dump(node))
 
-    def _product(self, node: ast.BinOp, x: Value, y: Value) -> Value:
-        same = ast.dump(node.left) == ast.dump(node.right)
-        if self.calls_products and x.type == self.types["wide"]:
-            name = "square" if same else "product"
-            return self.b.call(self.functions.get(name), [x] if same else [x, y])
-        return limbs.product(self.b, x, x if same else y, self.fraction)
+    def _product(self, x: Value, y: Value) -> Value:
+        return self.functions.products.product(self.b, x, y, called=self.calls_products)
 
     def _alike(self, x: Value, y: Value) -> tuple[Value, Value]:
         """Both in the wider of the two kinds; an integer is taken for what the other is."""
