@@ -13,6 +13,7 @@ from verify.results import Value
 
 Ball = Any  # flint.arb, which has no type stubs
 _BITS = 256
+_MOST_EXPONENT = 1 << 17  # of what becomes a rational; a ball's exponent may itself be astronomical
 
 
 def precision() -> AbstractContextManager[None]:
@@ -36,8 +37,16 @@ def lg(x: Ball) -> Ball:
     return x.log() / flint.arb(10).log()
 
 
+def in_reach(x: Ball) -> bool:
+    """Whether the ball is finite, and its ends are rationals that a computer can hold."""
+    if not x.is_finite():
+        return False
+    parts = x.mid().man_exp(), flint.arb(x.rad()).man_exp()
+    return all(abs(int(exponent)) <= _MOST_EXPONENT for _, exponent in parts)
+
+
 def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
-    """The ball's middle and radius as exact rationals; the ball must be finite."""
+    """The ball's middle and radius as exact rationals; it must be in reach."""
     middle, radius = (
         Fraction(int(m)) * Fraction(2) ** int(e)
         for m, e in (x.mid().man_exp(), flint.arb(x.rad()).man_exp())
@@ -46,14 +55,14 @@ def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
 
 
 def bounds(x: Ball) -> tuple[Fraction, Fraction]:
-    """The ball's end points as exact rationals; the ball must be finite."""
+    """The ball's end points as exact rationals; it must be in reach."""
     middle, radius = middle_and_radius(x)
     return middle - radius, middle + radius
 
 
 def shown(x: Ball, digits: int = 6) -> str:
     """The known digits of a ball, at most `digits`, in scientific notation."""
-    if not x.is_finite():
+    if not in_reach(x):
         return "unknown"
     low, high = bounds(x)
     return known_digits((low + high) / 2, (high - low) / 2, digits)[0]
@@ -61,7 +70,7 @@ def shown(x: Ball, digits: int = 6) -> str:
 
 def fixed(x: Ball, places: int) -> str:
     """The ball's middle with so many decimal places, where both its ends round to it."""
-    if not x.is_finite():
+    if not in_reach(x):
         return "unknown"
     low, high = bounds(x)
     unit = Fraction(1, 10**places)

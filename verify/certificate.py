@@ -41,7 +41,7 @@ from fractions import Fraction
 
 import flint
 
-from verify.balls import bounds, rational_ball
+from verify.balls import bounds, in_reach, rational_ball
 from verify.derivatives import Derivatives
 from verify.number_system import Arithmetic
 from verify.precision import working_precision
@@ -103,7 +103,7 @@ class _Certificate:
             return None
         error, summed = orbit
         found = {"p": error, "q": error} | self.observables(steps, derivatives, error, summed)
-        return {name: bounds(x)[1] for name, x in found.items() if x.is_finite()}
+        return {name: bounds(x)[1] for name, x in found.items() if in_reach(x)}
 
     def box(self, margin: Ball) -> dict[str, Ball]:
         """The states visited, widened; float64's rounding of them is within 2^−50."""

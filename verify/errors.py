@@ -25,6 +25,7 @@ def _short(value: object) -> str:
     except ValueError:  # an integer beyond Python's limit of printed digits
         text = f"(a {type(value).__name__} of very many digits)"
     text = " ".join(text.split())
+    if len(text) > 78:  # both ends: a path is known by its last part
+        text = f"{text[:38]}…{text[-39:]}"
     # Control characters would reach the user's terminal.
-    text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:200])
-    return f"{text[:77]}…" if len(text) > 78 else text
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -15,6 +15,7 @@ from verify.balls import (
     ball,
     bounds,
     fixed,
+    in_reach,
     lg,
     middle_and_radius,
     rational_ball,
@@ -48,7 +49,7 @@ def check_table(claim: TableClaim, findings: Findings) -> ClaimResult:
         verdicts += [_rounds_to(v, p) for v, p in zip(own, claim.printed, strict=True)]
         details.append([start_of(row[0]), *(fixed(v, 4) for v in own)])
         values += own
-    known = sorted((v for v in values if v.is_finite()), key=_middle)
+    known = sorted((v for v in values if in_reach(v)), key=_middle)
     seen = "no computed lg MSE is known"
     if known:
         seen = f"computed lg MSE lies between {fixed(known[0], 2)} and {fixed(known[-1], 2)}"
@@ -119,7 +120,7 @@ def check_spread(claim: SpreadClaim, findings: Findings) -> ClaimResult:
     worst = Fraction(0)
     for column in zip(*rows, strict=True):
         values = [QUANTITIES[claim.quantity](run) for run in column]
-        ends = [bounds(v) if v.is_finite() else None for v in values]
+        ends = [bounds(v) if in_reach(v) else None for v in values]
         known = [e for e in ends if e is not None and e[0] > 0]
         if len(known) < len(values):
             verdicts.append(None)
@@ -195,7 +196,7 @@ def check_less(claim: LessClaim, findings: Findings) -> ClaimResult:
     one, two = QUANTITIES[claim.quantity], QUANTITIES[claim.than]
     runs = [run for row in rows for run in row]
     verdicts = [_sign(two(run) - one(run)) for run in runs]
-    ratios = [r for r in (one(run) / two(run) for run in runs) if r.is_finite()]
+    ratios = [r for r in (one(run) / two(run) for run in runs) if in_reach(r)]
     largest = shown(max(ratios, key=_middle), 2) if ratios else "unknown"
     evidence = (
         f"{LABELS[claim.quantity]} is at most {largest} times {LABELS[claim.than]} "

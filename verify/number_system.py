@@ -45,6 +45,7 @@ class UnsupportedError(Exception):
 
 
 ESCAPE_BITS = 4000  # where exponents have no end of their own, an orbit is stopped at |z| = 2^4000
+MOST_EXPONENT = 1 << 20  # and of what is carried beside it: more takes time and says nothing
 
 
 def bits_for(digits: int) -> int:

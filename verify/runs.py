@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify import arithmetic as number_systems
-from verify.balls import middle_and_radius
+from verify.balls import in_reach, middle_and_radius
 from verify.bounds import Bounded
 from verify.digits import Measured, choose, measure
 from verify.enclosure import enclose
@@ -143,7 +143,7 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     with working_precision(bits):
         lam = (1 + delta_j) ** steps - 1
         balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
-        return {name: middle_and_radius(ball) for name, ball in balls.items()}
+        return {name: middle_and_radius(ball) for name, ball in balls.items() if in_reach(ball)}
 
 
 def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:

@@ -15,7 +15,7 @@ import flint
 import sympy
 
 from tests.property.strategies import H, P, Q, lie_step, plain, plain_delta_j
-from verify.balls import middle_and_radius, rational_ball
+from verify.balls import in_reach, middle_and_radius, rational_ball
 from verify.hamiltonian import Hamiltonian
 from verify.precision import working_precision
 from verify.stepping import Job
@@ -129,7 +129,7 @@ def enclosed(case: Case, bits: int) -> dict[str, True_] | None:
         step = _function(case, rational_ball, names)
         start = rational_ball(case.p), rational_ball(case.q)
         found = _values(step, *start, case.steps, flint.arb(0), flint.arb.max)
-        if not all(x.is_finite() for x in found.values()):
+        if not all(in_reach(x) for x in found.values()):
             return None
         return {name: middle_and_radius(x) for name, x in found.items()}
 

@@ -14,6 +14,7 @@ import pytest
 from mpmath.ctx_mp import MPContext
 
 from verify import arithmetic
+from verify.arithmetic import float64
 from verify.hamiltonian import Hamiltonian
 from verify.number_system import ESCAPE_BITS
 from verify.results import RunResult
@@ -118,6 +119,16 @@ def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
 
 
 CHAOTIC = {"q": "0.01", "p": "-0.5", "step_size": 1, "steps": 1000}
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+def test_a_product_of_astronomical_size_is_not_written_out(name: str) -> None:
+    """Λ = (1 + h²)^N − 1 is known in closed form, and has billions of digits."""
+    turning = Hamiltonian.parse("p**2/2 + q**2/2")
+    for q in (1, 0):
+        found = run(turning, "lie1", q=q, p=0, step_size=1000, steps=10**9, arithmetic=name)
+        assert found.status == "left range"
+        assert not found.values
 
 
 @pytest.mark.parametrize(("name", "digits"), [("float64", 17), ("mpmath", 2)])
@@ -257,18 +268,14 @@ def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
 ) -> None:
     # An H of this test's own, so that no other test has compiled its kernel.
     fresh = Hamiltonian.parse("p**2/2 + a*q**2/2 + b*q**6/96 + 71*q**2/1931")
-    compiled, made = [], arithmetic.get("float64", 17)
-
-    def get(name: str, digits: int) -> Any:
-        return made if name == "float64" else _get(name, digits)
+    compiled, compile_one = [], float64._compiled
 
     def count(*args: Any) -> Any:
         compiled.append(compile_one(*args))
         return compiled[-1]
 
-    _get, compile_one = arithmetic.get, made.compile
-    object.__setattr__(made, "compile", count)
-    monkeypatch.setattr(arithmetic, "get", get)
+    monkeypatch.setattr(float64, "_REPAID", 0)
+    monkeypatch.setattr(float64, "_compiled", count)
     for h in ("0.01", "0.02", "1/7", "3e-3"):
         for a, b in ((1, 1), ("1/3", -2), (-1, "0.5")):
             run(

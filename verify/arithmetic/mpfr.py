@@ -17,7 +17,7 @@ from typing import Any
 
 import gmpy2
 
-from verify.number_system import ESCAPE_BITS, Arithmetic, bits_for, interpreted
+from verify.number_system import ESCAPE_BITS, MOST_EXPONENT, Arithmetic, bits_for, interpreted
 
 NAME = "mpfr"
 
@@ -49,7 +49,7 @@ def at_bits(bits: int) -> Arithmetic:
         bits=bits,
         number=number,
         exact=_exact,
-        finite=gmpy2.is_finite,
+        finite=lambda x: gmpy2.is_finite(x) and abs(gmpy2.get_exp(x)) <= MOST_EXPONENT,
         context=partial(_checked, made),
         functions={
             **{f: getattr(gmpy2, f) for f in names},

@@ -11,7 +11,7 @@ from typing import Any
 from mpmath import libmp
 from mpmath.ctx_mp import MPContext
 
-from verify.number_system import ESCAPE_BITS, Arithmetic, bits_for, interpreted
+from verify.number_system import ESCAPE_BITS, MOST_EXPONENT, Arithmetic, bits_for, interpreted
 
 NAME = "mpmath"
 
@@ -44,7 +44,9 @@ def at_bits(bits: int) -> Arithmetic:
         bits=bits,
         number=number,
         exact=_exact,
-        finite=lambda x: bool(context.isfinite(x)),
+        finite=lambda x: bool(
+            context.isfinite(x) and abs(x._mpf_[2] + x._mpf_[3]) <= MOST_EXPONENT
+        ),
         context=nullcontext,
         functions={
             **{f: getattr(context, f) for f in names},
