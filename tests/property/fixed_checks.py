@@ -106,7 +106,7 @@ class Near:
 def step_of(name: str) -> Fraction:
     """An arb constant as a rational, to more bits than any width here."""
     with flint.ctx.workprec(2 * WIDEST):
-        exact = {"angle": flint.arb.pi() / 256, "octave": flint.arb(2).log() / 256}
+        exact = {"angle": flint.arb.pi() / 2048, "octave": flint.arb(2).log() / 256}
         return middle_and_radius(exact[name])[0] if name in exact else Fraction(1)
 
 

@@ -25,7 +25,7 @@ from verify.wide.limbs import I64, Value, bits, constant, resized
 from verify.wide.products import Products
 
 INTEGER_BITS = 16
-_ANGLES = 512  # table steps of a full turn
+_ANGLES = 4096
 _EXPONENTIALS = 256  # table steps of a factor 2
 _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
 _DOUBLE = ir.DoubleType()
@@ -115,20 +115,29 @@ class Functions:
 
         A coefficient cⱼ 2^(−j·shift) has its leading limbs zero, and so have the sums from there.
         """
-        total: Value = None
-        for j in reversed(range(len(coefficients))):
-            scaled = round(coefficients[j] * Fraction(2) ** (self.width - j * shift))
-            scaled = min(scaled, 2**self.width - 1)  # 1 is no fraction; the next one is near enough
-            if scaled < _NEGLIGIBLE:
-                continue
-            size = 64 * -(-scaled.bit_length() // 64)
-            value = constant(scaled, size)
-            if total is not None:
-                part = self.products.high(b, limbs.top(b, t, total.type.width // 64), total)
-                part = resized(b, part, size)
-                value = b.sub(value, part) if sign < 0 else b.add(value, part)
-            total = value
-        return total
+        return self._series_of(b, t, [coefficients], shift, sign)[0]
+
+    def _series_of(
+        self, b: ir.IRBuilder, t: Value, series: Sequence[Sequence[Fraction]], shift: int, sign: int
+    ) -> list[Value]:
+        """Several such series, term by term in turn: what one waits for, another has time for."""
+        totals: list[Value] = [None] * len(series)
+        for j in reversed(range(max(map(len, series)))):
+            for i, coefficients in enumerate(series):
+                if j >= len(coefficients):
+                    continue
+                scaled = round(coefficients[j] * Fraction(2) ** (self.width - j * shift))
+                scaled = min(scaled, 2**self.width - 1)  # 1 is no fraction; the next is near enough
+                if scaled < _NEGLIGIBLE:
+                    continue
+                size = 64 * -(-scaled.bit_length() // 64)
+                value = constant(scaled, size)
+                if totals[i] is not None:
+                    short = limbs.top(b, t, totals[i].type.width // 64)
+                    part = resized(b, self.products.high(b, short, totals[i]), size)
+                    value = b.sub(value, part) if sign < 0 else b.add(value, part)
+                totals[i] = value
+        return totals
 
     def _signed(self, b: ir.IRBuilder, magnitude: Value, like: Value) -> Value:
         """The magnitude with the sign of `like`."""
@@ -155,15 +164,16 @@ class Functions:
         sine = self._entry(b, table, index)
         cosine = self._entry(b, table, b.add(index, constant(_ANGLES // 4, 64)))
         high = self.products.high
-        # |r| < 2^−7: u = |r|·2^7 and t = r²·2^14 are fractions.
-        u = limbs.shifted_up(b, self._signed(b, r, r), 7)
+        s = _ANGLES.bit_length() - 3  # |r| < 2^−s: u = |r|·2^s and t = r²·2^2s are fractions.
+        u = limbs.shifted_up(b, self._signed(b, r, r), s)
         t = high(b, u, u)
         sine_series = [Fraction(1, factorial(2 * j + 1)) for j in range(8 * self.count)]
         versine_series = [Fraction(1, factorial(2 * j + 2)) for j in range(8 * self.count)]
-        small = high(b, u, self._series(b, t, sine_series, 14, -1))
-        sin_r = self._signed(b, limbs.shifted_down(b, small, 7), r)
-        versine = high(b, t, self._series(b, t, versine_series, 14, -1))
-        versine = limbs.shifted_down(b, versine, 14)  # 1 − cos r
+        by_u, by_t = self._series_of(b, t, [sine_series, versine_series], 2 * s, -1)
+        small = high(b, u, by_u)
+        sin_r = self._signed(b, limbs.shifted_down(b, small, s), r)
+        versine = high(b, t, by_t)
+        versine = limbs.shifted_down(b, versine, 2 * s)  # 1 − cos r
 
         def turned(base: Value, side: Value) -> Value:
             back = high(b, base, versine, signed=True)
