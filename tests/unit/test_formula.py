@@ -196,7 +196,7 @@ def one_line(error: InputError, source: str) -> str:
     assert message.isprintable(), "control characters, or more than one line"
     assert len(message) <= 320
     assert message.startswith(f"{source}=")
-    assert " ".join(error.value.replace("\x00", " ").split())[:60] in message.replace("\x00", " ")
+    assert " ".join(error.value.replace("\x00", " ").split())[:30] in message.replace("\x00", " ")
     assert error.problem
     return message
 

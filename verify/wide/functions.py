@@ -5,7 +5,7 @@ unit is 2^(16 − W). Inside, values are fractions of W bits, or mantissas with 
 so that what products leave out stays far below one unit. `error_units` bounds each function's
 error.
 
-sin and cos: x = k·2π/512 + r; sin and cos of the first from a table, of |r| ≤ π/512 by Taylor
+sin and cos: x = k·2π/4096 + r; sin and cos of the first from a table, of |r| ≤ π/4096 by Taylor
 polynomials. exp: x = k·ln 2/256 + r likewise. In the polynomials a high term is small, so that its
 leading limbs are zero, and they are not computed. log: from float64's logarithm ℓ, as
 ℓ + log(1 + δ) with δ = x e^−ℓ − 1 below 2^−44. sqrt and 1/x: Newton's iteration from float64.
