@@ -114,6 +114,15 @@ class VectorField:
             result.append(self.derive(result[-1]))
         return result
 
+    def along(self, name: str, most: int) -> Sequence[Poly]:
+        """[y, X y, …, X^most y] of y = p or q."""
+        return self.powers(self.ring.variable(name), most)
+
+    def bracket(self, x: Poly, y: Poly) -> Poly:
+        """∂(x, y)/∂(p, q)."""
+        diff, multiply = self.ring.diff, self.ring.multiply
+        return multiply(diff(x, "p"), diff(y, "q")) - multiply(diff(x, "q"), diff(y, "p"))
+
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""
         return self.ring.decide(self.ring.diff(self.h_p, "q")).zero is True
