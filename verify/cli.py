@@ -9,6 +9,7 @@ import click
 
 from verify import show
 from verify.cli_input import hamiltonian_of, with_system
+from verify.cli_prove import certificate, prove
 from verify.errors import InputError
 
 INTERRUPTED = 130
@@ -36,33 +37,8 @@ def cli(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-@cli.command()
-@with_system
-def prove(
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
-    scheme: str,
-    as_json: bool,
-) -> None:
-    """Prove the order in h of ΔJ = det J − 1, and of the map itself, for one Hamiltonian.
-
-    A parameter without a value stays a symbol, and the proof holds for all its values.
-    """
-    import time
-
-    from verify.proof.order import prove as prove_order
-    from verify.schemes import get
-
-    begun = time.perf_counter()
-    exact = hamiltonian_of(system, hamiltonian, params)
-    chosen = get(scheme)
-    proof = prove_order(chosen.step_map(exact), chosen)
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    if as_json:
-        show.print_json(show.proof_json(exact, chosen.name, proof, seconds))
-    else:
-        show.print_proof(exact, chosen.name, proof)
+cli.add_command(prove)
+cli.add_command(certificate)
 
 
 @cli.command()

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from verify.generic import Generic
 from verify.hamiltonian import Hamiltonian
 from verify.step_map import StepMap
 
@@ -13,7 +14,8 @@ class Scheme:
 
     `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
     that the scheme takes. `explicit`: no equation is solved. `source`: where it is defined.
-    `build` raises InputError for an H that the scheme does not take.
+    `build` raises InputError for an H that the scheme does not take. `generic`: the scheme as it is
+    for every H; None where it is known for one H at a time.
     """
 
     name: str
@@ -22,6 +24,7 @@ class Scheme:
     explicit: bool
     source: str
     build: Callable[[Hamiltonian], StepMap]
+    generic: Generic | None = None
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
         return self.build(hamiltonian)

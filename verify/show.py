@@ -9,6 +9,7 @@ import click
 if TYPE_CHECKING:
     from verify.hamiltonian import Hamiltonian
     from verify.proof.order import Proof
+    from verify.proof.potential import Potential
     from verify.results import (
         CrossoverResult,
         EvaluationResult,
@@ -41,7 +42,9 @@ def print_json(data: dict[str, Any]) -> None:
     click.echo(json.dumps(data, ensure_ascii=False))
 
 
-def proof_json(exact: "Hamiltonian", scheme: str, proof: "Proof", seconds: str) -> dict[str, Any]:
+def proof_json(
+    exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential", seconds: str
+) -> dict[str, Any]:
     from verify.exact import text
     from verify.formula import to_text
 
@@ -57,13 +60,13 @@ def proof_json(exact: "Hamiltonian", scheme: str, proof: "Proof", seconds: str) 
         "area_preserving": proof.area_preserving,
         "convergence_order": proof.convergence_order,
         "witness": {name: text(value) for name, value in proof.witness.items()},
-        "telescopes": None,  # not examined by this command yet
-        "potential": None,
+        "telescopes": potential.holds,
+        "potential": None if potential.potential is None else to_text(potential.potential),
         "seconds": seconds,
     }
 
 
-def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof") -> None:
+def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential") -> None:
     from verify.exact import text
     from verify.formula import to_text
 
@@ -79,6 +82,13 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof") -> None:
         at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
         click.echo(f"  witness  {at or 'any point'}: the coefficient is {proof.enclosure}")
     click.echo(f"  exactly  ΔJ = {to_text(proof.delta_j)}")
+    if potential.potential is not None and proof.order is not None:
+        click.echo(
+            f"  along an orbit the leading term telescopes: it is X·G, G = "
+            f"{to_text(potential.potential)}"
+        )
+    elif potential.holds is False:
+        click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")
     order = proof.convergence_order
     agreement = "to every order looked at" if order is None else f"up to h^{order}"
     click.echo(f"  the map  agrees with the exact flow {agreement}")

@@ -15,10 +15,13 @@ where f does, and there div(X^η f) = tr A^(η+1) = 2 (−det Hess H)^((η+1)/2)
 """
 
 import math
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
 
-from verify.ring import Poly
+import flint
+
+from verify.proof.jets import Jets, Poly
 
 
 class Derivation(Protocol):
@@ -38,3 +41,106 @@ def potential_of_lie(field: Derivation, eta: int) -> Poly:
     p, q = field.along("p", eta), field.along("q", eta)
     total = sum((-1) ** k * field.bracket(p[eta - k], q[k]) for k in range(eta + 1))
     return total / -math.factorial(eta + 1)
+
+
+# -- for a leading coefficient in the jets --------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Telescoping:
+    """`holds`: L = X·G for every H with `potential` G; False: not for every H, as `reason` says."""
+
+    holds: bool
+    reason: str
+    potential: Poly = None
+
+
+def telescopes(jets: Jets, leading: Poly) -> Telescoping:
+    """Whether the polynomial L in the jets is X·G with a polynomial G in the jets.
+
+    False is shown by a linear functional that vanishes on all X·G and not on L: to take the value
+    at an equilibrium, which rules out every smooth G, or one that linear algebra finds.
+    """
+    at_rest = _at_equilibrium(jets, leading)
+    if at_rest != 0:
+        return Telescoping(
+            False, f"X·G vanishes where H_p = H_q = 0, for any smooth G; there L is {at_rest}"
+        )
+    graded: dict[tuple[int, int, int], dict[tuple[int, ...], Any]] = {}
+    for monomial, coefficient in leading.to_dict().items():
+        grade = _grade(jets, monomial)
+        graded.setdefault(grade, {})[tuple(map(int, monomial))] = coefficient
+    total = jets.zero
+    for grade, part in graded.items():
+        found, rank, unknowns = _solved(jets, grade, jets.context.from_dict(part))
+        if found is None:
+            return Telescoping(
+                False,
+                f"of the {unknowns} monomials that a G of that degree may have, X makes a space of "
+                f"dimension {rank}; with L it has dimension {rank + 1}",
+            )
+        total += found
+    return Telescoping(True, "X·G = L, solved for G by linear algebra", total)
+
+
+def _at_equilibrium(jets: Jets, x: Poly) -> Poly:
+    return x.compose(
+        *(
+            jets.zero if name in ("H_p", "H_q") else y
+            for name, y in zip(jets.names, jets.context.gens(), strict=True)
+        ),
+        ctx=jets.context,
+    )
+
+
+def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
+    """(factors H_ij, derivatives by p, by q), each of which X raises by one."""
+    powers = [int(n) for n in monomial[2:]]
+    return (
+        sum(powers),
+        sum(n * i for n, (i, _) in zip(powers, jets.indices, strict=True)),
+        sum(n * j for n, (_, j) in zip(powers, jets.indices, strict=True)),
+    )
+
+
+def _solved(jets: Jets, grade: tuple[int, int, int], x: Poly) -> tuple[Poly | None, int, int]:
+    """(G with X·G = x, the rank of X on such G, their number of monomials).
+
+    x has all its monomials of one grade, and so may G have: X respects grades. G contains neither p
+    nor q nor H itself, as X takes none of them away.
+    """
+    factors, by_p, by_q = (n - 1 for n in grade)
+    candidates = [_monomial(jets, m) for m in _multisets(jets, factors, by_p, by_q)]
+    images = [jets.derive(m).to_dict() for m in candidates]
+    wanted = x.to_dict()
+    rows = {m: k for k, m in enumerate({m for image in [*images, wanted] for m in image})}
+    matrix = flint.fmpq_mat(len(rows), len(images) + 1)
+    for column, image in enumerate([*images, wanted]):
+        for monomial, coefficient in image.items():
+            matrix[rows[monomial], column] = coefficient
+    reduced, rank = matrix.rref()
+    last = len(images)
+    pivots = [next(c for c in range(last + 1) if reduced[r, c] != 0) for r in range(rank)]
+    if last in pivots:
+        return None, rank - 1, last
+    terms = (reduced[r, last] * candidates[c] for r, c in enumerate(pivots))
+    return sum(terms, jets.zero), rank, last
+
+
+def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
+    return math.prod((jets.h(i, j) for i, j in factors), start=jets.one)
+
+
+def _multisets(
+    jets: Jets, factors: int, by_p: int, by_q: int, first: int = 0
+) -> Iterator[list[tuple[int, int]]]:
+    """All products of so many H_ij, index from `first` on, with these numbers of derivatives."""
+    if factors == 0:
+        if by_p == by_q == 0:
+            yield []
+        return
+    for at in range(first, len(jets.indices)):
+        i, j = jets.indices[at]
+        if i <= by_p and j <= by_q and i + j + factors - 1 <= by_p + by_q:
+            for rest in _multisets(jets, factors - 1, by_p - i, by_q - j, at):
+                yield [(i, j), *rest]

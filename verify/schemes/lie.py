@@ -12,6 +12,7 @@ import math
 import re
 
 from verify.errors import InputError
+from verify.generic import TaylorSeries
 from verify.hamiltonian import Hamiltonian
 from verify.ring import Poly
 from verify.scheme import Scheme
@@ -36,6 +37,7 @@ def make(name: str) -> Scheme | None:
         explicit=True,
         source="Eq. 2–5",
         build=lambda hamiltonian: lie_map(hamiltonian, eta),
+        generic=TaylorSeries(eta),
     )
 
 

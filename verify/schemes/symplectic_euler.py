@@ -4,11 +4,15 @@ Each of its two substeps is a shear, so det J ≡ 1. For an H that is not separa
 implicit; this file holds the explicit one and says so.
 """
 
+from fractions import Fraction
+
 from verify.errors import InputError
+from verify.generic import Stage, Stages
 from verify.hamiltonian import Hamiltonian
 from verify.scheme import Scheme
 from verify.step_map import StepMap, Substep
 
+_ONE = Fraction(1)
 EXAMPLES = ("symplectic-euler",)
 
 
@@ -22,6 +26,7 @@ def make(name: str) -> Scheme | None:
         explicit=True,
         source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
         build=symplectic_euler_map,
+        generic=Stages((Stage(kick=_ONE, drift=Fraction(0)), Stage(Fraction(0), drift=_ONE)), True),
     )
 
 

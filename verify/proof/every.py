@@ -1,0 +1,193 @@
+"""Proofs for every smooth H (or every H = T(p) + V(q)): the order of ΔJ, of the map, telescoping.
+
+What is zero is a polynomial in the jets that is the zero polynomial: machine-checked. What is not
+zero is one that is not, and some polynomial H gives it a value other than 0.
+
+Two arguments on paper stand beside the machine's, since it checks one η at a time.
+
+`lieη`, any η. The exact flow φ_h has det φ_h' = 1, so every coefficient of h, h², … in
+det Σ hⁿ/n! (Xⁿz)' vanishes. The scheme has the same terms up to h^η; so has its determinant, whose
+coefficients of h … h^η therefore vanish. In that of h^(η+1) the exact flow has one term more, which
+is linear, tr (X^(η+1)z)'/(η+1)! = div(X^η f)/(η+1)!, f = (−H_q, H_p); so the scheme's
+coefficient is L = −div(X^η f)/(η+1)!. It is not zero for every H. Odd η: at an equilibrium with
+D = det Hess H ≠ 0 it is −2 (−D)^((η+1)/2)/(η+1)! (see `verify.proof.telescoping`). Even η: L = X·G,
+and G is −(−D)^(η/2)/η! at an equilibrium, as all η+1 terms of its sum are equal there. Were L zero
+for H = p²/2 + V(q), V with two maxima of one height and different V'', then G would be constant
+along the orbit that joins them, and yet has different values at its ends. ∎
+
+Stages. Where A J = B with det A = det B the determinant of J is 1; see `Stages.determinants`.
+"""
+
+import math
+from dataclasses import dataclass
+
+from verify.errors import InputError
+from verify.generic import Generic, Stages, TaylorSeries
+from verify.proof.jets import Jets, Poly
+from verify.proof.telescoping import Telescoping, potential_of_lie, telescopes
+from verify.scheme import Scheme
+from verify.schemes import get
+from verify.verdict import Verdict
+
+_MORE = 4  # orders beyond the claimed one that are looked at
+
+
+@dataclass(frozen=True)
+class EveryProof:
+    """What is proved of one scheme for every H (`separable`: every H = T(p) + V(q)).
+
+    `order`, `area_preserving`, `convergence_order` as in `verify.proof.order.Proof`, for a generic
+    H; `leading` is the coefficient of h^order, a polynomial in H_p, H_q, H_pp, …, and `formula`
+    what it is in closed form, where that is known. `telescopes`: whether it is X·`potential` for
+    every H, `why` says how that is known. `checked` names the identities that were checked.
+    """
+
+    scheme: str
+    separable: bool
+    verdict: Verdict
+    reason: str
+    order: int | None
+    area_preserving: bool | None
+    convergence_order: int | None
+    leading: str = "0"
+    formula: str = ""
+    telescopes: bool | None = None
+    potential: str | None = None
+    why: str = ""
+    checked: tuple[str, ...] = ()
+
+    @property
+    def quantifier(self) -> str:
+        return "every smooth H = T(p) + V(q)" if self.separable else "every smooth H"
+
+
+def prove_every(name: str, separable: bool = False) -> EveryProof:
+    """The order of ΔJ and of the map of the scheme of that name, for every H that it takes.
+
+    `separable`: only for every H = T(p) + V(q), of which more may be true. Raises InputError for a
+    scheme that is known for one H at a time only.
+    """
+    scheme = get(name)
+    if scheme.generic is None:
+        raise InputError("scheme", name, "is given for one H; it cannot be proved for every H")
+    separable = separable or scheme.generic.separable
+    if isinstance(scheme.generic, Stages):
+        return _of_stages(scheme, scheme.generic, separable)
+    return _of_series(scheme, scheme.generic, separable)
+
+
+def _convergence(jets: Jets, generic: Generic, most: int) -> int:
+    """p', q' agree with the exact flow up to this power of h, looked at up to h^most."""
+    agreed = -1
+    series = generic.taylor(jets, most)
+    flows = jets.along("p", most), jets.along("q", most)
+    for n in range(most + 1):
+        if any(s[n] * math.factorial(n) != x[n] for s, x in zip(series, flows, strict=True)):
+            break
+        agreed = n
+    return agreed
+
+
+def _of_stages(scheme: Scheme, generic: Stages, separable: bool) -> EveryProof:
+    most = scheme.order + 2
+    agreed = _convergence(Jets(most + 1, separable=separable), generic, most)
+    preserved = all(a == b and a != 0 for a, b in generic.determinants())
+    verdict, reason = Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1, stage by stage"
+    if agreed < scheme.order:
+        verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
+    elif not preserved:
+        return _of_series(scheme, generic, separable)
+    ratios = ", ".join(dict.fromkeys(str(a) for a, _ in generic.determinants()))
+    return EveryProof(
+        scheme.name,
+        separable,
+        verdict,
+        reason,
+        order=None,
+        area_preserving=True,
+        convergence_order=agreed,
+        checked=(f"A J = B with det A = det B = {ratios} (a, b, c = H_pp, H_pq, H_qq)",),
+    )
+
+
+def _of_series(scheme: Scheme, generic: Generic, separable: bool) -> EveryProof:
+    most = scheme.order + 1
+    while True:
+        jets = Jets(most + 2, separable=separable)
+        coefficients = list(jets.delta_j(*generic.taylor(jets, most)))
+        order = next((n for n, x in enumerate(coefficients, 1) if x != 0), None)
+        if order is not None or most == scheme.order + _MORE:
+            break
+        most += 1
+    agreed = _convergence(jets, generic, most)
+    if order is None:
+        reason = f"the coefficients of ΔJ up to h^{most} vanish; whether all do is not decided"
+        return EveryProof(scheme.name, separable, Verdict.UNDECIDED, reason, None, None, agreed)
+    leading = coefficients[order - 1]
+    verdict, reason = _judged(scheme, order, agreed)
+    found, formula, checked = _telescoping(jets, generic, leading, order)
+    return EveryProof(
+        scheme.name,
+        separable,
+        verdict,
+        reason,
+        order=order,
+        area_preserving=False,
+        convergence_order=agreed,
+        leading=shown(leading),
+        formula=formula,
+        telescopes=found.holds,
+        potential=shown(found.potential) if found.holds else None,
+        why=found.reason,
+        checked=(
+            f"the coefficients of h¹ … h^{order - 1} in det J are the zero polynomial",
+            *checked,
+        )
+        if order > 1
+        else checked,
+    )
+
+
+def _judged(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, str]:
+    if agreed < scheme.order:
+        return Verdict.REFUTED, _missed(scheme, agreed)
+    if scheme.area_preserving:
+        return Verdict.REFUTED, f"{scheme.name} claims det J ≡ 1; ΔJ has order {order}"
+    return Verdict.PROVED, (
+        f"the coefficients of ΔJ below h^{order} vanish for every H, that of h^{order} does not"
+    )
+
+
+def _missed(scheme: Scheme, agreed: int) -> str:
+    return (
+        f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the exact "
+        f"flow up to h^{agreed} only"
+    )
+
+
+def _telescoping(
+    jets: Jets, generic: Generic, leading: Poly, order: int
+) -> tuple[Telescoping, str, tuple[str, ...]]:
+    """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
+    if not isinstance(generic, TaylorSeries):
+        return telescopes(jets, leading), "", ()
+    eta = generic.eta
+    end = [jets.derive(jets.along(name, eta)[-1]) for name in ("p", "q")]
+    divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
+    formula = ""
+    checked: tuple[str, ...] = ()
+    if order == eta + 1 and leading * math.factorial(eta + 1) == -divergence:
+        formula = f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
+        checked = (f"that of h^{eta + 1} is −div(X^{eta} f)/{eta + 1}!",)
+    if eta % 2 == 0:
+        potential = potential_of_lie(jets, eta)
+        if jets.derive(potential) == leading:
+            reason = f"G = −1/{eta + 1}! Σ_k (−1)^k ∂(X^({eta}−k) p, X^k q)/∂(p, q), k = 0 … {eta}"
+            identity = "X·G is that coefficient"
+            return Telescoping(True, reason, potential), formula, (*checked, identity)
+    return telescopes(jets, leading), formula, checked
+
+
+def shown(x: Poly) -> str:
+    """A polynomial in the jets as a formula, 0 for zero."""
+    return str(x).replace("^", "**")

@@ -1,0 +1,125 @@
+"""Every smooth H at once: its partial derivatives H_ij = ∂_pⁱ∂_q^j H as independent variables.
+
+At a point the derivatives of a smooth H up to any order may take any values (those of a polynomial
+are free already). So a polynomial in the H_ij vanishes for every H at every point exactly where it
+is the zero polynomial, and zero needs no decision. ∂/∂p sends H_ij to H_(i+1)j, ∂/∂q to H_i(j+1),
+and X = H_p ∂_q − H_q ∂_p is the derivative along the flow. For separable H = T(p) + V(q) the mixed
+derivatives are 0.
+
+A scheme for every H is a pair of series in h over these polynomials: lists of the coefficients of
+h⁰, h¹, …, cut off at the same power.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+import flint
+
+Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+Series = list[Poly]
+
+
+class Jets:
+    """The ring of p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a derivative beyond."""
+
+    def __init__(self, order: int, *, separable: bool = False) -> None:
+        self.order, self.separable = order, separable
+        self.indices = [
+            (n - j, j)
+            for n in range(1, order + 1)
+            for j in range(n + 1)
+            if not separable or j in (0, n)
+        ]
+        names = ["p", "q", *("H_" + "p" * i + "q" * j for i, j in self.indices)]
+        self.context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.degrevlex)
+        self.names = tuple(names)
+        self._at = {index: k + 2 for k, index in enumerate(self.indices)}
+        self._gens = self.context.gens()
+
+    @property
+    def zero(self) -> Poly:
+        return self.context.constant(0)
+
+    @property
+    def one(self) -> Poly:
+        return self.context.constant(1)
+
+    def h(self, i: int, j: int) -> Poly:
+        """H_ij."""
+        if self.separable and i and j:
+            return self.zero
+        if i + j > self.order:
+            raise OverflowError(f"a derivative of order {i + j} of H; there are {self.order}")
+        return self._gens[self._at[i, j]]
+
+    @cached_property
+    def p(self) -> Poly:
+        return self._gens[0]
+
+    @cached_property
+    def q(self) -> Poly:
+        return self._gens[1]
+
+    # -- derivatives --------------------------------------------------------------------------
+
+    def diff(self, x: Poly, name: str) -> Poly:
+        """∂x/∂p or ∂x/∂q."""
+        di, dj = (1, 0) if name == "p" else (0, 1)
+        total = x.derivative("pq".index(name))
+        for at, degree in enumerate(x.degrees()[2:], 2):
+            if degree > 0:  # −1 of zero
+                i, j = self.indices[at - 2]
+                total += x.derivative(at) * self.h(i + di, j + dj)
+        return total
+
+    def derive(self, x: Poly) -> Poly:
+        """X x, the derivative along the flow."""
+        return self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
+
+    def along(self, name: str, most: int) -> Series:
+        """[y, X y, …, X^most y] of y = p or q."""
+        result = [self.p if name == "p" else self.q]
+        for _ in range(most):
+            result.append(self.derive(result[-1]))
+        return result
+
+    def bracket(self, x: Poly, y: Poly) -> Poly:
+        """∂(x, y)/∂(p, q)."""
+        return self.diff(x, "p") * self.diff(y, "q") - self.diff(x, "q") * self.diff(y, "p")
+
+    def delta_j(self, p_next: Sequence[Poly], q_next: Sequence[Poly]) -> Iterator[Poly]:
+        """The coefficients of h¹, h², … in det ∂(p', q')/∂(p, q), as far as the series reach."""
+        gradients = [[(self.diff(x, "p"), self.diff(x, "q")) for x in s] for s in (p_next, q_next)]
+        for n in range(1, len(p_next)):
+            pairs = [(gradients[0][k], gradients[1][n - k]) for k in range(n + 1)]
+            yield sum((a * d - b * c for (a, b), (c, d) in pairs), self.zero)
+
+    # -- series -------------------------------------------------------------------------------
+
+    def shifted(self, i: int, j: int, dp: Series, dq: Series) -> Series:
+        """H_ij at (p + dp, q + dq), by Taylor's formula; dp and dq are series without h⁰."""
+        most = len(dp)
+        powers = [self._powers(d) for d in (dp, dq)]
+        total = [self.zero] * most
+        for a, b in product(range(most), repeat=2):
+            if a + b >= most or (self.separable and (i + a) and (j + b)):
+                continue
+            scale = self.h(i + a, j + b) / (math.factorial(a) * math.factorial(b))
+            for n, x in enumerate(multiplied(powers[0][a], powers[1][b])):
+                total[n] += scale * x
+        return total
+
+    def _powers(self, d: Series) -> list[Series]:
+        """[1, d, d², …], each as long as d."""
+        result = [[self.one] + [self.zero] * (len(d) - 1)]
+        while len(result) < len(d):
+            result.append(multiplied(result[-1], d))
+        return result
+
+
+def multiplied(x: Series, y: Series) -> Series:
+    """The product of two series of one length, cut off there."""
+    return [sum((x[k] * y[n - k] for k in range(n + 1)), x[0] * 0) for n in range(len(x))]

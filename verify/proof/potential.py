@@ -1,0 +1,122 @@
+"""Whether the leading coefficient L of ΔJ is X·G for one given H, whose structure may help.
+
+True: G is given, and X·G − L is decided to be zero. False: at an equilibrium X·G = 0 for every
+smooth G, and L is not zero there. None: neither is found. G is looked for by the formula for even
+η, and else among the polynomials in what H and L are made of (p, q, parameters, sin, cos, …).
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations_with_replacement, product
+
+import flint
+import sympy
+
+from verify.errors import InputError
+from verify.generators import embed
+from verify.generic import TaylorSeries
+from verify.hamiltonian import VectorField
+from verify.proof.order import Proof
+from verify.proof.telescoping import potential_of_lie
+from verify.ring import Poly
+from verify.scheme import Scheme
+from verify.step_map import P, Q
+
+_MOST_MONOMIALS = 300
+_PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
+
+
+@dataclass(frozen=True)
+class Potential:
+    """`holds`: whether L = X·G; `potential`: that G; `reason`: how it is known."""
+
+    holds: bool | None
+    reason: str
+    potential: sympy.Expr | None = None
+
+
+def potential_of(proof: Proof, scheme: Scheme) -> Potential:
+    """Whether the leading coefficient that was proved telescopes."""
+    if proof.area_preserving:
+        return Potential(True, "ΔJ ≡ 0", sympy.S.Zero)
+    if proof.order is None:
+        return Potential(None, "the leading coefficient is not known")
+    field, (leading,) = proof.step_map.hamiltonian.field(proof.leading)
+    where = _equilibrium_against(field, proof.leading)
+    if where is not None:
+        return Potential(
+            False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"
+        )
+    generic = scheme.generic
+    if isinstance(generic, TaylorSeries) and generic.eta % 2 == 0:
+        found: Poly | None = potential_of_lie(field, generic.eta)
+        how = "by the formula for every H"
+    else:
+        found, how = _among_polynomials(field, leading), "by linear algebra over monomials"
+    if found is not None and field.ring.decide(field.derive(found) - leading).zero is True:
+        return Potential(True, how, field.ring.factored(found))
+    return Potential(None, "no G is found, and no equilibrium at which L is not zero")
+
+
+def _equilibrium_against(field: VectorField, leading: sympy.Expr) -> str | None:
+    """An equilibrium at which L is shown not to vanish (for some values of the parameters)."""
+    force = [field.ring.expression(x) for x in (field.h_p, field.h_q)]
+    for p, q in sorted(product(_PLACES, repeat=2), key=lambda at: _PLACES.index(at[0])):
+        put = {P: p, Q: q}
+        try:
+            at_rest = all(sympy.expand(x.subs(put)) == 0 for x in force)
+            if at_rest and _not_zero(leading.subs(put), field.ring.variables):
+                return f"p = {p}, q = {q}"
+        except (InputError, ZeroDivisionError):
+            continue  # H is not defined there
+    return None
+
+
+def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
+    if not value.is_finite and not value.free_symbols:
+        return False
+    ring, (x,) = embed([value], variables)
+    return ring.decide(x).zero is False
+
+
+def _among_polynomials(field: VectorField, leading: Poly) -> Poly | None:
+    """A polynomial G with X·G = L in normal form, of the least degree that has one."""
+    ring = field.ring
+    used = [g.index for g in ring.used(field.h_p, field.h_q, leading, ring.variable("p"))]
+    gens = [x for k, x in enumerate(ring.context.gens()) if k in used and x != ring.variable("h")]
+    if ring.variable("q") not in gens:
+        gens.append(ring.variable("q"))
+    monomials: list[Poly] = []
+    for more in _by_degree(gens, ring.one):
+        monomials += more
+        if len(monomials) > _MOST_MONOMIALS:
+            return None
+        found = _solved(field, monomials, leading)
+        if found is not None:
+            return found
+    return None
+
+
+def _by_degree(gens: list[Poly], one: Poly) -> Iterator[list[Poly]]:
+    for degree in range(1, 20):
+        chosen = combinations_with_replacement(gens, degree)
+        yield [math.prod(factors, start=one) for factors in chosen]
+
+
+def _solved(field: VectorField, monomials: list[Poly], leading: Poly) -> Poly | None:
+    columns = [field.derive(m).to_dict() for m in monomials] + [leading.to_dict()]
+    rows = {m: k for k, m in enumerate({m for column in columns for m in column})}
+    matrix = flint.fmpq_mat(len(rows), len(columns))
+    for at, column in enumerate(columns):
+        for monomial, coefficient in column.items():
+            matrix[rows[monomial], at] = coefficient
+    reduced, rank = matrix.rref()
+    last = len(monomials)
+    total = field.ring.zero
+    for r in range(rank):
+        pivot = next(c for c in range(last + 1) if reduced[r, c] != 0)
+        if pivot == last:
+            return None
+        total += reduced[r, last] * monomials[pivot]
+    return total

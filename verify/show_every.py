@@ -1,0 +1,62 @@
+"""Proofs for every H, as JSON and on the terminal."""
+
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from verify.proof.every import EveryProof
+
+_WIDTH = 88
+_LONGEST = 400  # characters of a polynomial on the terminal; the JSON has all of them
+
+
+def every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
+    return {
+        "verdict": proof.verdict.value,
+        "reason": proof.reason,
+        "hamiltonian": proof.quantifier,
+        "scheme": proof.scheme,
+        "order": proof.order,
+        "leading": proof.leading,
+        "formula": proof.formula or None,
+        "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
+        "area_preserving": proof.area_preserving,
+        "convergence_order": proof.convergence_order,
+        "telescopes": proof.telescopes,
+        "potential": proof.potential,
+        "why": proof.why,
+        "checked": list(proof.checked),
+        "seconds": seconds,
+    }
+
+
+def print_every(proof: "EveryProof") -> None:
+    click.echo(f"{proof.verdict}: {proof.reason}")
+    _line("H", proof.quantifier)
+    _line("scheme", proof.scheme)
+    if proof.order is not None:
+        _line("leading", f"h^{proof.order} · ({_cut(proof.formula or proof.leading)})")
+        if proof.formula:
+            _line("", f"= h^{proof.order} · ({_cut(proof.leading)})")
+    if proof.telescopes:
+        _line("G", f"{_cut(proof.potential or '')}, the leading coefficient is X·G")
+    if proof.telescopes is not None:
+        _line("telescopes", ("yes: " if proof.telescopes else "no: ") + _cut(proof.why))
+    _line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
+    for identity in proof.checked:
+        _line("checked", identity)
+
+
+def _line(name: str, text: str) -> None:
+    indent = " " * 13
+    first = f"  {name:11}"
+    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=indent))
+
+
+def _cut(formula: str) -> str:
+    if len(formula) <= _LONGEST:
+        return formula
+    terms = formula.count(" + ") + formula.count(" - ") + 1
+    return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"
