@@ -1,4 +1,4 @@
-"""Checks a certificate (see `verify.proof.certificate`) by dicts and fractions; no prover's code."""
+"""Checks a certificate (see `verify.proof.certificate`) with dicts and fractions alone."""
 
 import re
 from fractions import Fraction

@@ -107,10 +107,14 @@ def _solved(jets: Jets, grade: tuple[int, int, int], x: Poly) -> tuple[Poly | No
     """(G with X·G = x, the rank of X on such G, their number of monomials).
 
     x has all its monomials of one grade, and so may G have: X respects grades. G contains neither p
-    nor q nor H itself, as X takes none of them away.
+    nor q nor H itself, as X takes none of them away. And its derivatives have lower orders than
+    those of x: with G_ij = ∂G/∂H_ij, i + j = k highest, the coefficient of H_ij, i + j = k + 1, in
+    X·G is H_p G_i(j−1) − H_q G_(i−1)j, and were all of them 0, so were G_0k, G_1(k−1), … in turn.
     """
     factors, by_p, by_q = (n - 1 for n in grade)
-    candidates = [_monomial(jets, m) for m in _multisets(jets, factors, by_p, by_q)]
+    highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
+    indices = [(i, j) for i, j in jets.indices if i + j < highest]
+    candidates = [_monomial(jets, m) for m in _multisets(indices, factors, by_p, by_q)]
     images = [jets.derive(m).to_dict() for m in candidates]
     wanted = x.to_dict()
     rows = {m: k for k, m in enumerate({m for image in [*images, wanted] for m in image})}
@@ -132,15 +136,15 @@ def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
 
 
 def _multisets(
-    jets: Jets, factors: int, by_p: int, by_q: int, first: int = 0
+    indices: Sequence[tuple[int, int]], factors: int, by_p: int, by_q: int, first: int = 0
 ) -> Iterator[list[tuple[int, int]]]:
     """All products of so many H_ij, index from `first` on, with these numbers of derivatives."""
     if factors == 0:
         if by_p == by_q == 0:
             yield []
         return
-    for at in range(first, len(jets.indices)):
-        i, j = jets.indices[at]
+    for at in range(first, len(indices)):
+        i, j = indices[at]
         if i <= by_p and j <= by_q and i + j + factors - 1 <= by_p + by_q:
-            for rest in _multisets(jets, factors - 1, by_p - i, by_q - j, at):
+            for rest in _multisets(indices, factors - 1, by_p - i, by_q - j, at):
                 yield [(i, j), *rest]
