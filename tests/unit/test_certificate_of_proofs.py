@@ -206,9 +206,9 @@ def test_enclosures_contain_the_value(kind: str, x: int) -> None:
         for end in (x - radius, x + radius):
             value = exact[kind](context.mpf(end.numerator) / end.denominator)
             assert abs(context.mpf(middle.numerator) / middle.denominator - value) <= (
-                context.mpf(bound.numerator) / bound.denominator + context.mpf(10) ** -14
+                context.mpf(bound.numerator) / bound.denominator + context.mpf(10) ** -50
             )
-        assert bound < Fraction(1, 10**9) + 30 * radius
+        assert bound < Fraction(1, 10**9) + 1000 * radius
 
 
 # -- files and what has none ------------------------------------------------------------------------
@@ -265,12 +265,10 @@ def test_what_is_refuted_has_no_certificate() -> None:
 def test_the_checker_is_small_and_imports_nothing_of_ours() -> None:
     source = Path(checker.__file__).read_text()
     assert len(source.splitlines()) <= 150
-    imported = {
-        name.split(".")[0]
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.Import | ast.ImportFrom)
-        for name in (
-            [node.module] if isinstance(node, ast.ImportFrom) else [a.name for a in node.names]
-        )
-    }
+    imported = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            imported |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            imported.add(node.module)
     assert imported <= {"re", "fractions", "math", "typing"}
