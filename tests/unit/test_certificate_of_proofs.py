@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mpmath.ctx_mp import MPContext
 
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
@@ -196,22 +197,20 @@ def test_step_size_inside_a_coefficient_is_refused() -> None:
 
 @pytest.mark.parametrize(("kind", "x"), [("sin", 3), ("cos", -3), ("exp", 2), ("inverse", 7)])
 def test_enclosures_contain_the_value(kind: str, x: int) -> None:
-    import mpmath
-
-    exact = {"sin": mpmath.sin, "cos": mpmath.cos, "exp": mpmath.exp, "inverse": lambda y: 1 / y}
-    context = mpmath.mp.clone()
+    context = MPContext()
     context.dps = 60
+    exact = getattr(context, kind, lambda y: 1 / y)
     for radius in (Fraction(0), Fraction(1, 1000)):
         middle, bound = checker.function(kind, (Fraction(x), radius))
         for end in (x - radius, x + radius):
-            value = exact[kind](context.mpf(end.numerator) / end.denominator)
+            value = exact(context.mpf(end.numerator) / end.denominator)
             assert abs(context.mpf(middle.numerator) / middle.denominator - value) <= (
                 context.mpf(bound.numerator) / bound.denominator + context.mpf(10) ** -50
             )
         assert bound < Fraction(1, 10**9) + 1000 * radius
 
 
-# -- files and what has none ------------------------------------------------------------------------
+# -- files and what has none -----------------------------------------------------------------------
 
 
 def test_the_statement_is_read_from_what_is_checked() -> None:
