@@ -199,7 +199,7 @@ def test_step_size_inside_a_coefficient_is_refused() -> None:
 def test_enclosures_contain_the_value(kind: str, x: int) -> None:
     context = MPContext()
     context.dps = 60
-    exact = getattr(context, kind, lambda y: 1 / y)
+    exact = (lambda y: 1 / y) if kind == "inverse" else getattr(context, kind)
     for radius in (Fraction(0), Fraction(1, 1000)):
         middle, bound = checker.function(kind, (Fraction(x), radius))
         for end in (x - radius, x + radius):
