@@ -46,7 +46,7 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
         small h on a disc around the origin, then the coefficient of h in Φ(z) = z + hf(z) + …,
         f = (−H_q, H_p), is homogeneous of degree 1 too; being differentiable at the origin it is
         linear, f(z) = lim f(sz)/s = f'(0) z, and H is a quadratic form plus a constant. Conversely,
-        for such an H every Xⁿ z is linear and Eq. 12 is an identity. So for every other H, the
+        for such an H every Xⁿ z is linear and Eq. 12 is an identity. So for every other H that is smooth around the origin, the
         Duffing oscillator with δ ≠ 0 and the pendulum among them, Eq. 12 is false as a product of a
         matrix and a vector. What holds is its tangent form, δz_{k+1} = J_k δz_k for infinitesimal
         differences, and that is all that Eq. 13–16 use: they need det J_k only. ∎""",
