@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 
 import flint
 
@@ -35,21 +36,20 @@ def convergence(shift: int = 0) -> Argument:
         "together in place of Eq. 9's two; the printed Eq. 9 and 10 do not prove it",
         """Let H be of class C^(η+1) near the exact solution z̄(t), t₀ ≤ t ≤ t_end, and let K be
         the closed tube of some radius r around it in which this holds; T = t_end − t₀. Write Φ for
-        the step and z̄_k for the exact solution at t₀ + kh. Local error: Φ is the Taylor polynomial
-        of degree η of the exact flow, so by Taylor's remainder
-        |z̄_{k+1} − Φ(z̄_k)| ≤ M h^(η+1)/(η+1)! with M the maximum of |X^(η+1) z| over the solution
-        (η + 1 derivatives of H). Stability: Φ(z) = z + h ψ(z) with ψ = Σ h^(n−1)/n! Xⁿz, n = 1 … η,
-        which is of class C¹; let L be the maximum of the norm of ψ' over K for 0 < h ≤ h₀. For a z
-        within r of z̄_k the segment from z̄_k to z lies in K, so
-        |Φ(z̄_k) − Φ(z)| ≤ (1 + hL) |z̄_k − z|. This is Eq. 9 in a norm of the plane, for both
-        components together. The triangle inequality, Eq. 8, gives for E_k = |z̄_k − z_k|, E_0 = 0:
-        E_{k+1} ≤ (1 + hL) E_k + M h^(η+1)/(η+1)! as long as E_k ≤ r, and by induction
-        E_k ≤ M h^η/(η+1)! · (e^(LT) − 1)/L for all kh ≤ T. Where h is so small that the right side is
-        at most r, the numerical solution never leaves K before T, and the induction closes. Hence
-        |p̄_k − p_k| and |q̄_k − q_k| are O(h^η) on [t₀, t_end]. What fails on the way as it is
-        printed: Eq. 7 calls |p̃ − p| the global error, which is |p̄ − p|; Eq. 9 has the
-        p-difference alone on its right side; Eq. 10 has e_n for e_k; and n in the exponents of
-        Eq. 10 and 11 is η. ∎""",
+        the step and z̄_k for the exact solution at t₀ + kh. Local error: Φ is the Taylor
+        polynomial of degree η of the exact flow, so by Taylor's remainder |z̄_{k+1} − Φ(z̄_k)| ≤ M
+        h^(η+1)/(η+1)! with M the maximum of |X^(η+1) z| over the solution (η + 1 derivatives of
+        H). Stability: Φ(z) = z + h ψ(z) with ψ = Σ h^(n−1)/n! Xⁿz, n = 1 … η, which is of class
+        C¹; let L be the maximum of the norm of ψ' over K for 0 < h ≤ h₀. For a z within r of z̄_k
+        the segment from z̄_k to z lies in K, so |Φ(z̄_k) − Φ(z)| ≤ (1 + hL) |z̄_k − z|. This is
+        Eq. 9 in a norm of the plane, for both components together. The triangle inequality, Eq. 8,
+        gives for E_k = |z̄_k − z_k|, E_0 = 0: E_{k+1} ≤ (1 + hL) E_k + M h^(η+1)/(η+1)! as long as
+        E_k ≤ r, and by induction E_k ≤ M h^η/(η+1)! · (e^(LT) − 1)/L for all kh ≤ T. Where h is so
+        small that the right side is at most r, the numerical solution never leaves K before T, and
+        the induction closes. Hence |p̄_k − p_k| and |q̄_k − q_k| are O(h^η) on [t₀, t_end]. What
+        fails on the way as it is printed: Eq. 7 calls |p̃ − p| the global error, which is |p̄ −
+        p|; Eq. 9 has the p-difference alone on its right side; Eq. 10 has e_n for e_k; and n in
+        the exponents of Eq. 10 and 11 is η. ∎""",
         checks,
     )
 
@@ -96,7 +96,7 @@ def eq_10(fixed: bool = True) -> Argument:
             end = final_error(eta, steps)
             before = abs(errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
             ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
-    grows = all(bool(b > 5 * a) for a, b in zip(ratios, ratios[1:], strict=False))
+    grows = all(bool(b > 5 * a) for a, b in pairwise(ratios))
     shown = ", ".join(r.mid().str(4, radius=False) for r in ratios)
     checks = [
         Check(
@@ -118,11 +118,11 @@ def eq_10(fixed: bool = True) -> Argument:
         """In Eq. 10 n is the order η of the truncated exponential, as its exponent h^(n+1) and the
         text below it say. Then e_n is the error after η steps, which is O(h^(η+1)) whatever k is,
         and Eq. 10 would bound e_{k+1} by O(h^(η+1)) for all k: one order better than Eq. 11, and
-        false. For H = (p² + q²)/2 and η = 1, |z_k| = (1 + h²)^(k/2) |z_0|, while the exact solution
-        keeps |z|; so at T = 1 the norm of the error is at least (1 + h²)^(1/(2h)) − 1 ≥ h/3 for
-        h ≤ 1/2, and one of its two components at least h/5, which no C h² bounds. It is a misprint: with e_k for e_n the second inequality of
-        Eq. 10 is 1 + hL ≤ e^(hL), and Eq. 11 follows from it by iteration, for any sequence with
-        e_{k+1} ≤ (1 + hL) e_k + C h^(η+1). ∎""",
+        false. For H = (p² + q²)/2 and η = 1, |z_k| = (1 + h²)^(k/2) |z_0|, while the exact
+        solution keeps |z|; so at T = 1 the norm of the error is at least (1 + h²)^(1/(2h)) − 1 ≥
+        h/3 for h ≤ 1/2, and one of its two components at least h/5, which no C h² bounds. It is a
+        misprint: with e_k for e_n the second inequality of Eq. 10 is 1 + hL ≤ e^(hL), and Eq. 11
+        follows by iteration for any sequence with e_{k+1} ≤ (1 + hL) e_k + C h^(η+1). ∎""",
         checks,
     )
 

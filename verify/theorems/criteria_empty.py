@@ -1,6 +1,7 @@
 """Criteria 2–4 hold for every consistent scheme, and tell none from another; Λ need not grow."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import flint
 
@@ -52,22 +53,26 @@ def empty(hamiltonian: bool = True) -> Argument:
     return concluded(
         "criteria-of-consistent-schemes",
         "Section 3, Criteria 2–4",
-        "Criteria 2, 3 and 4 tell which numerical algorithms are nearly area-preserving (read: some "
+        "Criteria 2, 3 and 4 tell which numerical algorithms are nearly area-preserving (read: "
+        "some "
         "schemes for Eq. 1 fail them).",
         Verdict.REFUTED,
-        "every consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every [0, T]: all "
-        "satisfy all three, explicit Euler too, whose Λ for the oscillator at the paper's h = 0.01, "
+        "every consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every [0, T]: "
+        "all "
+        "satisfy all three, explicit Euler too, whose Λ for the oscillator at the paper's h = "
+        "0.01, "
         f"T = {TIME} is 7.15·10⁸⁶",
-        """Let a step agree with the exact flow φ of Eq. 1 up to h¹: Φ(z) = φ(z) + h²ρ(z, h), where ρ
-        has continuous first derivatives in z up to h = 0. Since det φ' = 1 (Liouville),
-        det Φ' = 1 + O(h²) uniformly on compact sets. On every [0, T] on which the exact solution
-        exists the run stays in a compact set for small h, so ΔJ_k = O(h²) = o(h), MSE = O(h⁴) = o(h)
-        and |Λ| ≤ exp(T O(h)) − 1 → 0: criteria 2, 3 and 4 hold for every consistent scheme, whatever
-        it does to areas otherwise, and say no more than consistency does. (They are asymptotic in h,
-        and for a given h they say nothing.) The explicit Euler scheme, lie1, for H = (p² + q²)/2 has
-        ΔJ = h² at every point, so 1 + Λ = (1 + h²)^(T/h), and for h = 0.01 and T = 20000 every area
-        has grown by a factor of 7.15·10⁸⁶; yet Λ → 0 as h → 0, and criteria 2 to 4 are satisfied. What
-        tells schemes apart is the order r of ΔJ = O(h^r), the growth of Λ with T, and criterion 1. ∎""",
+        """Let a step agree with the exact flow φ of Eq. 1 up to h¹: Φ(z) = φ(z) + h²ρ(z, h), where
+        ρ has continuous first derivatives in z up to h = 0. Since det φ' = 1 (Liouville), det Φ' =
+        1 + O(h²) uniformly on compact sets. On every [0, T] on which the exact solution exists the
+        run stays in a compact set for small h, so ΔJ_k = O(h²) = o(h), MSE = O(h⁴) = o(h) and |Λ|
+        ≤ exp(T O(h)) − 1 → 0: criteria 2, 3 and 4 hold for every consistent scheme, whatever it
+        does to areas otherwise, and say no more than consistency does. (They are asymptotic in h,
+        and for a given h they say nothing.) The explicit Euler scheme, lie1, for H = (p² + q²)/2
+        has ΔJ = h² at every point, so 1 + Λ = (1 + h²)^(T/h), and for h = 0.01 and T = 20000 every
+        area has grown by a factor of 7.15·10⁸⁶; yet Λ → 0 as h → 0, and criteria 2 to 4 are
+        satisfied. What tells schemes apart is the order r of ΔJ = O(h^r), the growth of Λ with T,
+        and criterion 1. ∎""",
         checks,
     )
 
@@ -106,7 +111,7 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
         Check(
             f"Duffing, δ = 1, lie2, h = {text(h)}, from (p, q) = {start}: |Λ| after n steps falls, "
             f"n = 1 … {steps}",
-            any(later < earlier for earlier, later in zip(totals, totals[1:], strict=False)),
+            any(later < earlier for earlier, later in pairwise(totals)),
             ", ".join(decimal(x, 4) for x in totals),
         ),
         vanishes(
@@ -122,15 +127,16 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
         "will keep increasing.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
-        f"1, 2, … steps is {', '.join(decimal(x, 4) for x in totals)}, exactly rounded; the leading "
+        f"1, 2, … steps is {', '.join(decimal(x, 4) for x in totals)}, exactly rounded; the "
+        "leading "
         "part of Λ is a boundary term that does not grow",
         """ΔJ_k has both signs, so its product need not grow: from (p, q) = (1, −1/20) the Duffing
-        oscillator crosses q = 0, where pq changes its sign and with it 3h³δpq, and |Λ| falls within
-        two steps. It is not a matter of a few steps. For lie2 and every smooth H the leading term of
-        ΔJ is (h³/2) X(det Hess H), a derivative along the flow. On a fixed [0, T] its sum is
-        therefore a boundary term, Λ = (h²/2) [det Hess H](z(T)) − (h²/2) [det Hess H](z(0)) + O(h³),
-        which on a periodic orbit returns to O(h³) after every period. It is the next order that may
-        grow with T. ∎""",
+        oscillator crosses q = 0, where pq changes its sign and with it 3h³δpq, and |Λ| falls
+        within two steps. It is not a matter of a few steps. For lie2 and every smooth H the
+        leading term of ΔJ is (h³/2) X(det Hess H), a derivative along the flow. On a fixed [0, T]
+        its sum is therefore a boundary term, Λ = (h²/2) [det Hess H](z(T)) − (h²/2) [det Hess
+        H](z(0)) + O(h³), which on a periodic orbit returns to O(h³) after every period. It is the
+        next order that may grow with T. ∎""",
         checks,
     )
 

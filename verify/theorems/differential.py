@@ -12,6 +12,8 @@ from typing import Any
 
 import flint
 
+from verify.formula import parse, symbol
+
 Poly = Any  # flint.fmpq_mpoly, which has no type stubs
 
 
@@ -71,7 +73,8 @@ class Differential:
         for monomial, coefficient in x.to_dict().items():
             rest = (*monomial[:at], 0, *monomial[at + 1 :])
             term = self.context.from_dict({rest: coefficient})
-            parts[int(monomial[at])] = parts.get(int(monomial[at]), self.zero) + term
+            power = int(monomial[at])
+            parts[power] = parts[power] + term if power in parts else term
         return parts
 
 
@@ -144,9 +147,7 @@ def _plane(ring: Differential) -> None:
     ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
 
 
-def of_one_function(
-    constants: Sequence[str], u: str, rest: str, order: int = 4
-) -> Flow:
+def of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4) -> Flow:
     """The flow of H = F(u) + rest for a generic F: u and rest are polynomials in p, q, constants.
 
     The derivatives of F at u up to `order` are the variables F1, F2, …
@@ -163,14 +164,6 @@ def of_one_function(
 
 
 def _polynomial(ring: Differential, text: str) -> Poly:
-    from verify.formula import parse
-
-    expression = parse(text, ring.names, source="u").as_poly(*map(_symbol, ring.names))
+    expression = parse(text, ring.names, source="u").as_poly(*map(symbol, ring.names))
     terms = {m: flint.fmpq(int(c.p), int(c.q)) for m, c in expression.terms()}
     return ring.context.from_dict(terms)
-
-
-def _symbol(name: str) -> Any:
-    from verify.formula import symbol
-
-    return symbol(name)

@@ -69,5 +69,5 @@ def areas(step: StepMap, start: Point, h: Fraction, steps: int) -> Areas:
 
 
 def made_map(p_next: str, q_next: str) -> StepMap:
-    """A map by formulas in p, q and h. That it is made with the oscillator's H says nothing of it."""
+    """A map by formulas in p, q and h; the H that it is made with says nothing of it."""
     return StepMap.from_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), p_next, q_next)

@@ -117,9 +117,10 @@ def eq_3(coordinate: str = "p") -> Argument:
         """In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 and
         H_p ∂q/∂p = 0. By Eq. 5, too, L_{H_p}(p) = H_p ∂p/∂q = 0. The printed equality therefore
         holds only where H_p = 0. Taken at its word it would give L_{H_p} = 0, and with Eq. 2
-        q_{k+1} = q_k: no scheme for Eq. 1. What is meant is L_{H_p}(q_k) = H_p ∂q/∂q = H_p; so read,
-        Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and nothing that follows in
-        the paper is affected. The second line, L_{−H_q}(p_k) = −H_q ∂p/∂p = −H_q, is right. ∎""",
+        q_{k+1} = q_k: no scheme for Eq. 1. What is meant is L_{H_p}(q_k) = H_p ∂q/∂q = H_p; so
+        read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and nothing that
+        follows in the paper is affected. The second line, L_{−H_q}(p_k) = −H_q ∂p/∂p = −H_q, is
+        right. ∎""",
         checks,
     )
 
