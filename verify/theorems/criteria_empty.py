@@ -127,7 +127,8 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
         "will keep increasing.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
-        f"1, 2, … steps is {', '.join(decimal(x, 4) for x in totals)}, exactly rounded; the "
+        f"1, 2, … steps is {', '.join(decimal(x, 4) for x in totals)}, exact but for the "
+        "rounding of what is shown; the "
         "leading "
         "part of Λ is a boundary term that does not grow",
         """ΔJ_k has both signs, so its product need not grow: from (p, q) = (1, −1/20) the Duffing

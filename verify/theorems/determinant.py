@@ -122,10 +122,11 @@ def classification(flaw: int = 0) -> Argument:
         "determinant-classification",
         "Section 3, before Eq. 14, made precise",
         "lie2 has det J = 1 for all h exactly for H = F(ℓ) + m and H = F(ℓ + m²), ℓ and m linear, "
-        "and for a third family, to which the powers 3/4 of quadratic forms belong; near generic "
-        "points these are all, and no polynomial H is in the third.",
+        "and for a third family, to which the powers 3/4 of quadratic forms belong; near the "
+        "points of an open dense set these are all, and no polynomial H is in the third.",
         Verdict.PROVED,
-        "locally complete for smooth H near generic points, globally for polynomial H and for "
+        "locally complete for smooth H, near the points of an open dense set, globally for "
+        "polynomial H and for "
         "H = T(p) + V(q); open is only how pieces of different families may fit together in one H "
         "that is smooth but not analytic",
         _CLASSIFICATION,
