@@ -190,7 +190,10 @@ class CriterionResult(Frozen):
 
 
 class ClaimResult(Frozen):
-    """One claim with its verdict; `evidence` is one line, `details` a table of texts."""
+    """One claim with its verdict; `evidence` is one line, `details` a table of texts.
+
+    `proof`: the argument on paper that stands beside what the machine checked, where there is one.
+    """
 
     id: str
     source: str
@@ -199,6 +202,7 @@ class ClaimResult(Frozen):
     verdict: Verdict
     evidence: str
     details: tuple[tuple[str, ...], ...] = ()
+    proof: str = ""
 
 
 class SceneResult(Frozen):
