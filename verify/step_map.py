@@ -16,6 +16,7 @@ from verify.errors import InputError
 from verify.formula import parse, symbol
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
+from verify.series import Series, at_point, partials
 
 P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 
@@ -88,6 +89,27 @@ class Substep:
                     total += sign * x[k] * y[n - k]
         return self.ring.reduce(total)
 
+    def taylor(self, p: Series, q: Series) -> tuple[Series, Series] | None:
+        """The substep's Taylor series in h at the point (p, q) + O(h) that is given by its series.
+
+        None where the map is no polynomial in h, or does not begin with (p, q).
+        """
+        ring, start = self.ring, [self.ring.variable(name) for name in ("p", "q")]
+        if h_inside(ring, self.p_next, self.q_next):
+            return None
+        u, v = (x - Series.of(ring, [y], x.most) for x, y in zip((p, q), start, strict=True))
+        result = []
+        for y, own in zip((self.p_next, self.q_next), start, strict=True):
+            powers = ring.powers(y, "h")
+            if powers.get(0) != own:
+                return None
+            total = Series.of(ring, [], p.most)
+            for n, x in powers.items():
+                if n <= p.most:
+                    total += at_point(partials(ring, x), u, v).shifted(n)
+            result.append(total)
+        return result[0], result[1]
+
     @cached_property
     def preserves_area(self) -> bool:
         """True where ΔJ is shown to be the zero function."""
@@ -103,6 +125,28 @@ class StepMap:
 
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
+
+    @property
+    def of_parts(self) -> bool:
+        """Whether its closed form has to be composed, and may be large."""
+        return len(self.substeps) > 1
+
+    def taylor(self, most: int) -> tuple[VectorField, Series, Series] | None:
+        """The Taylor series of p' and q' up to h^most, and the vector field in their ring.
+
+        None where the closed form is to be looked at instead.
+        """
+        field = self.substeps[0].field
+        ring = field.ring
+        if any(step.field is not field for step in self.substeps):
+            return None
+        p, q = (Series.of(ring, [ring.variable(name)], most) for name in ("p", "q"))
+        for step in self.substeps:
+            moved = step.taylor(p, q)
+            if moved is None:
+                return None
+            p, q = moved
+        return field, p, q
 
     @classmethod
     def from_expressions(

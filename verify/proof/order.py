@@ -14,12 +14,15 @@ import sympy
 from verify.errors import InputError
 from verify.formula import checked
 from verify.generators import embed
+from verify.hamiltonian import VectorField
 from verify.ring import Decision, Poly, Ring
 from verify.scheme import Scheme
+from verify.series import Series, delta_j
 from verify.step_map import H_STEP, StepMap, h_inside
 from verify.verdict import Verdict
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
+_FIRST_ORDERS = 6  # of them, those that are made at once
 
 
 @dataclass(frozen=True)
@@ -134,9 +137,47 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     )
 
 
+class _BySeries:
+    """The Taylor coefficients of p', q' and ΔJ of a map of several parts, without its closed form.
+
+    They are made as far as they are looked at.
+    """
+
+    def __init__(self, step_map: StepMap) -> None:
+        self.map = step_map
+        self.made: tuple[VectorField, Series, Series] | None = None
+        self.usable = step_map.of_parts and self.reach(_FIRST_ORDERS)
+
+    def reach(self, n: int) -> bool:
+        """Makes the coefficients up to hⁿ, and a few more; False where the map has none."""
+        if self.made is None or self.made[1].most < n:
+            most = _FIRST_ORDERS if n <= _FIRST_ORDERS else MOST_ORDERS
+            self.made = self.map.taylor(most)
+        return self.made is not None
+
+    def coefficients(self, n: int) -> tuple[VectorField, tuple[Poly, Poly]]:
+        """Those of hⁿ in p' and q', and the vector field in their ring."""
+        self.reach(n)
+        assert self.made is not None  # noqa: S101 - the caller looks at `usable`
+        field, p, q = self.made
+        return field, (p.coefficients[n], q.coefficients[n])
+
+    def of_delta_j(self, n: int) -> tuple[Ring, Poly]:
+        self.reach(n)
+        assert self.made is not None  # noqa: S101 - as above
+        field, p, q = self.made
+        return field.ring, delta_j(p, q).coefficients[n]
+
+
 def _leading_of_delta_j(step_map: StepMap) -> Leading:
+    if step_map.preserves_area:
+        return _VANISHES
+    series = _BySeries(step_map)
+    found = _first(series.of_delta_j, MOST_ORDERS + 1) if series.usable else None
+    if found is not None:
+        return found
     step = step_map.flat
-    if step_map.preserves_area or step.preserves_area:
+    if step.preserves_area:
         return _VANISHES
     if step.degree is None:
         leading = Expansion(step.ring, step.delta_j).leading()
@@ -164,6 +205,9 @@ class Convergence:
 
 def convergence_of(step_map: StepMap) -> Convergence:
     """The order to which the map agrees with the exact flow."""
+    series = _BySeries(step_map)
+    if series.usable:
+        return _convergence_by(series)
     step = step_map.flat
     ring = step.ring
     pairs = [(step.p_next, ring.variable("p")), (step.q_next, ring.variable("q"))]
@@ -176,6 +220,20 @@ def convergence_of(step_map: StepMap) -> Convergence:
             agrees = _agrees(expansion, n, ring, flow[n])
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)
+    return Convergence(None, True)
+
+
+def _convergence_by(series: _BySeries) -> Convergence:
+    field, flow = series.coefficients(0)
+    for n in range(MOST_ORDERS + 1):
+        _, own = series.coefficients(n)
+        field = series.coefficients(n)[0]
+        ring = field.ring
+        for x, y in zip(own, flow, strict=True):
+            agrees = ring.decide(x - y / math.factorial(n)).zero
+            if agrees is not True:
+                return Convergence(n - 1, agrees is False)
+        flow = (field.derive(flow[0]), field.derive(flow[1]))
     return Convergence(None, True)
 
 
