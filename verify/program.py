@@ -176,6 +176,8 @@ class Evaluator:
             return self._inputs[str(g.expression)]
         if g.kind == "pi":
             return self.program._add(Op("pi"), True)
+        if g.kind == "stage":
+            return self.evaluate(g.argument)
         return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
 
     def _collect(self, x: Poly, dynamic: Sequence[int]) -> list[Term]:

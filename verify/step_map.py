@@ -6,8 +6,8 @@ u = p' − p, v = q' − q as u_p + v_q + u_p v_q − u_q v_p, in which nothing 
 1 + ΔJ of the composition is the product along it.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import sympy
@@ -18,6 +18,7 @@ from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
 from verify.series import Series, at_point, partials
 
+Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
 P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 
 
@@ -121,24 +122,30 @@ class Substep:
 
 @dataclass(frozen=True)
 class StepMap:
-    """A one-step map of one Hamiltonian, as the composition of its substeps, first one first."""
+    """A one-step map of one Hamiltonian, as the composition of its substeps, first one first.
+
+    `expansion(most)` is `taylor` of a map whose substeps have stages, which it does not look into.
+    """
 
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
+    expansion: Callable[[int], Expanded] | None = field(default=None, compare=False, repr=False)
 
     @property
     def of_parts(self) -> bool:
         """Whether its closed form has to be composed, and may be large."""
-        return len(self.substeps) > 1
+        return self.expansion is not None or len(self.substeps) > 1
 
-    def taylor(self, most: int) -> tuple[VectorField, Series, Series] | None:
+    def taylor(self, most: int) -> Expanded | None:
         """The Taylor series of p' and q' up to h^most, and the vector field in their ring.
 
         None where the closed form is to be looked at instead.
         """
-        field = self.substeps[0].field
-        ring = field.ring
-        if any(step.field is not field for step in self.substeps):
+        if self.expansion is not None:
+            return self.expansion(most)
+        whole = self.substeps[0].field
+        ring = whole.ring
+        if any(step.field is not whole for step in self.substeps):
             return None
         p, q = (Series.of(ring, [ring.variable(name)], most) for name in ("p", "q"))
         for step in self.substeps:
@@ -146,14 +153,14 @@ class StepMap:
             if moved is None:
                 return None
             p, q = moved
-        return field, p, q
+        return whole, p, q
 
     @classmethod
     def from_expressions(
         cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
     ) -> "StepMap":
-        field, (p1, q1) = hamiltonian.field(p_next, q_next)
-        return cls(hamiltonian, (Substep(field, p1, q1),))
+        whole, (p1, q1) = hamiltonian.field(p_next, q_next)
+        return cls(hamiltonian, (Substep(whole, p1, q1),))
 
     @classmethod
     def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
@@ -187,10 +194,10 @@ class StepMap:
     @cached_property
     def flat(self) -> Substep:
         """The whole map as one substep."""
-        if len(self.substeps) == 1:
+        if not self.of_parts:
             return self.substeps[0]
-        field, (p1, q1) = self.hamiltonian.field(*self.composed)
-        return Substep(field, p1, q1)
+        whole, (p1, q1) = self.hamiltonian.field(*self.composed)
+        return Substep(whole, p1, q1)
 
     @property
     def preserves_area(self) -> bool:
