@@ -18,7 +18,7 @@ Functions of sums are expanded over a basis of the lattice that their arguments 
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
@@ -29,29 +29,14 @@ import sympy
 
 from verify.enclosure import enclose, points
 from verify.formula import symbol
-
-Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+from verify.generator import Generator as Generator
+from verify.generator import Poly as Poly
+from verify.generator import rational_of, written
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
-
-
-@dataclass(frozen=True)
-class Generator:
-    """One ring generator: `kind` of function, its argument, and its expression.
-
-    `kind`: variable, pi, sin, cos, exp, sinh, cosh, log, atan, root (of `degree`), inverse, or
-    stage, which is its argument itself under a name. `expression` is None where it is made from
-    the argument's when it is asked for.
-    """
-
-    index: int
-    kind: str
-    expression: sympy.Expr | None
-    argument: Poly = None
-    degree: int = 1
 
 
 @dataclass(frozen=True)
@@ -128,7 +113,15 @@ class Ring:
             terms = (outer * self.diff(inner, name) for outer, inner in self._chains[index])
             total = self.reduce(sum(terms, self.zero))
             known[name] = self.named(total) if self._by_index[index].kind == "stage" else total
-        return known.get(name, 0)
+        return known.get(name, self.zero)
+
+    def terms_of_diff(self, x: Poly, name: str) -> int:
+        """A bound of the number of terms of ∂x/∂name, without making it."""
+        total = len(x)
+        for index, power in enumerate(x.degrees()[: self.room]):
+            if power:
+                total += len(x.derivative(index)) * len(self._partial(index, name))
+        return total
 
     def used(self, *elements: Poly) -> list[Generator]:
         """The generators that the elements depend on, arguments included, oldest first."""
@@ -173,7 +166,7 @@ class Ring:
         if g.expression is not None:
             return g.expression
         if index not in self._written:
-            self._written[index] = _OF_KIND[g.kind](self.expression(g.argument), g.degree)
+            self._written[index] = written(g, self.expression(g.argument))
         return self._written[index]
 
     def factored(self, x: Poly) -> sympy.Expr:
@@ -306,19 +299,3 @@ class Ring:
                     total += parts.get(power, self.zero)
                 x = self.reduce(total)
         return x
-
-
-_OF_KIND: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
-    **{
-        name: lambda x, _, f=getattr(sympy, name): f(x)  # type: ignore[misc]
-        for name in ("sin", "cos", "exp", "sinh", "cosh", "log", "atan")
-    },
-    "root": lambda x, degree: x ** sympy.Rational(1, degree),
-    "inverse": lambda x, _: 1 / x,
-    "stage": lambda x, _: x,
-}
-
-
-def rational_of(value: Any) -> sympy.Rational:
-    """A flint rational as sympy's."""
-    return sympy.Rational(int(value.numer()), int(value.denom()))

@@ -1,4 +1,4 @@
-"""Explicit Runge–Kutta schemes, from their tableaus: k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i.
+"""Explicit Runge–Kutta schemes: k_i = f(z + h Σ a_ij k_j), j < i, and z' = z + h Σ b_i k_i.
 
 The same few lines are read in two ways: with ring elements they make the map, stage by stage, and
 with power series in h its Taylor series.
@@ -10,12 +10,11 @@ from fractions import Fraction
 from typing import TypeVar
 
 from verify.hamiltonian import Hamiltonian, VectorField
-from verify.ring import Poly
 from verify.series import Series, at_point, partials
-from verify.stages import Stages
+from verify.stages import Point, Stages
 from verify.step_map import StepMap, Substep
 
-Point = TypeVar("Point")
+At = TypeVar("At")
 Slope = TypeVar("Slope")
 
 
@@ -37,9 +36,9 @@ class Tableau:
 
 def step(
     tableau: Tableau,
-    slope: Callable[[Point], Slope],
-    moved: Callable[[Sequence[Fraction], Sequence[Slope]], Point],
-) -> Point:
+    slope: Callable[[At], Slope],
+    moved: Callable[[Sequence[Fraction], Sequence[Slope]], At],
+) -> At:
     """One step: `slope` is f, and `moved(weights, slopes)` is z + h Σ weights · slopes."""
     slopes: list[Slope] = []
     for row in tableau.rows:
@@ -52,17 +51,15 @@ def runge_kutta_map(hamiltonian: Hamiltonian, tableau: Tableau) -> StepMap:
     field, _ = hamiltonian.field()
     stages = Stages(field, len(tableau.weights))
     ring = stages.ring
-    start, h = [ring.variable(name) for name in ("p", "q")], ring.variable("h")
 
-    def moved(weights: Sequence[Fraction], slopes: Sequence[tuple[Poly, Poly]]) -> list[Poly]:
-        result = []
-        for i, x in enumerate(start):
-            terms = (ring.constant(w) * k[i] for w, k in zip(weights, slopes, strict=True))
-            result.append(x + h * sum(terms, ring.zero))
-        return result
+    def moved(weights: Sequence[Fraction], slopes: Sequence[Point]) -> Point:
+        p, q = stages.start
+        for w, (u, v) in zip(weights, slopes, strict=True):
+            part = ring.constant(w) * ring.variable("h")
+            p, q = p + part * u, q + part * v
+        return p, q
 
-    p_next, q_next = step(tableau, lambda point: stages.slope(*point), moved)
-    substep = Substep(stages.field, p_next, q_next)
+    substep = Substep(stages.field, *step(tableau, stages.slope, moved))
     return StepMap(hamiltonian, (substep,), lambda most: (field, *taylor(field, tableau, most)))
 
 

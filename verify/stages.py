@@ -7,30 +7,55 @@ is made of has a copy with the stage's point inside. So a map is as long as its 
 and a kernel computes it, and its Jacobian by the chain rule, stage by stage.
 """
 
+from collections.abc import Sequence
+
 from verify.hamiltonian import VectorField
 from verify.ring import Generator, Poly, Ring
 
+Point = tuple[Poly, Poly]
 _NAMES = 4  # for a stage: its point and its slope
 _DERIVATIVES = 7  # of a name: itself, its two first partial derivatives and its four second ones
 
 
 class Stages:
-    """A ring with room for so many stages of a vector field, and the field at points of it."""
+    """A ring with room for so many stages of a vector field, and the field at points of it.
+
+    `start` is (p, q) in that ring, and `field` the vector field there.
+    """
 
     def __init__(self, field: VectorField, count: int) -> None:
         self.source = field
         functions = len(field.ring.generators) - len(field.ring.variables)
         room = (count + 1) * functions + count * _NAMES * _DERIVATIVES
         self.ring = Ring(field.ring.variables, room)
-        p, q = (self.ring.variable(name) for name in ("p", "q"))
-        start = _Moved(field.ring, self.ring, p, q)
-        self.field = VectorField(self.ring, start(field.h_p), start(field.h_q))
+        self.start = self.ring.variable("p"), self.ring.variable("q")
+        at = self.at(self.start)
+        self.field = VectorField(self.ring, at(field.h_p), at(field.h_q))
 
-    def slope(self, p: Poly, q: Poly) -> tuple[Poly, Poly]:
+    def at(self, point: Point) -> "_Moved":
+        """Takes elements of the field's own ring to their values at the point."""
+        return _Moved(self.source.ring, self.ring, *point)
+
+    def named(self, point: Point) -> Point:
+        return self.ring.named(point[0]), self.ring.named(point[1])
+
+    def slope(self, point: Point) -> Point:
         """(−H_q, H_p) at the point, by names."""
-        named = self.ring.named
-        at = _Moved(self.source.ring, self.ring, named(p), named(q))
-        return named(at(-self.source.h_q)), named(at(self.source.h_p))
+        at = self.at(self.named(point))
+        return self.named((at(-self.source.h_q), at(self.source.h_p)))
+
+
+def chained(field: VectorField, maps: Sequence[Point]) -> tuple[VectorField, Poly, Poly]:
+    """The composition of maps (p', q') in the field's ring, first one first, by named points.
+
+    Returns the field in the ring of the result, and the result.
+    """
+    stages = Stages(field, len(maps))
+    point = stages.start
+    for p_next, q_next in maps:
+        at = stages.at(stages.named(point))
+        point = at(p_next), at(q_next)
+    return stages.field, *point
 
 
 class _Moved:

@@ -17,9 +17,12 @@ from verify.formula import parse, symbol
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
 from verify.series import Series, at_point, partials
+from verify.stages import chained
 
 Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
 P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
+# Terms of the largest composition that is written in closed form, and of its ΔJ.
+_MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 
 
 @dataclass(frozen=True)
@@ -52,11 +55,26 @@ class Substep:
             diff(self.q_next, "q"),
         )
 
+    @property
+    def staged(self) -> bool:
+        """Whether it is made from stages that have names; see `verify.stages`."""
+        return any(g.kind == "stage" for g in self.ring.used(self.p_next, self.q_next))
+
     @cached_property
     def delta_j(self) -> Poly:
         a, u_q, v_p, d = self.jacobian
         u_p, v_q = a - 1, d - 1
+        if self.staged:
+            u_p, u_q, v_p, v_q = map(self.ring.named, (u_p, u_q, v_p, v_q))
         return self.ring.reduce(u_p + v_q + u_p * v_q - u_q * v_p)
+
+    @property
+    def terms_of_delta_j(self) -> int:
+        """A bound of the number of terms that ΔJ has when it is written out."""
+        bound = self.ring.terms_of_diff
+        u_p, u_q = (bound(self.p_next, name) for name in ("p", "q"))
+        v_p, v_q = (bound(self.q_next, name) for name in ("p", "q"))
+        return u_p + v_q + u_p * v_q + u_q * v_p
 
     @cached_property
     def _by_powers(self) -> tuple[dict[int, Poly], ...] | None:
@@ -192,14 +210,41 @@ class StepMap:
         return self.composed[1]
 
     @cached_property
-    def flat(self) -> Substep:
-        """The whole map as one substep."""
+    def closed(self) -> Substep | None:
+        """The whole map as one substep in closed form; None where a composition is too large."""
         if not self.of_parts:
             return self.substeps[0]
-        whole, (p1, q1) = self.hamiltonian.field(*self.composed)
-        return Substep(whole, p1, q1)
+        try:
+            whole, (p1, q1) = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
+        except InputError:
+            return None
+        step = Substep(whole, p1, q1)
+        return step if step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
+
+    @cached_property
+    def whole(self) -> Substep:
+        """The whole map as one substep: in closed form, or where that is too large in stages."""
+        if self.closed is not None:
+            return self.closed
+        if len(self.substeps) == 1:
+            return self.substeps[0]
+        first = self.substeps[0].field
+        return Substep(*chained(first, [(step.p_next, step.q_next) for step in self.substeps]))
 
     @property
+    def flat(self) -> Substep:
+        """The whole map as one substep in closed form; InputError where that is too large."""
+        if self.closed is None:
+            shown = str(self.hamiltonian.expression)
+            raise InputError("map", shown, "its closed form, all substeps composed, is too large")
+        return self.closed
+
+    @property
+    def written(self) -> bool:
+        """Whether ΔJ has a closed form that is short enough to be written out."""
+        return self.preserves_area or self.closed is not None
+
+    @cached_property
     def preserves_area(self) -> bool:
         """True where every substep's ΔJ, and so the composition's, is shown to vanish."""
         return all(step.preserves_area for step in self.substeps)
@@ -212,7 +257,7 @@ class StepMap:
 
     @cached_property
     def delta_j(self) -> sympy.Expr:
-        """ΔJ = det J − 1 (Eq. 14) in closed form."""
+        """ΔJ = det J − 1 (Eq. 14) in closed form; InputError where that is too large."""
         if self.preserves_area:
             return sympy.S.Zero
         step = self.flat

@@ -18,7 +18,7 @@ from verify.hamiltonian import VectorField
 from verify.ring import Decision, Poly, Ring
 from verify.scheme import Scheme
 from verify.series import Series, delta_j
-from verify.step_map import H_STEP, StepMap, h_inside
+from verify.step_map import H_STEP, StepMap, Substep, h_inside
 from verify.verdict import Verdict
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
@@ -48,9 +48,9 @@ class Proof:
     enclosure: str = ""
 
     @property
-    def delta_j(self) -> sympy.Expr:
-        """ΔJ in closed form, written out when it is asked for."""
-        return self.step_map.delta_j
+    def delta_j(self) -> sympy.Expr | None:
+        """ΔJ in closed form, written out when it is asked for; None where it is too large."""
+        return self.step_map.delta_j if self.step_map.written else None
 
     @property
     def consistent(self) -> bool:
@@ -173,9 +173,8 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
     if step_map.preserves_area:
         return _VANISHES
     series = _BySeries(step_map)
-    found = _first(series.of_delta_j, MOST_ORDERS + 1) if series.usable else None
-    if found is not None:
-        return found
+    if series.usable:
+        return _leading_by(series, step_map.whole)
     step = step_map.flat
     if step.preserves_area:
         return _VANISHES
@@ -187,6 +186,16 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
         return leading
     found = _first(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
     return found or _VANISHES
+
+
+def _leading_by(series: _BySeries, whole: Substep) -> Leading:
+    found = _first(series.of_delta_j, MOST_ORDERS + 1)
+    if found is not None:
+        return found
+    if whole.preserves_area:
+        return _VANISHES
+    decision = whole.ring.decide(whole.delta_j)
+    return Leading(MOST_ORDERS + 1 if decision.zero is None else None, sympy.S.Zero, decision)
 
 
 @dataclass(frozen=True)

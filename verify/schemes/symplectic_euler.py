@@ -10,7 +10,7 @@ from verify.scheme import Scheme
 from verify.splitting import shears
 
 EXAMPLES = ("symplectic-euler",)
-_PARTS = (("kick", sympy.S.One), ("drift", sympy.S.One))
+PARTS = (("kick", sympy.S.One), ("drift", sympy.S.One))
 
 
 def make(name: str) -> Scheme | None:
@@ -22,5 +22,5 @@ def make(name: str) -> Scheme | None:
         area_preserving=True,
         explicit=True,
         source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-        build=lambda hamiltonian: shears(hamiltonian, name, _PARTS),
+        build=lambda hamiltonian: shears(hamiltonian, name, PARTS),
     )
