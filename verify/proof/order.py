@@ -233,16 +233,14 @@ def convergence_of(step_map: StepMap) -> Convergence:
 
 
 def _convergence_by(series: _BySeries) -> Convergence:
-    field, flow = series.coefficients(0)
+    flow: tuple[Poly, Poly] | None = None
     for n in range(MOST_ORDERS + 1):
-        _, own = series.coefficients(n)
-        field = series.coefficients(n)[0]
-        ring = field.ring
+        field, own = series.coefficients(n)
+        flow = own if flow is None else (field.derive(flow[0]), field.derive(flow[1]))
         for x, y in zip(own, flow, strict=True):
-            agrees = ring.decide(x - y / math.factorial(n)).zero
+            agrees = field.ring.decide(x - y / math.factorial(n)).zero
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)
-        flow = (field.derive(flow[0]), field.derive(flow[1]))
     return Convergence(None, True)
 
 
