@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, permutations
 
-from verify.ring import Generator, Poly, Ring
+from verify.generator import Generator
+from verify.ring import Poly, Ring
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20

@@ -12,7 +12,7 @@ Contract. `decide(x)` answers
   arithmetic, so rounding is accounted for);
 - neither (None), when the relations do not show it zero and no point shows it non-zero.
 `simplify` plays no part in either. The third answer can occur only where generators hide an
-identity, as log(q²) and 2 log(q) do; the callers report UNDECIDED.
+identity, as log(q²) and 2 log(q) do, or names of parts do; the callers report UNDECIDED.
 
 Functions of sums are expanded over a basis of the lattice that their arguments span, so that
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
@@ -29,9 +29,8 @@ import sympy
 
 from verify.enclosure import enclose, points
 from verify.formula import symbol
-from verify.generator import Generator as Generator
+from verify.generator import Generator, rational_of, written
 from verify.generator import Poly as Poly
-from verify.generator import rational_of, written
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
@@ -222,10 +221,9 @@ class Ring:
         self._chains[self._gens.index(generator)] = chain
 
     def named(self, x: Poly) -> Poly:
-        """x as a generator of its own, which is x; x itself where that is as short.
+        """x as a generator of its own; x itself where that is as short, or there is no room.
 
-        What is made from named parts is evaluated, and differentiated, part by part. Where there
-        is no room for the name, x stays written out.
+        What is made from named parts is evaluated, and differentiated, part by part.
         """
         if len(x) < 2 or not any(self.depends(x, name) for name in ("p", "q")):
             return x

@@ -1,9 +1,10 @@
 """The exact one-step map (p, q, h) → (p', q'), its Jacobian J (Eq. 12) and ΔJ = det J − 1 (Eq. 14).
 
 A map is a composition of substeps, each with its own exact closed form: one for the Lie-derivative
-scheme, two shears for symplectic Euler. ΔJ of a substep is written with its increments
-u = p' − p, v = q' − q as u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels, and
-1 + ΔJ of the composition is the product along it.
+scheme, two shears for symplectic Euler; or one in stages (see `verify.stages`), for a Runge–Kutta
+scheme. ΔJ of a substep is written with its increments u = p' − p, v = q' − q as
+u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels where it is in closed form, and 1 + ΔJ of
+the composition is the product along it.
 """
 
 from collections.abc import Callable, Mapping, Sequence
