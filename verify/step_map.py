@@ -22,7 +22,9 @@ from verify.stages import chained
 
 Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
 P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
-# Terms of the largest composition that is written in closed form, and of its ΔJ.
+# Terms of the largest composition that is written in closed form: those in its parts, its own, and
+# those of its ΔJ.
+_MOST_IN_PARTS = 150
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 
 
@@ -68,6 +70,13 @@ class Substep:
         if self.staged:
             u_p, u_q, v_p, v_q = map(self.ring.named, (u_p, u_q, v_p, v_q))
         return self.ring.reduce(u_p + v_q + u_p * v_q - u_q * v_p)
+
+    @property
+    def length(self) -> int:
+        """How many terms there are in all its parts."""
+        used = self.ring.used(self.p_next, self.q_next)
+        arguments = [g.argument for g in used if g.argument is not None]
+        return sum(map(len, [self.p_next, self.q_next, *arguments]))
 
     @property
     def terms_of_delta_j(self) -> int:
@@ -215,6 +224,8 @@ class StepMap:
         """The whole map as one substep in closed form; None where a composition is too large."""
         if not self.of_parts:
             return self.substeps[0]
+        if sum(step.length for step in self.substeps) > _MOST_IN_PARTS:
+            return None
         try:
             whole, (p1, q1) = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
         except InputError:

@@ -18,7 +18,7 @@ from verify.hamiltonian import VectorField
 from verify.ring import Decision, Poly, Ring
 from verify.scheme import Scheme
 from verify.series import Series, delta_j
-from verify.step_map import H_STEP, StepMap, Substep, h_inside
+from verify.step_map import H_STEP, StepMap, h_inside
 from verify.verdict import Verdict
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
@@ -174,7 +174,7 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
         return _VANISHES
     series = _BySeries(step_map)
     if series.usable:
-        return _leading_by(series, step_map.whole)
+        return _leading_by(series, step_map)
     step = step_map.flat
     if step.preserves_area:
         return _VANISHES
@@ -188,10 +188,11 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
     return found or _VANISHES
 
 
-def _leading_by(series: _BySeries, whole: Substep) -> Leading:
+def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
     found = _first(series.of_delta_j, MOST_ORDERS + 1)
     if found is not None:
         return found
+    whole = step_map.whole
     if whole.preserves_area:
         return _VANISHES
     decision = whole.ring.decide(whole.delta_j)
