@@ -80,7 +80,7 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         criteria=tuple(
             (c, NAMES.get(c.number, "")) for c in scene.criteria if c.scheme == proof.scheme
         ),
-        matrix=mathml.matrix(mathml.NAMED["J"], proof.jacobian),
+        matrix=mathml.matrix(mathml.NAMED["J"], proof.jacobian) if proof.jacobian else None,
         leading=leading,
         plots=tuple(plots.against_step_size(runs, scene, proof, name=anchor)),
         series=tuple(

@@ -28,7 +28,7 @@ class Derivatives:
 
     @classmethod
     def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives | None":
-        """None where the composition of the scheme's substeps is too large."""
+        """None for a scheme that does not take this H."""
         return _derivatives(hamiltonian, scheme)
 
     def second(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
@@ -54,16 +54,18 @@ class Derivatives:
 @lru_cache(maxsize=64)
 def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
     try:
-        step = get(scheme).step_map(hamiltonian).flat
+        step_map = get(scheme).step_map(hamiltonian)
     except InputError:
         return None
+    step = step_map.whole
     ring, diff = step.ring, step.ring.diff
     hessians = tuple(
         tuple(diff(diff(x, a), b) for a in _STATE for b in _STATE)
         for x in (step.p_next, step.q_next)
     )
-    whole = h_inside(ring, step.delta_j)
-    parts = {0: step.delta_j} if whole else ring.powers(step.delta_j, "h")
+    delta_j = ring.zero if step_map.preserves_area else step.delta_j
+    whole = h_inside(ring, delta_j)
+    parts = {0: delta_j} if whole else ring.powers(delta_j, "h")
     gradients = tuple((n, tuple(diff(x, a) for a in _STATE)) for n, x in sorted(parts.items()))
     return Derivatives(ring, (step.p_next, step.q_next), hessians, gradients)
 

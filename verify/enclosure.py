@@ -68,6 +68,7 @@ BALLS: dict[str, Callable[[Any, int], Any]] = {
     "atan": lambda x, _: x.atan(),
     "root": lambda x, n: x.root(n),
     "inverse": lambda x, _: 1 / x,
+    "stage": lambda x, _: x,
 }
 
 

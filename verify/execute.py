@@ -78,8 +78,12 @@ def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
     begun = time.perf_counter()
     step_map = get(scheme).step_map(hamiltonian)
     proof = prove(step_map, get(scheme))
-    flat = step_map.flat
-    a, b, c, d = (to_text(grouped(flat.ring, entry)) for entry in flat.jacobian)
+    closed, p_next, q_next, jacobian = step_map.closed, None, None, None
+    if closed is not None:
+        written = (closed.p_next, closed.q_next, *closed.jacobian)
+        p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in written)
+        jacobian = (a, b), (c, d)
+    delta_j = proof.delta_j
     return ProofResult(
         hamiltonian=to_text(hamiltonian.expression),
         parameters={name: text(value) for name, value in hamiltonian.values},
@@ -88,14 +92,14 @@ def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
         reason=proof.reason,
         order=proof.order,
         leading=to_text(proof.leading),
-        delta_j=to_text(proof.delta_j),
+        delta_j=None if delta_j is None else to_text(delta_j),
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
         witness={name: text(value) for name, value in proof.witness.items()},
         enclosure=proof.enclosure,
-        p_next=to_text(grouped(flat.ring, flat.p_next)),
-        q_next=to_text(grouped(flat.ring, flat.q_next)),
-        jacobian=((a, b), (c, d)),
+        p_next=p_next,
+        q_next=q_next,
+        jacobian=jacobian,
         seconds=time.perf_counter() - begun,
     )
 

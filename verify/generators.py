@@ -21,15 +21,17 @@ _OTHER = (sympy.log, sympy.atan)
 _HYPERBOLIC = (sympy.sinh, sympy.cosh, sympy.tanh)
 
 
-def embed(expressions: Sequence[sympy.Expr], variables: Sequence[str]) -> tuple[Ring, list[Poly]]:
+def embed(
+    expressions: Sequence[sympy.Expr], variables: Sequence[str], most_terms: int = MAX_TERMS
+) -> tuple[Ring, list[Poly]]:
     """The ring of the expressions over the variables, and each expression as its element.
 
-    Raises InputError where an expression divides by zero, or grows beyond `MAX_TERMS` terms.
+    Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
     levels = _levels(expressions)
     powers = {power for e in expressions for power in e.atoms(sympy.Pow)}
     room = 6 * sum(len(level) for level in levels) + 4 * len(powers) + 2 * len(variables)
-    builder = _Builder(Ring(variables, room), _root_degrees(powers))
+    builder = _Builder(Ring(variables, room), _root_degrees(powers), most_terms)
     try:
         for level in levels:
             builder.functions(level)
@@ -84,9 +86,10 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
 class _Builder:
     """Holds the ring while its generators are made, and what each expression became."""
 
-    def __init__(self, ring: Ring, root_degrees: dict[sympy.Expr, int]) -> None:
+    def __init__(self, ring: Ring, root_degrees: dict[sympy.Expr, int], most_terms: int) -> None:
         self.ring = ring
         self.root_degrees = root_degrees
+        self.most_terms = most_terms
         self.known: dict[sympy.Expr, Poly] = {}
 
     # -- functions ----------------------------------------------------------------------------
@@ -197,8 +200,8 @@ class _Builder:
         if node in self.known:
             return self.known[node]
         result = self.build(node)
-        if len(result) > MAX_TERMS:
-            raise InputError("formula", str(node), f"expands to more than {MAX_TERMS} terms")
+        if len(result) > self.most_terms:
+            raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
         self.known[node] = result
         return result
 
@@ -260,8 +263,8 @@ class _Builder:
 
     def limited(self, x: Poly, y: Poly, node: sympy.Expr) -> Poly:
         result = self.ring.multiply(x, y)
-        if len(result) > MAX_TERMS:
-            raise InputError("formula", str(node), f"expands to more than {MAX_TERMS} terms")
+        if len(result) > self.most_terms:
+            raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
         return result
 
     def inverse(self, u: Poly, node: sympy.Expr) -> Poly:

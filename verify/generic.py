@@ -1,7 +1,7 @@
 """A scheme as it is for every H: what gives its step map where H is not known.
 
 `taylor(jets, most)`: the coefficients of h⁰ … h^most of p' and q', as series over the jets.
-`Stages` have more: their equations, which give det J without solving them.
+`StageEquations` have more: their equations, which give det J without solving them.
 """
 
 import math
@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Any, Protocol
 
 import flint
+import sympy
 
 from verify.proof.jets import Jets, Poly, Series
 
@@ -87,11 +88,20 @@ class Stage:
 
 
 @dataclass(frozen=True)
-class Stages:
+class StageEquations:
     """One stage after the other."""
 
     stages: tuple[Stage, ...]
     separable: bool = False
+
+    @classmethod
+    def of_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> "StageEquations":
+        """Kicks and drifts of so many step sizes, for H = T(p) + V(q)."""
+        stages = []
+        for kind, size in parts:
+            length, none = Fraction(int(size.p), int(size.q)), Fraction(0)
+            stages.append(Stage(length, none) if kind == "kick" else Stage(none, length))
+        return cls(tuple(stages), separable=True)
 
     def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
         """By iteration: each one makes one power of h more right."""

@@ -9,7 +9,7 @@ import sympy
 from verify.errors import InputError
 from verify.exact import Exact, rational, text
 from verify.formula import parameter_name, parse, symbol
-from verify.generators import embed
+from verify.generators import MAX_TERMS, embed
 from verify.ring import Poly, Ring
 from verify.substitution import substitute
 
@@ -83,10 +83,12 @@ class Hamiltonian:
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 
-    def field(self, *others: sympy.Expr) -> tuple["VectorField", list[Poly]]:
+    def field(
+        self, *others: sympy.Expr, most_terms: int = MAX_TERMS
+    ) -> tuple["VectorField", list[Poly]]:
         """The vector field of `exact`, and the other expressions as elements of its ring."""
         variables = ("p", "q", "h", *self.symbols)
-        ring, elements = embed([self.exact, *others], variables)
+        ring, elements = embed([self.exact, *others], variables, most_terms)
         return VectorField.of(ring, elements[0]), elements[1:]
 
 

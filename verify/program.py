@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, permutations
 
-from verify.ring import Generator, Poly, Ring
+from verify.generator import Generator
+from verify.ring import Poly, Ring
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
@@ -176,6 +177,8 @@ class Evaluator:
             return self._inputs[str(g.expression)]
         if g.kind == "pi":
             return self.program._add(Op("pi"), True)
+        if g.kind == "stage":
+            return self.evaluate(g.argument)
         return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
 
     def _collect(self, x: Poly, dynamic: Sequence[int]) -> list[Term]:

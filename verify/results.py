@@ -26,7 +26,7 @@ class Value(Frozen):
 
 
 class ProofResult(Frozen):
-    """A `verify.proof.order.Proof`."""
+    """A `verify.proof.order.Proof`; closed forms are None where they are too large."""
 
     hamiltonian: str
     parameters: dict[str, str]
@@ -35,14 +35,14 @@ class ProofResult(Frozen):
     reason: str
     order: int | None
     leading: str
-    delta_j: str
+    delta_j: str | None
     area_preserving: bool | None
     convergence_order: int | None
     witness: dict[str, str]
     enclosure: str
-    p_next: str
-    q_next: str
-    jacobian: tuple[tuple[str, str], tuple[str, str]]
+    p_next: str | None
+    q_next: str | None
+    jacobian: tuple[tuple[str, str], tuple[str, str]] | None
     seconds: Seconds
 
 

@@ -12,7 +12,7 @@ Contract. `decide(x)` answers
   arithmetic, so rounding is accounted for);
 - neither (None), when the relations do not show it zero and no point shows it non-zero.
 `simplify` plays no part in either. The third answer can occur only where generators hide an
-identity, as log(q²) and 2 log(q) do; the callers report UNDECIDED.
+identity, as log(q²) and 2 log(q) do, or names of parts do; the callers report UNDECIDED.
 
 Functions of sums are expanded over a basis of the lattice that their arguments span, so that
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
@@ -29,27 +29,13 @@ import sympy
 
 from verify.enclosure import enclose, points
 from verify.formula import symbol
-
-Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+from verify.generator import Generator, rational_of, written
+from verify.generator import Poly as Poly
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
-
-
-@dataclass(frozen=True)
-class Generator:
-    """One ring generator: `kind` of function, its argument, and its expression.
-
-    `kind`: variable, pi, sin, cos, exp, sinh, cosh, log, atan, root (of `degree`) or inverse.
-    """
-
-    index: int
-    kind: str
-    expression: sympy.Expr
-    argument: Poly = None
-    degree: int = 1
 
 
 @dataclass(frozen=True)
@@ -80,8 +66,10 @@ class Ring:
             for k, name in enumerate(self.variables)
         ]
         self._by_index = {g.index: g for g in self.generators}
-        self._relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
+        self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
+        self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
+        self._written: dict[int, sympy.Expr] = {}
 
     # -- elements -----------------------------------------------------------------------------
 
@@ -101,7 +89,7 @@ class Ring:
 
     def reduce(self, x: Poly) -> Poly:
         """The normal form of x modulo the relations, newest generator first."""
-        for index, power, relation in reversed(self._relations):
+        for index, power, relation in reversed(self.relations):
             if x.degrees()[index] >= power:
                 x = divmod(x, relation)[1]
         return x
@@ -112,11 +100,27 @@ class Ring:
     def diff(self, x: Poly, name: str) -> Poly:
         """∂x/∂name in normal form, by the chain rule over the generators."""
         total = x.derivative(self.room + self.variables.index(name))
-        degrees = x.degrees()
-        for index, gradient in self._gradients.items():
-            if degrees[index] and name in gradient:
-                total += x.derivative(index) * gradient[name]
+        for index, power in enumerate(x.degrees()[: self.room]):
+            if power:
+                total += x.derivative(index) * self._partial(index, name)
         return self.reduce(total)
+
+    def _partial(self, index: int, name: str) -> Poly:
+        """The partial derivative of a generator; that of a stage has a name of its own, too."""
+        known = self._gradients.setdefault(index, {})
+        if name not in known and index in self._chains:
+            terms = (outer * self.diff(inner, name) for outer, inner in self._chains[index])
+            total = self.reduce(sum(terms, self.zero))
+            known[name] = self.named(total) if self._by_index[index].kind == "stage" else total
+        return known.get(name, self.zero)
+
+    def terms_of_diff(self, x: Poly, name: str) -> int:
+        """A bound of the number of terms of ∂x/∂name, without making it."""
+        total = len(x)
+        for index, power in enumerate(x.degrees()[: self.room]):
+            if power:
+                total += len(x.derivative(index)) * len(self._partial(index, name))
+        return total
 
     def used(self, *elements: Poly) -> list[Generator]:
         """The generators that the elements depend on, arguments included, oldest first."""
@@ -150,12 +154,19 @@ class Ring:
 
     def expression(self, x: Poly) -> sympy.Expr:
         """x as an expression, its terms as they stand in the ring."""
-        expressions = {g.index: g.expression for g in self.generators}
         terms = []
         for monomial, coefficient in x.to_dict().items():
-            factors = [expressions[k] ** int(n) for k, n in enumerate(monomial) if n]
+            factors = [self._expression(k) ** int(n) for k, n in enumerate(monomial) if n]
             terms.append(sympy.Mul(rational_of(coefficient), *factors))
         return sympy.Add(*terms)
+
+    def _expression(self, index: int) -> sympy.Expr:
+        g = self._by_index[index]
+        if g.expression is not None:
+            return g.expression
+        if index not in self._written:
+            self._written[index] = written(g, self.expression(g.argument))
+        return self._written[index]
 
     def factored(self, x: Poly) -> sympy.Expr:
         """x as an expression, factored into irreducible polynomials in the generators."""
@@ -170,7 +181,7 @@ class Ring:
     def add(
         self,
         kind: str,
-        expression: sympy.Expr,
+        expression: sympy.Expr | None,
         argument: Poly = None,
         degree: int = 1,
     ) -> Poly:
@@ -193,13 +204,37 @@ class Ring:
 
     def relate(self, generator: Poly, power: int, relation: Poly) -> None:
         """relation = 0, used where `generator` occurs with at least that power."""
-        self._relations.append((self._gens.index(generator), power, relation))
+        self.relations.append((self._gens.index(generator), power, relation))
 
     def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
         """d generator = outer · d inner."""
         partials = ((name, self.diff(inner, name)) for name in self.variables)
         gradient = {name: self.multiply(outer, part) for name, part in partials if part != 0}
         self._gradients[self._gens.index(generator)] = gradient
+
+    def gradient(self, index: int) -> dict[str, Poly]:
+        """The partial derivatives of a generator that has a gradient, by the variables' names."""
+        return self._gradients.get(index, {})
+
+    def set_chain(self, generator: Poly, chain: Sequence[tuple[Poly, Poly]]) -> None:
+        """d generator = Σ outer · d inner over the pairs, worked out when it is asked for."""
+        self._chains[self._gens.index(generator)] = chain
+
+    def named(self, x: Poly) -> Poly:
+        """x as a generator of its own; x itself where that is as short, or there is no room.
+
+        What is made from named parts is evaluated, and differentiated, part by part.
+        """
+        if len(x) < 2 or not any(self.depends(x, name) for name in ("p", "q")):
+            return x
+        known = self.find("stage", x)
+        if known is not None:
+            return known
+        if len(self.generators) - len(self.variables) >= self.room:
+            return x
+        name = self.add("stage", None, x)
+        self.set_chain(name, [(self.one, x)])
+        return name
 
     def inverse(self, u: Poly) -> Poly:
         """1/u, by the inverses of the irreducible factors of u (of u itself, if they are many).
@@ -262,8 +297,3 @@ class Ring:
                     total += parts.get(power, self.zero)
                 x = self.reduce(total)
         return x
-
-
-def rational_of(value: Any) -> sympy.Rational:
-    """A flint rational as sympy's."""
-    return sympy.Rational(int(value.numer()), int(value.denom()))

@@ -56,7 +56,7 @@ def proof_json(
         "scheme": scheme,
         "order": proof.order,
         "leading": to_text(proof.leading),
-        "delta_j": to_text(proof.delta_j),
+        "delta_j": None if proof.delta_j is None else to_text(proof.delta_j),
         "area_preserving": proof.area_preserving,
         "convergence_order": proof.convergence_order,
         "witness": {name: text(value) for name, value in proof.witness.items()},
@@ -81,7 +81,9 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
         )
         at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
         click.echo(f"  witness  {at or 'any point'}: the coefficient is {proof.enclosure}")
-    click.echo(f"  exactly  ΔJ = {to_text(proof.delta_j)}")
+    closed = proof.delta_j
+    shown = "left out: the closed form is too large" if closed is None else to_text(closed)
+    click.echo(f"  exactly  ΔJ = {shown}")
     if potential.potential is not None and proof.order is not None:
         click.echo(
             f"  along an orbit the leading term telescopes: it is X·G, G = "

@@ -1,13 +1,14 @@
 """The exact one-step map (p, q, h) → (p', q'), its Jacobian J (Eq. 12) and ΔJ = det J − 1 (Eq. 14).
 
 A map is a composition of substeps, each with its own exact closed form: one for the Lie-derivative
-scheme, two shears for symplectic Euler. ΔJ of a substep is written with its increments
-u = p' − p, v = q' − q as u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels, and
-1 + ΔJ of the composition is the product along it.
+scheme, two shears for symplectic Euler; or one in stages (see `verify.stages`), for a Runge–Kutta
+scheme. ΔJ of a substep is written with its increments u = p' − p, v = q' − q as
+u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels where it is in closed form, and 1 + ΔJ of
+the composition is the product along it.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import sympy
@@ -16,8 +17,15 @@ from verify.errors import InputError
 from verify.formula import parse, symbol
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
+from verify.series import Series, at_point, partials
+from verify.stages import chained
 
+Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
 P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
+# Terms of the largest composition that is written in closed form: those in its parts, its own, and
+# those of its ΔJ.
+_MOST_IN_PARTS = 150
+_MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 
 
 @dataclass(frozen=True)
@@ -50,11 +58,33 @@ class Substep:
             diff(self.q_next, "q"),
         )
 
+    @property
+    def staged(self) -> bool:
+        """Whether it is made from stages that have names; see `verify.stages`."""
+        return any(g.kind == "stage" for g in self.ring.used(self.p_next, self.q_next))
+
     @cached_property
     def delta_j(self) -> Poly:
         a, u_q, v_p, d = self.jacobian
         u_p, v_q = a - 1, d - 1
+        if self.staged:
+            u_p, u_q, v_p, v_q = map(self.ring.named, (u_p, u_q, v_p, v_q))
         return self.ring.reduce(u_p + v_q + u_p * v_q - u_q * v_p)
+
+    @property
+    def length(self) -> int:
+        """How many terms there are in all its parts."""
+        used = self.ring.used(self.p_next, self.q_next)
+        arguments = [g.argument for g in used if g.argument is not None]
+        return sum(map(len, [self.p_next, self.q_next, *arguments]))
+
+    @property
+    def terms_of_delta_j(self) -> int:
+        """A bound of the number of terms that ΔJ has when it is written out."""
+        bound = self.ring.terms_of_diff
+        u_p, u_q = (bound(self.p_next, name) for name in ("p", "q"))
+        v_p, v_q = (bound(self.q_next, name) for name in ("p", "q"))
+        return u_p + v_q + u_p * v_q + u_q * v_p
 
     @cached_property
     def _by_powers(self) -> tuple[dict[int, Poly], ...] | None:
@@ -88,6 +118,27 @@ class Substep:
                     total += sign * x[k] * y[n - k]
         return self.ring.reduce(total)
 
+    def taylor(self, p: Series, q: Series) -> tuple[Series, Series] | None:
+        """The substep's Taylor series in h at the point (p, q) + O(h) that is given by its series.
+
+        None where the map is no polynomial in h, or does not begin with (p, q).
+        """
+        ring, start = self.ring, [self.ring.variable(name) for name in ("p", "q")]
+        if h_inside(ring, self.p_next, self.q_next):
+            return None
+        u, v = (x - Series.of(ring, [y], x.most) for x, y in zip((p, q), start, strict=True))
+        result = []
+        for y, own in zip((self.p_next, self.q_next), start, strict=True):
+            powers = ring.powers(y, "h")
+            if powers.get(0) != own:
+                return None
+            total = Series.of(ring, [], p.most)
+            for n, x in powers.items():
+                if n <= p.most:
+                    total += at_point(partials(ring, x), u, v).shifted(n)
+            result.append(total)
+        return result[0], result[1]
+
     @cached_property
     def preserves_area(self) -> bool:
         """True where ΔJ is shown to be the zero function."""
@@ -99,17 +150,45 @@ class Substep:
 
 @dataclass(frozen=True)
 class StepMap:
-    """A one-step map of one Hamiltonian, as the composition of its substeps, first one first."""
+    """A one-step map of one Hamiltonian, as the composition of its substeps, first one first.
+
+    `expansion(most)` is `taylor` of a map whose substeps have stages, which it does not look into.
+    """
 
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
+    expansion: Callable[[int], Expanded] | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def of_parts(self) -> bool:
+        """Whether its closed form has to be composed, and may be large."""
+        return self.expansion is not None or len(self.substeps) > 1
+
+    def taylor(self, most: int) -> Expanded | None:
+        """The Taylor series of p' and q' up to h^most, and the vector field in their ring.
+
+        None where the closed form is to be looked at instead.
+        """
+        if self.expansion is not None:
+            return self.expansion(most)
+        whole = self.substeps[0].field
+        ring = whole.ring
+        if any(step.field is not whole for step in self.substeps):
+            return None
+        p, q = (Series.of(ring, [ring.variable(name)], most) for name in ("p", "q"))
+        for step in self.substeps:
+            moved = step.taylor(p, q)
+            if moved is None:
+                return None
+            p, q = moved
+        return whole, p, q
 
     @classmethod
     def from_expressions(
         cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
     ) -> "StepMap":
-        field, (p1, q1) = hamiltonian.field(p_next, q_next)
-        return cls(hamiltonian, (Substep(field, p1, q1),))
+        whole, (p1, q1) = hamiltonian.field(p_next, q_next)
+        return cls(hamiltonian, (Substep(whole, p1, q1),))
 
     @classmethod
     def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
@@ -141,14 +220,43 @@ class StepMap:
         return self.composed[1]
 
     @cached_property
-    def flat(self) -> Substep:
-        """The whole map as one substep."""
+    def closed(self) -> Substep | None:
+        """The whole map as one substep in closed form; None where a composition is too large."""
+        if not self.of_parts:
+            return self.substeps[0]
+        if sum(step.length for step in self.substeps) > _MOST_IN_PARTS:
+            return None
+        try:
+            whole, (p1, q1) = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
+        except InputError:
+            return None
+        step = Substep(whole, p1, q1)
+        return step if step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
+
+    @cached_property
+    def whole(self) -> Substep:
+        """The whole map as one substep: in closed form, or where that is too large in stages."""
+        if self.closed is not None:
+            return self.closed
         if len(self.substeps) == 1:
             return self.substeps[0]
-        field, (p1, q1) = self.hamiltonian.field(*self.composed)
-        return Substep(field, p1, q1)
+        first = self.substeps[0].field
+        return Substep(*chained(first, [(step.p_next, step.q_next) for step in self.substeps]))
 
     @property
+    def flat(self) -> Substep:
+        """The whole map as one substep in closed form; InputError where that is too large."""
+        if self.closed is None:
+            shown = str(self.hamiltonian.expression)
+            raise InputError("map", shown, "its closed form, all substeps composed, is too large")
+        return self.closed
+
+    @property
+    def written(self) -> bool:
+        """Whether ΔJ has a closed form that is short enough to be written out."""
+        return self.preserves_area or self.closed is not None
+
+    @cached_property
     def preserves_area(self) -> bool:
         """True where every substep's ΔJ, and so the composition's, is shown to vanish."""
         return all(step.preserves_area for step in self.substeps)
@@ -161,7 +269,7 @@ class StepMap:
 
     @cached_property
     def delta_j(self) -> sympy.Expr:
-        """ΔJ = det J − 1 (Eq. 14) in closed form."""
+        """ΔJ = det J − 1 (Eq. 14) in closed form; InputError where that is too large."""
         if self.preserves_area:
             return sympy.S.Zero
         step = self.flat

@@ -1,6 +1,6 @@
 """Proofs as whole processes: every H, certificates, a polynomial H of degree 8, the paper's claims.
 
-    python tests/bench/proofs.py
+python tests/bench/proofs.py
 """
 
 import subprocess

@@ -100,7 +100,7 @@ BAD = {
     "float64": ({"arithmetic": "float64"}, "arithmetic=float64: is what is examined"),
     "arithmetic": ({"arithmetic": "posit"}, "arithmetic=posit: unknown"),
     "parameter": ({"system": "duffing"}, "parameter=delta: has no value"),
-    "scheme": ({"scheme": "rk4"}, "scheme=rk4"),
+    "scheme": ({"scheme": "rk5"}, "scheme=rk5"),
     "system": ({"system": None}, "--system, --hamiltonian"),
     "q": ({"q": "inf"}, "q=inf"),
 }

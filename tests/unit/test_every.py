@@ -12,7 +12,7 @@ import sympy
 from tests.property.strategies import P, Q, plain
 from verify import schemes
 from verify.errors import InputError
-from verify.generic import RungeKutta, Stage, Stages, TaylorSeries
+from verify.generic import RungeKutta, Stage, StageEquations, TaylorSeries
 from verify.proof import every
 from verify.proof.every import prove_every
 from verify.proof.jets import Jets, multiplied
@@ -25,9 +25,9 @@ RK4 = RungeKutta(
     ((), (HALF,), (NONE, HALF), (NONE, NONE, ONE)),
     (Fraction(1, 6), Fraction(1, 3), Fraction(1, 3), Fraction(1, 6)),
 )
-MIDPOINT = Stages((Stage(ONE, ONE, HALF, HALF),))
-IMPLICIT_EULER = Stages((Stage(ONE, ONE, ONE, NONE),))
-VERLET = Stages((Stage(HALF, NONE), Stage(NONE, ONE), Stage(HALF, NONE)), separable=True)
+MIDPOINT = StageEquations((Stage(ONE, ONE, HALF, HALF),))
+IMPLICIT_EULER = StageEquations((Stage(ONE, ONE, ONE, NONE),))
+VERLET = StageEquations((Stage(HALF, NONE), Stage(NONE, ONE), Stage(HALF, NONE)), separable=True)
 
 
 def made(generic: object, order: int, area_preserving: bool = False) -> Scheme:
@@ -210,9 +210,9 @@ def test_symplectic_schemes_preserve_area_for_every_hamiltonian(prove_made, gene
      Stage(ONE, HALF, ONE, NONE)],
 )  # fmt: skip
 def test_a_stage_that_does_not_preserve_area_is_seen(prove_made, stage: Stage) -> None:
-    left, right = Stages((stage,)).determinants()[0]
+    left, right = StageEquations((stage,)).determinants()[0]
     assert left != right
-    proof = prove_made(Stages((stage,)), 1, area_preserving=True)
+    proof = prove_made(StageEquations((stage,)), 1, area_preserving=True)
     assert proof.verdict is Verdict.REFUTED
     assert proof.order is not None or proof.convergence_order < 1
 

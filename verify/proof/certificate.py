@@ -22,7 +22,7 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.exact import text
-from verify.generic import Stages
+from verify.generic import StageEquations
 from verify.proof.checking import FORMAT
 from verify.proof.every import EveryProof
 from verify.proof.jets import Jets
@@ -40,7 +40,7 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
     data: dict[str, Any] = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
     data["separable"] = proof.separable
-    if isinstance(generic, Stages) and proof.area_preserving:
+    if isinstance(generic, StageEquations) and proof.area_preserving:
         rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in generic.stages)
         return data | {"stages": [[text(x) for x in row] for row in rows]}
     assert proof.order is not None  # noqa: S101 - PROVED, and not area-preserving

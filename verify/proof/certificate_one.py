@@ -117,7 +117,7 @@ class _Plain:
     def cofactors(self, x: Poly) -> dict[str, list[list[str]]]:
         """By which Σ cofactor·relation is x; InputError where reducing does not end at 0."""
         found: dict[int, Poly] = {}
-        for index, power, relation in reversed(self.ring._relations):
+        for index, power, relation in reversed(self.ring.relations):
             if x.degrees()[index] >= power:
                 quotient, x = divmod(x, relation)
                 found[index] = found.get(index, self.ring.zero) + quotient

@@ -15,14 +15,14 @@ and G is −(−D)^(η/2)/η! at an equilibrium, as all η+1 terms of its sum ar
 for H = p²/2 + V(q), V with two maxima of one height and different V'', then G would be constant
 along the orbit that joins them, and yet has different values at its ends. ∎
 
-Stages. Where A J = B with det A = det B the determinant of J is 1; see `Stages.determinants`.
+Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determinants`.
 """
 
 import math
 from dataclasses import dataclass
 
 from verify.errors import InputError
-from verify.generic import Generic, Stages, TaylorSeries
+from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.jets import Jets, Poly
 from verify.proof.telescoping import Telescoping, potential_of_lie, telescopes
 from verify.scheme import Scheme
@@ -71,7 +71,7 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
     if scheme.generic is None:
         raise InputError("scheme", name, "is given for one H; it cannot be proved for every H")
     separable = separable or scheme.generic.separable
-    if isinstance(scheme.generic, Stages):
+    if isinstance(scheme.generic, StageEquations):
         return _of_stages(scheme, scheme.generic, separable)
     return _of_series(scheme, scheme.generic, separable)
 
@@ -88,7 +88,7 @@ def _convergence(jets: Jets, generic: Generic, most: int) -> int:
     return agreed
 
 
-def _of_stages(scheme: Scheme, generic: Stages, separable: bool) -> EveryProof:
+def _of_stages(scheme: Scheme, generic: StageEquations, separable: bool) -> EveryProof:
     most = scheme.order + 2
     agreed = _convergence(Jets(most + 1, separable=separable), generic, most)
     preserved = all(a == b and a != 0 for a, b in generic.determinants())

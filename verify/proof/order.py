@@ -14,12 +14,15 @@ import sympy
 from verify.errors import InputError
 from verify.formula import checked
 from verify.generators import embed
+from verify.hamiltonian import VectorField
 from verify.ring import Decision, Poly, Ring
 from verify.scheme import Scheme
+from verify.series import Series, delta_j
 from verify.step_map import H_STEP, StepMap, h_inside
 from verify.verdict import Verdict
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
+_FIRST_ORDERS = 6  # of them, those that are made at once
 
 
 @dataclass(frozen=True)
@@ -45,9 +48,9 @@ class Proof:
     enclosure: str = ""
 
     @property
-    def delta_j(self) -> sympy.Expr:
-        """ΔJ in closed form, written out when it is asked for."""
-        return self.step_map.delta_j
+    def delta_j(self) -> sympy.Expr | None:
+        """ΔJ in closed form, written out when it is asked for; None where it is too large."""
+        return self.step_map.delta_j if self.step_map.written else None
 
     @property
     def consistent(self) -> bool:
@@ -134,9 +137,46 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     )
 
 
+class _BySeries:
+    """The Taylor coefficients of p', q' and ΔJ of a map of several parts, without its closed form.
+
+    They are made as far as they are looked at.
+    """
+
+    def __init__(self, step_map: StepMap) -> None:
+        self.map = step_map
+        self.made: tuple[VectorField, Series, Series] | None = None
+        self.usable = step_map.of_parts and self.reach(_FIRST_ORDERS)
+
+    def reach(self, n: int) -> bool:
+        """Makes the coefficients up to hⁿ, and a few more; False where the map has none."""
+        if self.made is None or self.made[1].most < n:
+            most = _FIRST_ORDERS if n <= _FIRST_ORDERS else MOST_ORDERS
+            self.made = self.map.taylor(most)
+        return self.made is not None
+
+    def coefficients(self, n: int) -> tuple[VectorField, tuple[Poly, Poly]]:
+        """Those of hⁿ in p' and q', and the vector field in their ring."""
+        self.reach(n)
+        assert self.made is not None  # noqa: S101 - the caller looks at `usable`
+        field, p, q = self.made
+        return field, (p.coefficients[n], q.coefficients[n])
+
+    def of_delta_j(self, n: int) -> tuple[Ring, Poly]:
+        self.reach(n)
+        assert self.made is not None  # noqa: S101 - as above
+        field, p, q = self.made
+        return field.ring, delta_j(p, q).coefficients[n]
+
+
 def _leading_of_delta_j(step_map: StepMap) -> Leading:
+    if step_map.preserves_area:
+        return _VANISHES
+    series = _BySeries(step_map)
+    if series.usable:
+        return _leading_by(series, step_map)
     step = step_map.flat
-    if step_map.preserves_area or step.preserves_area:
+    if step.preserves_area:
         return _VANISHES
     if step.degree is None:
         leading = Expansion(step.ring, step.delta_j).leading()
@@ -146,6 +186,17 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
         return leading
     found = _first(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
     return found or _VANISHES
+
+
+def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
+    found = _first(series.of_delta_j, MOST_ORDERS + 1)
+    if found is not None:
+        return found
+    whole = step_map.whole
+    if whole.preserves_area:
+        return _VANISHES
+    decision = whole.ring.decide(whole.delta_j)
+    return Leading(MOST_ORDERS + 1 if decision.zero is None else None, sympy.S.Zero, decision)
 
 
 @dataclass(frozen=True)
@@ -164,6 +215,9 @@ class Convergence:
 
 def convergence_of(step_map: StepMap) -> Convergence:
     """The order to which the map agrees with the exact flow."""
+    series = _BySeries(step_map)
+    if series.usable:
+        return _convergence_by(series)
     step = step_map.flat
     ring = step.ring
     pairs = [(step.p_next, ring.variable("p")), (step.q_next, ring.variable("q"))]
@@ -174,6 +228,18 @@ def convergence_of(step_map: StepMap) -> Convergence:
             if n == len(flow):
                 flow.append(step.field.derive(flow[-1]))
             agrees = _agrees(expansion, n, ring, flow[n])
+            if agrees is not True:
+                return Convergence(n - 1, agrees is False)
+    return Convergence(None, True)
+
+
+def _convergence_by(series: _BySeries) -> Convergence:
+    flow: tuple[Poly, Poly] | None = None
+    for n in range(MOST_ORDERS + 1):
+        field, own = series.coefficients(n)
+        flow = own if flow is None else (field.derive(flow[0]), field.derive(flow[1]))
+        for x, y in zip(own, flow, strict=True):
+            agrees = field.ring.decide(x - y / math.factorial(n)).zero
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)
     return Convergence(None, True)

@@ -4,16 +4,14 @@ Each of its two substeps is a shear, so det J ≡ 1. For an H that is not separa
 implicit; this file holds the explicit one and says so.
 """
 
-from fractions import Fraction
+import sympy
 
-from verify.errors import InputError
-from verify.generic import Stage, Stages
-from verify.hamiltonian import Hamiltonian
+from verify.generic import StageEquations
 from verify.scheme import Scheme
-from verify.step_map import StepMap, Substep
+from verify.splitting import shears
 
-_ONE = Fraction(1)
 EXAMPLES = ("symplectic-euler",)
+PARTS = (("kick", sympy.S.One), ("drift", sympy.S.One))
 
 
 def make(name: str) -> Scheme | None:
@@ -25,22 +23,6 @@ def make(name: str) -> Scheme | None:
         area_preserving=True,
         explicit=True,
         source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-        build=symplectic_euler_map,
-        generic=Stages((Stage(kick=_ONE, drift=Fraction(0)), Stage(Fraction(0), drift=_ONE)), True),
+        build=lambda hamiltonian: shears(hamiltonian, name, PARTS),
+        generic=StageEquations.of_shears(PARTS),
     )
-
-
-def symplectic_euler_map(hamiltonian: Hamiltonian) -> StepMap:
-    """Two shears; InputError unless H = T(p) + V(q)."""
-    field, _ = hamiltonian.field()
-    ring = field.ring
-    if not field.separable():
-        raise InputError(
-            "hamiltonian",
-            str(hamiltonian.expression),
-            "symplectic-euler is explicit only for H = T(p) + V(q)",
-        )
-    p, q, h = (ring.variable(name) for name in ("p", "q", "h"))
-    kick = Substep(field, p - h * field.h_q, q)
-    drift = Substep(field, p, q + h * field.h_p)
-    return StepMap(hamiltonian, (kick, drift))

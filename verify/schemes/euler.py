@@ -1,0 +1,21 @@
+"""Explicit Euler: p' = p − h H_q(p, q), q' = q + h H_p(p, q). It is the map of lie1."""
+
+from verify.generic import TaylorSeries
+from verify.scheme import Scheme
+from verify.schemes.lie import lie_map
+
+EXAMPLES = ("euler",)
+
+
+def make(name: str) -> Scheme | None:
+    if name != EXAMPLES[0]:
+        return None
+    return Scheme(
+        name=name,
+        order=1,
+        area_preserving=False,
+        explicit=True,
+        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+        build=lambda hamiltonian: lie_map(hamiltonian, 1),
+        generic=TaylorSeries(1),
+    )
