@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Literal
 
 import sympy
 
@@ -51,7 +52,7 @@ class Orbit:
     shift: State
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> Literal["libration", "rotation", "equilibrium"]:
         if self.period is None:
             return "equilibrium"
         return "rotation" if any(self.shift) else "libration"
@@ -160,7 +161,7 @@ class _Walk:
         self.reach = 0.0
 
     def back(self) -> _Return:
-        flow, z, time = self.flow, self.z0, 0.0
+        z, time = self.z0, 0.0
         span = 1 + max(_distance(target, (0, 0)) for _, target in self.targets)
         step = span / _distance(self.f0, (0, 0)) / 16
         for _ in range(_MOST_STEPS):

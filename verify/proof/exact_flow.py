@@ -93,7 +93,7 @@ class Flow:
         return self.advance(middle, half, halvings - 1)
 
     def _extrapolated(self, z: State, time: Number) -> State | None:
-        """By Aitken and Neville's scheme in the squares of the steps; None where it does not end."""
+        """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
         above: list[State] = []
         for j in range(1, self._columns + 1):
             row = [self._midpoint(z, time, 2 * j)]

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.enclosure import enclose
 from verify.balls import in_reach, middle_and_radius
+from verify.enclosure import enclose
 from verify.hamiltonian import Hamiltonian
 from verify.precision import working_precision
 from verify.proof.closed_orbit import Element, Orbit, Start, closed_orbit
@@ -42,7 +42,7 @@ class Average:
 
 
 def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> Average:
-    """⟨g⟩ along the exact orbit through start = (p, q), to so many digits of the greatest |g| on it.
+    """⟨g⟩ along the exact orbit through start = (p, q), to so many digits of the greatest |g|.
 
     g: a ring element in p and q alone. Raises NoFlowError where the orbit is not closed, is not
     known to be, or so many digits are not reached.
@@ -79,7 +79,8 @@ class _Mean:
 
 def _mean(orbit: Orbit, g: Element) -> _Mean:
     found = [orbit.flow.arithmetic.exact(x) for x in orbit.values(g)]
-    return _Mean(sum(found) / len(found), max(map(abs, found)), tuple(map(float, found)))
+    mean = sum(found, Fraction(0)) / len(found)
+    return _Mean(mean, max(map(abs, found)), tuple(map(float, found)))
 
 
 def _last(digits: int) -> Fraction:
