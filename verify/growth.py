@@ -24,7 +24,7 @@ from verify.exact import Exact, known_digits, rational, text
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.proof.exact_flow import NoFlowError
-from verify.proof.growth import Element, GrowthLaw, growth_law
+from verify.proof.growth import Element, GrowthLaw, NoLawError, growth_law
 from verify.proof.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.results import AverageResult, PredictionResult, RunResult, Value
 
@@ -37,23 +37,23 @@ _ROUNDED = Fraction(1, 10**10)  # of the bounded part, which is summed in float6
 
 def average_of(
     hamiltonian: Hamiltonian, scheme: str, *, q: Exact, p: Exact, digits: int
-) -> AverageResult | None:
+) -> AverageResult:
     """⟨g⟩ of the scheme's growth law along the exact orbit through (q, p), to so many digits.
 
-    None where ΔJ ≡ 0. Raises InputError for what `growth_law` refuses, and for digits beyond 200.
+    Where there is no law, or no closed orbit is found, `orbit` is "undecided" and `reason` says
+    why. Raises InputError for a parameter without a value, and for digits beyond 200.
     """
     begun = time.perf_counter()
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
         raise InputError("digits", digits, f"must be a whole number, 1 … {MOST_DIGITS}")
     start = rational(p, "p"), rational(q, "q")
-    law = growth_law(hamiltonian, scheme)
-    if law is None:
-        return None
+    law: GrowthLaw | None = None
     found: Average | None = None
     reason = ""
     try:
+        law = growth_law(hamiltonian, scheme)
         found = average(hamiltonian, law.g, start, digits)
-    except NoFlowError as error:
+    except (NoLawError, NoFlowError) as error:
         reason = str(error)
     period = found.period if found else None
     at_rest = found is not None and period is None
@@ -64,9 +64,9 @@ def average_of(
         digits=digits,
         q=text(start[1]),
         p=text(start[0]),
-        power=law.power,
-        g=_shown(law.g),
-        potential=_shown(law.potential) if law.potential else "",
+        power=law.power if law else 0,
+        g=_shown(law.g) if law else "",
+        potential=_shown(law.potential) if law and law.potential else "",
         orbit=found.orbit.kind if found else "undecided",
         reason=reason,
         average=_known(found.value, found.bound, digits) if found else None,
@@ -85,10 +85,10 @@ def predictions(
     Left out are runs that give no p, q or Λ, or too little of p and q for G; and all of them where
     ⟨g⟩ is not known.
     """
-    law = growth_law(hamiltonian, of.scheme)
     finished = [run for run in runs if {"lambda", "p", "q"} <= set(run.values)]
-    if law is None or of.average is None or not finished:
+    if of.average is None or not finished:
         return ()
+    law = growth_law(hamiltonian, of.scheme)
     placed = average(hamiltonian, law.g, (Fraction(of.p), Fraction(of.q)), _PHASE_DIGITS)
     oscillation, number = bounded_part(placed), placed.orbit.flow.number
     found = []

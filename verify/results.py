@@ -183,10 +183,10 @@ class SeparationGrid(Frozen):
 class AverageResult(Frozen):
     """The growth law of Λ on one orbit: see `verify.proof.growth`.
 
-    `power`: ⟨g⟩ stands with h^power T. `g` and `potential` are formulas; `potential` is empty where
-    the leading coefficient of ΔJ does not telescope. `average` (⟨g⟩) and `period` are along the
-    exact orbit through (q, p); `average` is None where the orbit is not known to be closed, and
-    `reason` says why; `period` is None at an equilibrium too.
+    `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas;
+    `potential` is empty where the leading coefficient of ΔJ does not telescope. `average` (⟨g⟩) and
+    `period` are along the exact orbit through (q, p); `average` is None where the orbit is not
+    known to be closed, and `reason` says why; `period` is None at an equilibrium too.
     """
 
     hamiltonian: str
@@ -255,7 +255,8 @@ class SceneResult(Frozen):
     """Everything found for one scene; `time` is the length of its runs where it has a grid.
 
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
-    scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ.
+    scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
+    `growth_explains` is what of a paper the scene says that the law explains.
     """
 
     name: str
@@ -271,6 +272,7 @@ class SceneResult(Frozen):
     separations: tuple[SeparationGrid, ...] = ()
     crossovers: tuple[SeparationGrid, ...] = ()
     growth_laws: tuple[GrowthLawResult, ...] = ()
+    growth_explains: str = ""
 
 
 class Provenance(Frozen):

@@ -62,6 +62,10 @@ _MOST_ORDERS = 24
 Element = tuple[Ring, Poly]
 
 
+class NoLawError(Exception):
+    """There is no growth law; the message says why."""
+
+
 @dataclass(frozen=True)
 class GrowthLaw:
     """log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
@@ -77,11 +81,11 @@ class GrowthLaw:
 
 
 @lru_cache(maxsize=64)
-def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw | None:
-    """The law of one H without symbols; None where ΔJ ≡ 0, so that Λ = 0.
+def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
+    """The law of one H without symbols.
 
-    Raises InputError for a parameter without a value, and where the leading coefficient of ΔJ is
-    not decided.
+    Raises InputError for a parameter without a value, NoLawError where ΔJ ≡ 0 or its leading order
+    in h is not known.
     """
     if hamiltonian.symbols:
         raise InputError(
@@ -89,7 +93,7 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw | None:
         )
     step_map = get(scheme).step_map(hamiltonian)
     if step_map.preserves_area:
-        return None
+        raise NoLawError("ΔJ ≡ 0 is proved: Λ is exactly 0")
     step, eta = step_map.flat, eta_of(scheme)
     if eta is None or eta % 2:
         return _plain_law(step)
@@ -104,10 +108,12 @@ def _plain_law(step: Substep) -> GrowthLaw:
     expansion = None if step.degree is not None else Expansion(step.ring, step.delta_j)
     for n in range(_MOST_ORDERS + 1 if step.degree is None else step.degree + 1):
         ring, x = expansion.coefficient(n) if expansion else (step.ring, step.coefficient(n))
-        decision = ring.decide(x)
-        if decision.zero is True:
+        zero = ring.decide(x).zero
+        if zero is True:
             continue
-        if decision.zero is None or n < 2:
-            raise InputError("scheme", n, "has no growth law: the leading order of ΔJ is not known")
+        if zero is None:
+            raise NoLawError(f"whether the coefficient of h^{n} in ΔJ vanishes is not decided")
+        if n < 2:
+            raise NoLawError(f"ΔJ begins with h^{n}: the map is not consistent with the flow")
         return GrowthLaw(n - 1, (ring, x), None, None)
-    raise InputError("scheme", _MOST_ORDERS, "has no growth law: ΔJ vanishes up to that order")
+    raise NoLawError(f"the coefficients of ΔJ vanish up to h^{_MOST_ORDERS}")

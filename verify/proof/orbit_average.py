@@ -128,9 +128,11 @@ def phase(orbit: Orbit, z: State) -> float:
     z = _turned_back(orbit, z)
     at = min(range(len(orbit.points)), key=lambda k: _squared(z, orbit.points[k]))
     point, time = orbit.points[at], float(orbit.time(Fraction(at, len(orbit.points))))
+    most = float(orbit.time(Fraction(1, len(orbit.points))))  # beyond it there is no nearest point
     for _ in range(_NEWTON):
         p, q = orbit.flow.slope(point)
         change = float((p * (z[0] - point[0]) + q * (z[1] - point[1])) / (p * p + q * q))
+        change = max(-most, min(most, change))
         point = orbit.flow.advance(point, orbit.flow.number(Fraction(change)))
         time += change
     return time
