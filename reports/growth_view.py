@@ -81,11 +81,13 @@ def _law(law: AverageResult) -> Markup:
 
 def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
     known = [each.law for each in laws if each.law.average]
+    if not laws[0].law.power:
+        return
     yield (
-        "What stands in brackets is taken between the two ends of the run: it is bounded whatever "
-        "T is, and rises and falls with where on its orbit the run happens to end. "
-        "⟨g⟩, the time average along the exact orbit, is the rate at which Λ grows; the initial "
-        "value alone decides it."
+        "What stands in brackets is a difference between the two ends of the run: it is bounded "
+        "whatever T is, and goes up and down with where on its orbit the run happens to end. "
+        f"log(1 + Λ) grows at the rate {_h(laws[0].law.power)} ⟨g⟩, and ⟨g⟩, the time average "
+        "along the exact orbit, is decided by the initial value alone."
     )
     if len(known) > 1:
         rates = sorted((Fraction(law.average.value) for law in known if law.average), key=abs)
@@ -93,8 +95,8 @@ def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
         yield f"⟨g⟩ is {low} … {high} over the {len(known)} orbits."
     if explains:
         yield (
-            f"That is the pattern in {explains}: at one h, Λ is different for different initial "
-            "values as ⟨g⟩ is, and what is left of irregularity is the bounded part."
+            f"That is the pattern in {explains}: at one h, the Λ of different initial values are "
+            "as their ⟨g⟩, and only the bounded part looks irregular."
         )
     yield from _agreement([p for each in laws for p in each.predictions])
     unknown = len(laws) - len(known)
@@ -165,15 +167,20 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     lead = "Λ as the growth law predicts it and as measured, against the step size h"
     orbits = [_orbit(each) for each in drawable]
     svg = growth_figure.predicted_against_measured(orbits, name=f"growth-of-{name}", label=lead)
-    yield Plot(svg, f"{lead}.", _caption(drawable[0].law.power))
+    yield Plot(svg, f"{lead}.", _caption(drawable[0].law))
 
 
-def _caption(power: int) -> str:
+def _caption(law: AverageResult) -> str:
+    drift = ""
+    if law.potential:
+        drift = (
+            f", which for this scheme is O({_h(law.power)} T) of it: there the slope is {law.power}"
+        )
     return (
-        f"(a) Each line is {_h(power)} T ⟨g⟩ and the bounded part at the run’s own end. (b) What "
-        f"they differ by, of the measured Λ. The law’s remainder is O(h) + O({_h(power)} T) of the "
-        "secular part: grey is the slope of h, and where the slow drift of the energy is what "
-        f"remains, the slope is {power}."
+        f"(a) Each line is {_h(law.power)} T ⟨g⟩ and the bounded part at the run’s own end. (b) By "
+        "what they differ, as a part of the measured Λ. The law’s remainder is O(h) of the secular "
+        "part (grey: the slope of h), and beyond that what the slow drift of the energy makes of "
+        f"⟨g⟩{drift}."
     )
 
 

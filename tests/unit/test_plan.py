@@ -55,6 +55,7 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
         "mine: trajectories and plots over time": "the scene has no [[series]]",
         "mine: truncation separated from rounding": "the scene has no [[separation]], and its "
         "[grid] does not say `separate = true`",
+        "mine: Λ against its growth law": "the scene has no [grid] that says `growth = true`",
         "mine: criteria 1–4": "the scene names no criteria",
     }
     plan = plan_scenes([load(tmp_path, GOOD.replace("lie2", "symplectic-euler"))])

@@ -18,12 +18,13 @@ from typing import Literal
 
 import sympy
 
-from verify.enclosure import enclose
+from verify.errors import InputError
 from verify.formula import symbol
 from verify.generators import embed
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.proof.exact_flow import LOST, Flow, NoFlowError, Number, State, functions_at
 from verify.ring import Poly, Ring
+from verify.substitution import substitute
 
 Element = tuple[Ring, Poly]
 Start = tuple[Fraction, Fraction]  # p, q
@@ -35,7 +36,6 @@ _FAR = 10**4  # an orbit that goes so many times farther than z₀ and its shift
 _NEAR = 1e-7  # of the orbit's reach: what comes so near to z₀ may be z₀
 _TURN = (0.5, 0.95)  # cosines: a step turns by less than 60°; one below 18° is made longer
 _HALVINGS, _BISECTIONS, _NEWTON = 100, 6, 8
-_PRECISIONS = (64, 256, 1024)
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Orbit:
 def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> Orbit:
     """The orbit through z₀ = (p, q) at `count` times. Raises NoFlowError where it is not closed."""
     field, _ = hamiltonian.field()
-    if _at_rest(field, start):
+    if _at_rest(hamiltonian, field, start):
         flow = Flow(field, digits)
         zero = flow.number(Fraction(0))
         p, q = (flow.number(x) for x in start)
@@ -100,17 +100,21 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
     )
 
 
-def _at_rest(field: VectorField, start: Start) -> bool:
-    point = {"p": start[0], "q": start[1]}
-    for precision in _PRECISIONS:
-        slopes = [enclose(field.ring, x, point, precision) for x in (field.h_p, field.h_q)]
-        if any(x is None for x in slopes):
-            raise NoFlowError("H is not defined at the initial value")
-        if all(x == 0 for x in slopes):  # of balls: both are exactly 0
-            return True
-        if not all(x.contains(0) for x in slopes):
-            return False
-    raise NoFlowError("whether the initial value is an equilibrium is not decided")
+def _at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool:
+    """Whether z₀ is an equilibrium, by algebra."""
+    ring = field.ring
+    numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
+    point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))
+    slopes = [ring.expression(x) for x in (field.h_p, field.h_q)]
+    try:
+        _, *there = [substitute(x, point, "z0") for x in (hamiltonian.exact, *slopes)]
+        constants, elements = embed(there, ())
+    except InputError:
+        raise NoFlowError("H is not defined at the initial value") from None
+    zero = [constants.decide(x).zero for x in elements]
+    if None in zero and False not in zero:
+        raise NoFlowError("whether the initial value is an equilibrium is not decided")
+    return False not in zero
 
 
 def _shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:

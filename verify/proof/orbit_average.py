@@ -21,9 +21,11 @@ from verify.proof.closed_orbit import Element, Orbit, Start, closed_orbit
 from verify.proof.exact_flow import NoFlowError, Number, State
 
 MOST_DIGITS = 200
-_MORE = 10
-_FEWEST, _MOST = 32, 1 << 13  # points of a mean
-_NEWTON = 6
+_ATTEMPTS = ((0, 32), (15, 64), (30, 128))  # digits more, and the fewest points of a mean
+_MOST = 1 << 13
+_CHECK = 10  # digits more of what is computed again
+_NEWTON = 50
+_SETTLED = 1e-14  # of the period
 
 
 @dataclass(frozen=True)
@@ -47,27 +49,32 @@ def average(hamiltonian: Hamiltonian, g: Element, start: Start, digits: int) -> 
     g: a ring element in p and q alone. Raises NoFlowError where the orbit is not closed, is not
     known to be, or so many digits are not reached.
     """
-    first = closed_orbit(hamiltonian, start, digits, _FEWEST)
-    if first.period is None:
-        return _at_rest(first, g, start, digits)
-    mean = _mean(first, g)
-    while True:
-        half, first = mean, first.finer()
-        mean = _mean(first, g)
-        if abs(mean.value - half.value) > _last(digits) * mean.size:
-            if len(first.points) >= _MOST:
-                raise NoFlowError(f"{_MOST} points are too few for the average's digits")
-            continue
-        again = closed_orbit(hamiltonian, start, digits + _MORE, len(first.points) * 3 // 2)
+    for more, fewest in _ATTEMPTS:
+        first = closed_orbit(hamiltonian, start, digits + more, fewest)
+        if first.period is None:
+            return _at_rest(first, g, start, digits)
+        first, mean = _enough(first, g, digits)
+        finest = digits + more + _CHECK
+        again = closed_orbit(hamiltonian, start, finest, len(first.points) * 3 // 2)
         better = _mean(again, g)
-        bound = abs(better.value - mean.value) + _last(digits + _MORE) * better.size
-        if bound <= _last(digits) * better.size or len(first.points) >= _MOST:
-            break
-    exact = again.flow.arithmetic.exact
-    assert again.period is not None  # noqa: S101 - it is the orbit of `first`
-    period = exact(again.period)
-    apart = abs(period - exact(first.period)) + period * _last(digits + _MORE)
-    return Average(better.value, bound, (period, apart), again, better.values)
+        exact = again.flow.arithmetic.exact
+        before, period = exact(first.period), exact(again.period)
+        apart = abs(period - before) + _last(finest) * period
+        bound = abs(better.value - mean.value) + _last(finest) * better.size
+        if apart <= _last(digits) * period and bound <= _last(digits) * better.size:
+            return Average(better.value, bound, (period, apart), again, better.values)
+    raise NoFlowError(f"{digits} digits of the average were not reached")
+
+
+def _enough(orbit: Orbit, g: Element, digits: int) -> tuple[Orbit, "_Mean"]:
+    """The orbit with so many points that the mean over every second one is the same."""
+    mean = _mean(orbit, g)
+    while len(orbit.points) < _MOST:
+        half, orbit = mean, orbit.finer()
+        mean = _mean(orbit, g)
+        if abs(mean.value - half.value) <= _last(digits) * mean.size:
+            return orbit, mean
+    raise NoFlowError(f"{_MOST} points are too few for {digits} digits of the average")
 
 
 @dataclass(frozen=True)
@@ -135,6 +142,8 @@ def phase(orbit: Orbit, z: State) -> float:
         change = max(-most, min(most, change))
         point = orbit.flow.advance(point, orbit.flow.number(Fraction(change)))
         time += change
+        if abs(change) < _SETTLED * most:
+            break
     return time
 
 
