@@ -117,8 +117,8 @@ def _agreement(found: Sequence[PredictionResult]) -> Iterator[str]:
     )
     shares = [share for p in found if (share := _share(p)) is not None]
     if shares:
-        low, high = min(shares), max(shares)
-        parts = f"{_percent(low)} to {_percent(high)}"
+        low, high = _percent(min(shares)), _percent(max(shares))
+        parts = low if low == high else f"{low} to {high}"
         yield f"The bounded part is {parts} as large as the secular one."
 
 
