@@ -1,7 +1,9 @@
 """The growth law of Λ held against runs: ⟨g⟩ of an orbit, and Λ of each run as it predicts it.
 
 What is predicted is S = log(1 + Λ) up to the remainder that `verify.proof.growth` states, and
-Λ = e^S − 1. The bounds printed are of the prediction's own numbers, not of that remainder.
+Λ = e^S − 1. The bounds printed are of the prediction's own numbers, not of that remainder. [B] is
+taken on the orbit of z₀, at the point nearest to z_N: that changes it by O(H(z_N) − H(z₀)), which
+is O(h^η T), and the prediction by less than the remainder.
 """
 
 import time
@@ -82,8 +84,8 @@ def predictions(
 ) -> tuple[PredictionResult, ...]:
     """Λ of each run from the initial value of `of`, as predicted.
 
-    Left out are runs that give no p, q or Λ, or too little of p and q for G; and all of them where
-    ⟨g⟩ is not known.
+    Left out are runs that give no p, q or Λ, or too little of p and q for G, or a Λ beyond any
+    range; and all of them where ⟨g⟩ is not known.
     """
     finished = [run for run in runs if {"lambda", "p", "q"} <= set(run.values)]
     if of.average is None or not finished:

@@ -7,7 +7,7 @@ closed orbits of the exact flow φ, with no equilibrium in it (for a rotation, o
 g on K, ⟨g⟩ is its time average along the orbit and B_g the solution of X B_g = g − ⟨g⟩; both are
 smooth on K, as g is a smooth periodic function of time on each orbit, whose period is smooth and
 positive. [F] means F(z_N) − F(z₀), at the NUMERICAL end point: the phase of z_N differs from the
-exact one by O(h^η T²), so that an [F] taken on the exact orbit is meaningless for long times.
+exact one by up to O(h^η T (1 + T)), so that [F] along the exact orbit means nothing for long times.
 |Λ| itself is e^S − 1 for the sum S that is predicted: an error R of S is one of (1 + Λ)(e^R − 1).
 
 Theorem. There are h₀ and C, which depend on H, the scheme and K alone, so that for all h ≤ h₀ and
@@ -17,7 +17,7 @@ all N for which z₀ … z_N lie in K:
     log(1 + Λ) = h^η [G] + h^(η+1) (T ⟨g⟩(z₀) + [B_g − ½ X G]) + R,
     |R| ≤ C (h^(η+2) T + h^(η+1) Σ h |H(z_k) − H(z₀)|);
 
-  any scheme, in particular `lieη` of odd η (r = η + 1), with g = c_r:
+  any scheme, in particular `lieη` of odd η (r = η + 1, if that coefficient is not 0), with g = c_r:
     log(1 + Λ) = h^(r−1) (T ⟨g⟩(z₀) + [B_g]) + R,
     |R| ≤ C (h^r T + h^(r−1) Σ h |H(z_k) − H(z₀)|).
 
