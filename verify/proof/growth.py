@@ -22,8 +22,8 @@ all N for which z₀ … z_N lie in K:
     |R| ≤ C (h^r T + h^(r−1) Σ h |H(z_k) − H(z₀)|).
 
   |H(z_k) − H(z₀)| ≤ C h^η t_k, t_k = k h, and ≤ C (h^η + h^(η+1) t_k) for `lieη` of even η. So
-    even η:  |R| ≤ C h^(η+2) T (1 + h^η T),    relative to the secular part  O(h) + O(h^(η+1) T);
-    odd η:   |R| ≤ C h^(η+1) T (1 + h^(η−1) T), relative to it  O(h) + O(h^η T).
+    even η:  |R| ≤ C h^(η+2) T (1 + h^η T),    relative to h^(η+1) T ⟨g⟩ ≠ 0:  O(h) + O(h^(η+1) T);
+    odd η:   |R| ≤ C h^(η+1) T (1 + h^(η−1) T), relative to h^η T ⟨g⟩ ≠ 0:  O(h) + O(h^η T).
   An orbit with a ring around it stays in the ring while h^(η+1) T (odd: h^η T) is below a constant,
   so there the bounds hold uniformly. In both the boundary part, what stands in [ ], is bounded
   whatever T is.
