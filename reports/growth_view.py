@@ -101,7 +101,9 @@ def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
     yield from _agreement([p for each in laws for p in each.predictions])
     unknown = len(laws) - len(known)
     if unknown:
-        yield f"Of {len(laws)} initial values, {unknown} have no known average; the table says why."
+        have = "has" if unknown == 1 else "have"
+        count = f"Of {len(laws)} initial values, {unknown}"
+        yield f"{count} {have} no known average; the table says why."
 
 
 def _agreement(found: Sequence[PredictionResult]) -> Iterator[str]:

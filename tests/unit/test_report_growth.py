@@ -70,7 +70,7 @@ def test_what_it_explains_is_said_only_where_the_scene_says_so() -> None:
 def test_an_orbit_without_an_average_says_why() -> None:
     text = text_of(page_of(TWO, LOST))
     assert "on a separatrix" in text
-    assert "Of 2 initial values, 1 have no known average" in text
+    assert "Of 2 initial values, 1 has no known average" in text
     assert "no known average" not in text_of(page_of(TWO))
 
 
