@@ -16,6 +16,7 @@ from verify.criteria import NAMES
 from verify.results import CriterionResult, ProofResult, SceneResult
 
 if TYPE_CHECKING:
+    from reports.growth_view import GrowthView
     from reports.separation_view import SeparationView
 
 
@@ -30,6 +31,7 @@ class SchemeView:
     series: tuple[Plot, ...]
     runs: RunTable | None
     separation: "SeparationView | None"
+    growth: "GrowthView | None"
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,7 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         ),
         runs=run_table(runs),
         separation=_separation(scene, proof.scheme, anchor),
+        growth=_growth(scene, proof.scheme, anchor),
     )
 
 
@@ -101,6 +104,16 @@ def _separation(scene: SceneResult, scheme: str, anchor: str) -> "SeparationView
     from reports.separation_view import separation_view
 
     return separation_view(own, wide, name=anchor)
+
+
+def _growth(scene: SceneResult, scheme: str, anchor: str) -> "GrowthView | None":
+    """The growth law of Λ, imported only where it was asked for."""
+    own = [each for each in scene.growth_laws if each.law.scheme == scheme]
+    if not own:
+        return None
+    from reports.growth_view import growth_view
+
+    return growth_view(own, name=anchor, explains=scene.growth_explains)
 
 
 def _floors(scene: SceneResult) -> str:

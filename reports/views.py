@@ -34,6 +34,7 @@ class PageView:
     scenes: tuple[SceneView, ...]
     ran: bool  # whether anything was run
     separated: bool
+    grown: bool  # whether Λ was held against its growth law
 
 
 def page_view(report: Report) -> PageView:
@@ -53,6 +54,7 @@ def page_view(report: Report) -> PageView:
         report=report,
         ran=any(s.runs or s.series or s.separations or s.crossovers for s in report.scenes),
         separated=any(s.separations or s.crossovers for s in report.scenes),
+        grown=any(s.growth_laws for s in report.scenes),
         finding=finding(report),
         counts=tuple((v, counted[v]) for v in Verdict if counted[v]),
         claims=claims,

@@ -12,6 +12,7 @@ from verify.precision import working_precision
 from verify.results import Value
 
 Ball = Any  # flint.arb, which has no type stubs
+UNKNOWN = flint.arb.nan()
 _BITS = 256
 _MOST_EXPONENT = 1 << 17  # of what becomes a rational; a ball's exponent may itself be astronomical
 
@@ -27,9 +28,12 @@ def rational_ball(value: Fraction) -> Ball:
 
 def ball(value: Value) -> Ball:
     """The ball of a reported value and its bound."""
-    middle = rational_ball(Fraction(value.value))
-    radius = rational_ball(Fraction(value.bound))
-    return middle + flint.arb(0, 1) * radius
+    return around(Fraction(value.value), Fraction(value.bound))
+
+
+def around(middle: Fraction, radius: Fraction) -> Ball:
+    """The ball of that middle and radius."""
+    return rational_ball(middle) + flint.arb(0, 1) * rational_ball(radius)
 
 
 def lg(x: Ball) -> Ball:

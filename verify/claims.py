@@ -15,8 +15,9 @@ from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from verify.criteria import judge
 from verify.errors import InputError
 from verify.execute import Result
-from verify.plan import grid_task, key, proof_task, separation_task
+from verify.plan import grid_task, growth_task, key, proof_task, separation_task
 from verify.results import (
+    AverageResult,
     ClaimResult,
     CriterionResult,
     Frozen,
@@ -181,6 +182,14 @@ class Findings:
         ]
         found = [self.results.get(name) for name in names]
         return [r for r in found if isinstance(r, SeparationResult)]
+
+    def growth_laws(self, scene: Scene, scheme: str) -> list[AverageResult]:
+        """The growth laws of the grid's orbits, by initial value; empty where none were asked."""
+        if scene.grid is None:
+            return []
+        starts = range(len(scene.grid.initial_values))
+        found = [self.results.get(key(growth_task(scene, scheme, start))) for start in starts]
+        return [r for r in found if isinstance(r, AverageResult)]
 
     def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:
         return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))

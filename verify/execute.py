@@ -21,19 +21,20 @@ from verify.float_bounds import DIRECT_STEPS
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper, fingerprint, write_atomically
-from verify.plan import Plan, ProofTask, RunTask, SeparationTask, Task
+from verify.plan import GrowthTask, Plan, ProofTask, RunTask, SeparationTask, Task
 from verify.proof.order import prove
-from verify.results import ProofResult, RunResult, SeparationResult
+from verify.results import AverageResult, ProofResult, RunResult, SeparationResult
 from verify.runs import AUTO, run
 from verify.schemes import get
 from verify.separation import separate
 from verify.step_map import grouped
 
-Result = ProofResult | RunResult | SeparationResult
-_MODELS: dict[str, type[ProofResult] | type[RunResult] | type[SeparationResult]] = {
+Result = ProofResult | RunResult | SeparationResult | AverageResult
+_MODELS: dict[str, type[Result]] = {
     "proof": ProofResult,
     "run": RunResult,
     "separation": SeparationResult,
+    "growth": AverageResult,
 }
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
@@ -48,6 +49,8 @@ def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
     hamiltonian = Hamiltonian.parse(task.hamiltonian, task.parameters)
     if isinstance(task, ProofTask):
         return _proof(hamiltonian, task.scheme)
+    if isinstance(task, GrowthTask):
+        return _growth(hamiltonian, task)
     if isinstance(task, SeparationTask):
         return separate(
             hamiltonian,
@@ -72,6 +75,12 @@ def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
         points=task.points,
         keeper=keeper,
     )
+
+
+def _growth(hamiltonian: Hamiltonian, task: GrowthTask) -> AverageResult:
+    from verify.growth import average_of
+
+    return average_of(hamiltonian, task.scheme, q=task.q, p=task.p, digits=task.digits)
 
 
 def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:

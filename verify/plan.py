@@ -54,8 +54,21 @@ class SeparationTask(Frozen):
     digits: int
 
 
-Task = ProofTask | RunTask | SeparationTask
+class GrowthTask(Frozen):
+    """The growth law of Λ on one orbit, with the time average in it."""
+
+    kind: Literal["growth"] = "growth"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    q: Number
+    p: Number
+    digits: int
+
+
+Task = ProofTask | RunTask | SeparationTask | GrowthTask
 SEPARATED_DIGITS = 6  # of each part
+AVERAGE_DIGITS = 30
 
 
 def key(task: Task) -> str:
@@ -130,6 +143,16 @@ def separation_task(
     )  # fmt: skip
 
 
+def growth_task(scene: Scene, scheme: str, start: int) -> GrowthTask:
+    """The growth law for the index of an initial value of the grid."""
+    assert scene.grid is not None  # noqa: S101 - asked for by grids only
+    exact, at = scene.exact_hamiltonian(), scene.grid.initial_values[start]
+    return GrowthTask(
+        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        q=at.q, p=at.p, digits=AVERAGE_DIGITS,
+    )  # fmt: skip
+
+
 def grids_separated(scene: Scene) -> list[Grid]:
     """The grids whose runs are separated: the scene's own where it says so, then the others."""
     own = [scene.grid] if scene.grid and scene.grid.separate else []
@@ -155,6 +178,7 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
         preserves = step_map.preserves_area
         if scene.grid:
             _plan_grid(plan, scene, scheme, preserves)
+            _plan_growth(plan, scene, scheme, preserves)
         for grid in grids_separated(scene):
             _plan_separation(plan, scene, scheme, grid, preserves)
         for index, series in enumerate(scene.series):
@@ -168,6 +192,9 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
     if not grids_separated(scene):
         why = "the scene has no [[separation]], and its [grid] does not say `separate = true`"
         plan.leave_out(f"{name}: truncation separated from rounding", why)
+    if not (scene.grid and scene.grid.growth):
+        why = "the scene has no [grid] that says `growth = true`"
+        plan.leave_out(f"{name}: Λ against its growth law", why)
     if not scene.series:
         plan.leave_out(f"{name}: trajectories and plots over time", "the scene has no [[series]]")
     if not scene.criteria:
@@ -184,6 +211,18 @@ def _plan_separation(plan: Plan, scene: Scene, scheme: str, grid: Grid, preserve
         for h in grid.step_sizes:
             task = separation_task(scene, scheme, grid, h, start)
             plan.need(task, f"{name}: truncation separated from rounding in Λ")
+
+
+def _plan_growth(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
+    name, grid = scene.name or scene.title or "scene", scene.grid
+    if grid is None or not grid.growth:
+        return
+    if preserves:
+        why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
+        plan.leave_out(f"{name}: growth law of Λ for {scheme}", why)
+        return
+    for start in range(len(grid.initial_values)):
+        plan.need(growth_task(scene, scheme, start), f"{name}: growth law of Λ")
 
 
 def _plan_grid(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:

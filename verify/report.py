@@ -4,6 +4,7 @@ import os
 import platform
 import time
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from verify import systems
 from verify.claims import Claim, Findings, check_claims
@@ -12,7 +13,14 @@ from verify.execute import Done, Store, execute
 from verify.formula import to_text
 from verify.keeping import versions
 from verify.plan import Plan, key, plan_scenes, series_task
-from verify.results import Provenance, Report, RunResult, SceneResult, SeparationGrid
+from verify.results import (
+    GrowthLawResult,
+    Provenance,
+    Report,
+    RunResult,
+    SceneResult,
+    SeparationGrid,
+)
 from verify.scene import Scene
 from verify.separation import as_grid
 
@@ -70,6 +78,8 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         series=tuple(_series(scene, findings)),
         separations=_separations(scene, findings, own=True),
         crossovers=_separations(scene, findings, own=False),
+        growth_laws=_growth_laws(scene, findings),
+        growth_explains=scene.grid.growth_explains if scene.grid else "",
     )
 
 
@@ -94,4 +104,20 @@ def _separations(scene: Scene, findings: Findings, *, own: bool) -> tuple[Separa
             width = len(grid.step_sizes)
             rows = [results[i : i + width] for i in range(0, len(results), width)]
             found += [as_grid(row) for row in rows]
+    return tuple(found)
+
+
+def _growth_laws(scene: Scene, findings: Findings) -> tuple[GrowthLawResult, ...]:
+    """The grid's runs against the growth law, where it was asked for."""
+    if scene.grid is None or not scene.grid.growth:
+        return ()
+    from verify.growth import predictions
+
+    exact, found = scene.exact_hamiltonian(), []
+    for scheme in scene.schemes:
+        runs = findings.runs(scene, scheme)
+        for law in findings.growth_laws(scene, scheme):
+            own = [run for run in runs if (run.q, run.p) == (law.q, law.p)]
+            own.sort(key=lambda run: Fraction(run.step_size))
+            found.append(GrowthLawResult(law=law, predictions=predictions(exact, law, own)))
     return tuple(found)

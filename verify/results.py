@@ -180,6 +180,56 @@ class SeparationGrid(Frozen):
     closed_form: CrossoverResult
 
 
+class AverageResult(Frozen):
+    """The growth law of Λ on one orbit: see `verify.proof.growth`.
+
+    `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas;
+    `potential` is empty where the leading coefficient of ΔJ does not telescope. `average` (⟨g⟩) and
+    `period` are along the exact orbit through (q, p); `average` is None where the orbit is not
+    known to be closed, and `reason` says why; `period` is None at an equilibrium too.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    digits: int
+    q: str
+    p: str
+    power: int
+    g: str
+    potential: str
+    orbit: Literal["libration", "rotation", "equilibrium", "undecided"]
+    reason: str
+    average: Value | None
+    period: Value | None
+    error_kind: Literal["enclosed", "estimated"]
+    error_method: str
+    seconds: Seconds
+
+
+class PredictionResult(Frozen):
+    """Λ of one run as the growth law predicts it, and as it was measured.
+
+    `boundary` + `secular` = log(1 + Λ), of which `predicted` is the Λ; `difference` is
+    (predicted − measured) / |measured|, None where no digit of the measured Λ is known.
+    """
+
+    step_size: str
+    steps: int
+    boundary: Value
+    secular: Value
+    predicted: Value
+    measured: Value
+    difference: Value | None
+
+
+class GrowthLawResult(Frozen):
+    """The law on one orbit, with the runs of the grid that start there, by step size."""
+
+    law: AverageResult
+    predictions: tuple[PredictionResult, ...]
+
+
 class CriterionResult(Frozen):
     """One of the paper's four criteria for one scheme in one scene."""
 
@@ -209,7 +259,8 @@ class SceneResult(Frozen):
     """Everything found for one scene; `time` is the length of its runs where it has a grid.
 
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
-    scene asks for beside it.
+    scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
+    `growth_explains` is what of a paper the scene says that the law explains.
     """
 
     name: str
@@ -224,6 +275,8 @@ class SceneResult(Frozen):
     series: tuple[RunResult, ...]
     separations: tuple[SeparationGrid, ...] = ()
     crossovers: tuple[SeparationGrid, ...] = ()
+    growth_laws: tuple[GrowthLawResult, ...] = ()
+    growth_explains: str = ""
 
 
 class Provenance(Frozen):

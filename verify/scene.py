@@ -12,6 +12,8 @@
     initial_values = [{ q = 1.5, p = 0 }]
 
     separate = true                        # truncation and rounding in Λ of each of these runs
+    growth = true                          # Λ of each of these runs against its growth law
+    growth_explains = "Figure 1"           # what of a paper that explains; may be left out
 
     [[separation]]                         # the same against h, for the crossover of the two
     time = 20
@@ -88,6 +90,8 @@ class Grid(Frozen):
     digits: Digits = 17
     observables: tuple[str, ...] = CLOSED_FORM
     separate: bool = False
+    growth: bool = False
+    growth_explains: Annotated[str, Field(max_length=200)] = ""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -96,6 +100,8 @@ class Grid(Frozen):
         for name in self.observables:
             if name not in ASKED:
                 raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
+        if self.growth and "lambda" not in self.observables:
+            raise InputError("growth", self.growth, "wants lambda among the observables")
         if len(set(self.step_sizes)) < len(self.step_sizes):
             raise InputError("step_sizes", len(self.step_sizes), "one of them stands twice")
         if len(set(self.initial_values)) < len(self.initial_values):

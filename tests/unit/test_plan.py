@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.unit.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
-from verify.plan import Plan, RunTask, key, plan_scenes
+from verify.errors import InputError
+from verify.plan import GrowthTask, Plan, RunTask, key, plan_scenes
 from verify.runs import CLOSED_FORM
 from verify.scene import load_scene
 
@@ -55,6 +56,7 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
         "mine: trajectories and plots over time": "the scene has no [[series]]",
         "mine: truncation separated from rounding": "the scene has no [[separation]], and its "
         "[grid] does not say `separate = true`",
+        "mine: Λ against its growth law": "the scene has no [grid] that says `growth = true`",
         "mine: criteria 1–4": "the scene names no criteria",
     }
     plan = plan_scenes([load(tmp_path, GOOD.replace("lie2", "symplectic-euler"))])
@@ -94,3 +96,31 @@ def test_a_plan_of_many_tasks_is_made_quickly(tmp_path: Path) -> None:
     plan = plan_scenes([scene])
     assert len(runs_of(plan)) == 1000
     assert time.perf_counter() - begun < 4
+
+
+def test_the_growth_law_is_planned_once_an_initial_value_and_only_where_it_is_asked_for(
+    tmp_path: Path,
+) -> None:
+    two = GRID.replace("[0.1]", "[0.1, 0.05]").replace("}]", "}, { q = 1, p = 0 }]")
+
+    def laws(content: str) -> list[GrowthTask]:
+        tasks = plan_scenes([load(tmp_path, content)]).tasks.values()
+        return [t for t in tasks if isinstance(t, GrowthTask)]
+
+    asked = laws(HEAD + two + "growth = true")
+    assert [(t.q, t.p) for t in asked] == [(Fraction(3, 2), 0), (1, 0)]
+    assert laws(HEAD + two) == laws(HEAD + two + "growth = false") == []
+
+
+def test_what_preserves_area_has_no_growth_law_and_the_plan_says_so(tmp_path: Path) -> None:
+    content = HEAD.replace("lie2", "symplectic-euler") + GRID + "growth = true"
+    plan = plan_scenes([load(tmp_path, content)])
+    assert not [t for t in plan.tasks.values() if isinstance(t, GrowthTask)]
+    left_out = dict(plan.left_out)
+    assert left_out["mine: growth law of Λ for symplectic-euler"].endswith("Λ is exactly 0")
+
+
+def test_a_growth_law_without_lambda_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="wants lambda"):
+        load(tmp_path, HEAD + GRID + 'observables = ["mse"]\ngrowth = true')
+    load(tmp_path, HEAD + GRID + 'observables = ["mse"]')

@@ -161,6 +161,8 @@ step_sizes = [0.01, "1/30"]
 initial_values = [{ q = 1.5, p = "-1/3" }, { q = 0, p = 1 }]
 observables = ["delta_j_max", "mse", "lambda", "lambda_plain"]
 separate = true
+growth = true
+growth_explains = "a <figure>"
 [[separation]]
 steps = 20
 step_sizes = [0.01, 0.1]

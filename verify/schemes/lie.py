@@ -24,12 +24,9 @@ MAX_ETA = 100
 
 def make(name: str) -> Scheme | None:
     """The scheme for a name such as `lie2`; InputError for η outside 1 … 100."""
-    match = re.fullmatch(r"lie(\d+)", name, re.ASCII)
-    if match is None:
+    eta = eta_of(name)
+    if eta is None:
         return None
-    if len(match[1]) > 3 or not 1 <= int(match[1]) <= MAX_ETA:
-        raise InputError("scheme", name, f"η must be 1 … {MAX_ETA}")
-    eta = int(match[1])
     return Scheme(
         name=f"lie{eta}",
         order=eta,
@@ -39,6 +36,16 @@ def make(name: str) -> Scheme | None:
         build=lambda hamiltonian: lie_map(hamiltonian, eta),
         generic=TaylorSeries(eta),
     )
+
+
+def eta_of(name: str) -> int | None:
+    """The η of `lieη`; None for another name, InputError for η outside 1 … 100."""
+    match = re.fullmatch(r"lie(\d+)", name, re.ASCII)
+    if match is None:
+        return None
+    if len(match[1]) > 3 or not 1 <= int(match[1]) <= MAX_ETA:
+        raise InputError("scheme", name, f"η must be 1 … {MAX_ETA}")
+    return int(match[1])
 
 
 def lie_map(hamiltonian: Hamiltonian, eta: int) -> StepMap:
