@@ -92,7 +92,6 @@ def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
         written = (closed.p_next, closed.q_next, *closed.jacobian)
         p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in written)
         jacobian = (a, b), (c, d)
-    delta_j = proof.delta_j
     return ProofResult(
         hamiltonian=to_text(hamiltonian.expression),
         parameters={name: text(value) for name, value in hamiltonian.values},
@@ -100,8 +99,8 @@ def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
         verdict=proof.verdict,
         reason=proof.reason,
         order=proof.order,
-        leading=to_text(proof.leading),
-        delta_j=None if delta_j is None else to_text(delta_j),
+        leading=proof.first.text,
+        delta_j=step_map.delta_j_text,
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
         witness={name: text(value) for name, value in proof.witness.items()},

@@ -18,6 +18,7 @@ Functions of sums are expanded over a basis of the lattice that their arguments 
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -28,12 +29,13 @@ import flint
 import sympy
 
 from verify.enclosure import enclose, points
-from verify.formula import symbol
+from verify.formula import symbol, to_text
 from verify.generator import Generator, rational_of, written
 from verify.generator import Poly as Poly
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
+_MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
 
@@ -167,6 +169,13 @@ class Ring:
         if index not in self._written:
             self._written[index] = written(g, self.expression(g.argument))
         return self._written[index]
+
+    def text(self, x: Poly) -> str:
+        """x as a formula: factored where it has few terms, else as it stands in the ring."""
+        if len(x) <= _MOST_FACTORED:
+            return to_text(self.factored(x))
+        made = {f"g{g.index}_": f"({to_text(g.expression)})" for g in self.generators}
+        return re.sub(r"\bg\d+_", lambda name: made[name[0]], str(x)).replace("^", "**")
 
     def factored(self, x: Poly) -> sympy.Expr:
         """x as an expression, factored into irreducible polynomials in the generators."""

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         SeparationResult,
     )
 
+_LONGEST = 400  # characters of a formula on the terminal
 _LABELS = {
     "lambda": "Λ",
     "lambda_plain": "Λ, plain",
@@ -42,6 +43,14 @@ def print_json(data: dict[str, Any]) -> None:
     click.echo(json.dumps(data, ensure_ascii=False))
 
 
+def cut(formula: str) -> str:
+    """A formula as it is, or its beginning where it is long: the JSON has all of it."""
+    if len(formula) <= _LONGEST:
+        return formula
+    terms = formula.count(" + ") + formula.count(" - ") + 1
+    return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"
+
+
 def proof_json(
     exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential", seconds: str
 ) -> dict[str, Any]:
@@ -55,13 +64,13 @@ def proof_json(
         "parameters": {name: text(value) for name, value in exact.values},
         "scheme": scheme,
         "order": proof.order,
-        "leading": to_text(proof.leading),
-        "delta_j": None if proof.delta_j is None else to_text(proof.delta_j),
+        "leading": proof.first.text,
+        "delta_j": proof.step_map.delta_j_text,
         "area_preserving": proof.area_preserving,
         "convergence_order": proof.convergence_order,
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": potential.holds,
-        "potential": None if potential.potential is None else to_text(potential.potential),
+        "potential": potential.text,
         "seconds": seconds,
     }
 
@@ -76,18 +85,15 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
         click.echo(f"  {name:8} {text(value)}")
     click.echo(f"  scheme   {scheme}")
     if proof.order is not None:
-        click.echo(
-            f"  ΔJ       ({to_text(proof.leading)})·h^{proof.order} + O(h^{proof.order + 1})"
-        )
+        click.echo(f"  ΔJ       ({cut(proof.first.text)})·h^{proof.order} + O(h^{proof.order + 1})")
         at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
         click.echo(f"  witness  {at or 'any point'}: the coefficient is {proof.enclosure}")
-    closed = proof.delta_j
-    shown = "left out: the closed form is too large" if closed is None else to_text(closed)
+    closed = proof.step_map.delta_j_text
+    shown = "left out: the closed form is too large" if closed is None else cut(closed)
     click.echo(f"  exactly  ΔJ = {shown}")
-    if potential.potential is not None and proof.order is not None:
+    if potential.text is not None and proof.order is not None:
         click.echo(
-            f"  along an orbit the leading term telescopes: it is X·G, G = "
-            f"{to_text(potential.potential)}"
+            f"  along an orbit the leading term telescopes: it is X·G, G = {cut(potential.text)}"
         )
     elif potential.holds is False:
         click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")

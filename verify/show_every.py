@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.show import cut
+
 if TYPE_CHECKING:
     from verify.proof.every import EveryProof
 
 _WIDTH = 88
-_LONGEST = 400  # characters of a polynomial on the terminal; the JSON has all of them
 
 
 def every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
@@ -37,13 +38,13 @@ def print_every(proof: "EveryProof") -> None:
     _line("H", proof.quantifier)
     _line("scheme", proof.scheme)
     if proof.order is not None:
-        _line("leading", f"h^{proof.order} · ({_cut(proof.formula or proof.leading)})")
+        _line("leading", f"h^{proof.order} · ({cut(proof.formula or proof.leading)})")
         if proof.formula:
-            _line("", f"= h^{proof.order} · ({_cut(proof.leading)})")
+            _line("", f"= h^{proof.order} · ({cut(proof.leading)})")
     if proof.telescopes:
-        _line("G", f"{_cut(proof.potential or '')}, the leading coefficient is X·G")
+        _line("G", f"{cut(proof.potential or '')}, the leading coefficient is X·G")
     if proof.telescopes is not None:
-        _line("telescopes", ("yes: " if proof.telescopes else "no: ") + _cut(proof.why))
+        _line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     _line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
     for identity in proof.checked:
         _line("checked", identity)
@@ -53,10 +54,3 @@ def _line(name: str, text: str) -> None:
     indent = " " * 13
     first = f"  {name:11}"
     click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=indent))
-
-
-def _cut(formula: str) -> str:
-    if len(formula) <= _LONGEST:
-        return formula
-    terms = formula.count(" + ") + formula.count(" - ") + 1
-    return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"

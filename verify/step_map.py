@@ -14,7 +14,7 @@ from functools import cached_property
 import sympy
 
 from verify.errors import InputError
-from verify.formula import parse, symbol
+from verify.formula import parse, symbol, to_text
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
 from verify.series import Series, at_point, partials
@@ -25,6 +25,7 @@ P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 # Terms of the largest composition that is written in closed form: those in its parts, its own, and
 # those of its ΔJ.
 _MOST_IN_PARTS = 150
+_MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 
 
@@ -275,7 +276,28 @@ class StepMap:
         step = self.flat
         if step.degree is None:
             return step.ring.factored(step.delta_j)
-        return _by_powers(step.ring, {n: step.coefficient(n) for n in range(step.degree + 1)})
+        return _by_powers(step.ring, self._coefficients)
+
+    @property
+    def _coefficients(self) -> dict[int, Poly]:
+        return {n: self.flat.coefficient(n) for n in range((self.flat.degree or 0) + 1)}
+
+    @cached_property
+    def delta_j_text(self) -> str | None:
+        """ΔJ as a formula; None where its closed form is too large."""
+        if not self.written:
+            return None
+        if not self.preserves_area and self.flat.degree is not None:
+            coefficients = self._coefficients
+            if sum(map(len, coefficients.values())) > _MOST_FACTORED:
+                return _long_text(self.flat.ring, coefficients)
+        return to_text(self.delta_j)
+
+
+def _long_text(ring: Ring, coefficients: Mapping[int, Poly]) -> str:
+    """Σ hⁿ cₙ as it stands, for coefficients that are too long to be factored."""
+    parts = (f"h**{n}*({ring.text(c)})" for n, c in sorted(coefficients.items()) if c != 0)
+    return " + ".join(parts)
 
 
 def grouped(ring: Ring, x: Poly) -> sympy.Expr:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
 import sympy
 
@@ -40,12 +41,16 @@ class Proof:
     verdict: Verdict
     reason: str
     order: int | None
-    leading: sympy.Expr
+    first: "Leading"
     area_preserving: bool | None
     convergence_order: int | None
     step_map: StepMap = field(repr=False, compare=False)
     witness: dict[str, Fraction] = field(default_factory=dict)
     enclosure: str = ""
+
+    @property
+    def leading(self) -> sympy.Expr:
+        return self.first.coefficient
 
     @property
     def delta_j(self) -> sympy.Expr | None:
@@ -59,7 +64,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Leading:
-    """The first coefficient in h that is not shown to vanish: of h^`power`, as an expression.
+    """The first coefficient in h that is not shown to vanish: of h^`power`, as a ring's element.
 
     `decision.zero` is False at a proved leading term, None at an undecided one, and True where
     every coefficient vanishes (`power` is None then). False with `power` None: ΔJ is not zero, but
@@ -67,11 +72,27 @@ class Leading:
     """
 
     power: int | None
-    coefficient: sympy.Expr
     decision: Decision
+    element: tuple[Ring, Poly] | None = None
+
+    @cached_property
+    def coefficient(self) -> sympy.Expr:
+        """As an expression; 0 where there is none."""
+        if self.element is None:
+            return sympy.S.Zero
+        ring, x = self.element
+        return ring.factored(x)
+
+    @property
+    def text(self) -> str:
+        """As a formula."""
+        if self.element is None:
+            return "0"
+        ring, x = self.element
+        return ring.text(x)
 
 
-_VANISHES = Leading(None, sympy.S.Zero, Decision(True))
+_VANISHES = Leading(None, Decision(True))
 
 
 class Expansion:
@@ -105,7 +126,7 @@ class Expansion:
     def leading(self) -> Leading:
         found = _first(self.coefficient, self.length)
         if found is None and not self.polynomial:
-            return Leading(self.length, sympy.S.Zero, Decision(None))
+            return Leading(self.length, Decision(None))
         return found or _VANISHES
 
 
@@ -115,7 +136,7 @@ def _first(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Lead
         ring, x = coefficient(n)
         decision = ring.decide(x)
         if decision.zero is not True:
-            return Leading(n, ring.factored(x), decision)
+            return Leading(n, decision, (ring, x))
     return None
 
 
@@ -128,7 +149,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         verdict=verdict,
         reason=reason,
         order=leading.power if leading.decision.zero is False else None,
-        leading=leading.coefficient,
+        first=leading,
         area_preserving=leading.decision.zero,
         convergence_order=convergence.order,
         step_map=step_map,
@@ -182,7 +203,7 @@ def _leading_of_delta_j(step_map: StepMap) -> Leading:
         leading = Expansion(step.ring, step.delta_j).leading()
         if leading.decision.zero is None and leading.power == MOST_ORDERS + 1:
             # All coefficients looked at vanish; ΔJ itself may still be shown not to.
-            return Leading(None, sympy.S.Zero, step.ring.decide(step.delta_j))
+            return Leading(None, step.ring.decide(step.delta_j))
         return leading
     found = _first(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
     return found or _VANISHES
@@ -196,7 +217,7 @@ def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
     if whole.preserves_area:
         return _VANISHES
     decision = whole.ring.decide(whole.delta_j)
-    return Leading(MOST_ORDERS + 1 if decision.zero is None else None, sympy.S.Zero, decision)
+    return Leading(MOST_ORDERS + 1 if decision.zero is None else None, decision)
 
 
 @dataclass(frozen=True)

@@ -8,18 +8,21 @@ smooth G, and L is not zero there. None: neither is found. G is looked for by th
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations_with_replacement, product
+from fractions import Fraction
+from functools import cached_property
+from itertools import combinations_with_replacement, islice, product
 
 import flint
 import sympy
 
+from verify.enclosure import enclose, points
 from verify.errors import InputError
 from verify.generators import embed
 from verify.generic import TaylorSeries
 from verify.hamiltonian import VectorField
 from verify.proof.order import Proof
 from verify.proof.telescoping import potential_of_lie
-from verify.ring import Poly
+from verify.ring import Poly, Ring
 from verify.scheme import Scheme
 from verify.step_map import P, Q
 
@@ -29,21 +32,37 @@ _PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
 
 @dataclass(frozen=True)
 class Potential:
-    """`holds`: whether L = X·G; `potential`: that G; `reason`: how it is known."""
+    """`holds`: whether L = X·G; `element`: that G in a ring; `reason`: how it is known."""
 
     holds: bool | None
     reason: str
-    potential: sympy.Expr | None = None
+    element: tuple[Ring, Poly] | None = None
+
+    @cached_property
+    def potential(self) -> sympy.Expr | None:
+        """G as an expression."""
+        if self.element is None:
+            return sympy.S.Zero if self.holds else None
+        ring, x = self.element
+        return ring.factored(x)
+
+    @property
+    def text(self) -> str | None:
+        """G as a formula."""
+        if self.element is None:
+            return "0" if self.holds else None
+        ring, x = self.element
+        return ring.text(x)
 
 
 def potential_of(proof: Proof, scheme: Scheme) -> Potential:
     """Whether the leading coefficient that was proved telescopes."""
     if proof.area_preserving:
-        return Potential(True, "ΔJ ≡ 0", sympy.S.Zero)
-    if proof.order is None:
+        return Potential(True, "ΔJ ≡ 0")
+    if proof.order is None or proof.first.element is None:
         return Potential(None, "the leading coefficient is not known")
-    field, (leading,) = proof.step_map.hamiltonian.field(proof.leading)
-    where = _equilibrium_against(field, proof.leading)
+    field, leading = _in_a_field(proof)
+    where = _equilibrium_against(field, leading)
     if where is not None:
         return Potential(
             False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"
@@ -55,22 +74,50 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
     else:
         found, how = _among_polynomials(field, leading), "by linear algebra over monomials"
     if found is not None and field.ring.decide(field.derive(found) - leading).zero is True:
-        return Potential(True, how, field.ring.factored(found))
+        return Potential(True, how, (field.ring, found))
     return Potential(None, "no G is found, and no equilibrium at which L is not zero")
 
 
-def _equilibrium_against(field: VectorField, leading: sympy.Expr) -> str | None:
+def _in_a_field(proof: Proof) -> tuple[VectorField, Poly]:
+    """The vector field of H and the leading coefficient, as elements of one ring."""
+    assert proof.first.element is not None  # noqa: S101 - the caller's condition
+    ring, leading = proof.first.element
+    own = proof.step_map.substeps[0].field
+    if own.ring is ring:
+        return own, leading
+    field, (leading,) = proof.step_map.hamiltonian.field(proof.leading)
+    return field, leading
+
+
+def _equilibrium_against(field: VectorField, leading: Poly) -> str | None:
     """An equilibrium at which L is shown not to vanish (for some values of the parameters)."""
-    force = [field.ring.expression(x) for x in (field.h_p, field.h_q)]
+    ring = field.ring
+    force = [ring.expression(x) for x in (field.h_p, field.h_q)]
     for p, q in sorted(product(_PLACES, repeat=2), key=lambda at: _PLACES.index(at[0])):
         put = {P: p, Q: q}
         try:
-            at_rest = all(sympy.expand(x.subs(put)) == 0 for x in force)
-            if at_rest and _not_zero(leading.subs(put), field.ring.variables):
-                return f"p = {p}, q = {q}"
+            if any(sympy.expand(x.subs(put)) != 0 for x in force):
+                continue
+            if p.is_Rational and q.is_Rational:
+                there = _not_zero_at(ring, leading, Fraction(int(p)), Fraction(int(q)))
+            else:
+                there = len(leading) <= _MOST_MONOMIALS and _not_zero(
+                    ring.expression(leading).subs(put), ring.variables
+                )
         except (InputError, ZeroDivisionError):
             continue  # H is not defined there
+        if there:
+            return f"p = {p}, q = {q}"
     return None
+
+
+def _not_zero_at(ring: Ring, x: Poly, p: Fraction, q: Fraction) -> bool:
+    names = [n for n in ring.variables if n not in ("p", "q", "h")]
+    for others in islice(points(names), 4):
+        value = enclose(ring, x, {**others, "p": p, "q": q}, 128)
+        if value is not None and not value.contains(0):
+            return True
+    return False
 
 
 def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
