@@ -190,9 +190,13 @@ class CriterionResult(Frozen):
 
 
 class ClaimResult(Frozen):
-    """One claim with its verdict; `evidence` is one line, `details` a table of texts."""
+    """One claim with its verdict; `evidence` is one line, `details` a table of texts.
+
+    `scene` is empty where the claim speaks of every H.
+    """
 
     id: str
+    kind: str = ""
     source: str
     statement: str
     scene: str

@@ -48,7 +48,7 @@ from verify.errors import InputError
 from verify.exact import positive, rational, text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
-from verify.runs import ASKED, AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
+from verify.runs import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
 
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
@@ -94,8 +94,8 @@ class Grid(Frozen):
         if (self.time is None) == (self.steps is None):
             raise InputError("grid", "time, steps", "give one of the two")
         for name in self.observables:
-            if name not in ASKED:
-                raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
+            if name not in OBSERVABLES:
+                raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
         if len(set(self.step_sizes)) < len(self.step_sizes):
             raise InputError("step_sizes", len(self.step_sizes), "one of them stands twice")
         if len(set(self.initial_values)) < len(self.initial_values):

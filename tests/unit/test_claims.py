@@ -16,16 +16,19 @@ import sympy
 
 from tests.property.strategies import H, P, Q, evaluate, lie_step, plain, plain_delta_j
 from tests.unit.mutation import mutants
-from verify.claims import Claim, Findings, check_claims, load_claims
+from verify.check_claims import check_claims
+from verify.claims import Claim
+from verify.claims_file import load_claims
 from verify.errors import InputError
 from verify.execute import Store, execute
+from verify.findings import Findings
 from verify.plan import plan_scenes
 from verify.results import ClaimResult
 from verify.scene import Scene, load_scene
 from verify.verdict import Verdict
 
 PAPER = Path(__file__).parents[2] / "reports" / "paper"
-CLAIMS: dict[str, Any] = {claim.id: claim for claim in load_claims(PAPER / "claims.toml")}
+CLAIMS: dict[str, Any] = {claim.id: claim for claim in load_claims(PAPER / "claims.toml").claims}
 EQUATIONS = {id_: claim for id_, claim in CLAIMS.items() if id_.startswith("eq-")}
 SCENES = {name: load_scene(PAPER / f"{name}.toml") for name in ("duffing", "pendulum")}
 ENERGY = {"duffing": "p**2/2 + q**2/2 + delta*q**4/4", "pendulum": "p**2/2 - cos(q)"}
