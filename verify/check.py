@@ -1,12 +1,14 @@
 """A claims file → verdicts: plans what the chosen claims need, executes it, judges."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from itertools import compress
+from operator import not_
 
 from verify.check_claims import check_claim
 from verify.claim_plan import add_claims
-from verify.claims import Claim
+from verify.claims import EXACT, Claim
 from verify.claims_file import ClaimsFile
 from verify.errors import InputError
 from verify.execute import Done, Result, Store, execute
@@ -27,17 +29,25 @@ class Check:
     def run(
         self, store: Store, *, workers: int | None = None, done: Done | None = None
     ) -> list[ClaimResult]:
-        """Each claim's verdict, in their order. InputError names the claim and its line."""
+        """Each claim's verdict, in their order. InputError names the claim and its line.
+
+        What algebra decides comes first: a formula that turns out to be none costs no run.
+        """
+        found: dict[str, ClaimResult] = {}
+        exact = [isinstance(claim, EXACT) for claim in self.claims]
+        for claim in compress(self.claims, exact):
+            found[claim.id] = self._judge(claim, {})
         results = execute(self.plan, store, workers=workers, done=done)
-        findings = Findings(self.file.scenes, {**self.known, **results})
-        found = []
-        for claim in self.claims:
-            try:
-                found.append(check_claim(claim, findings))
-            except InputError as error:
-                index = self.file.claims.index(claim)
-                raise self.file.located(index, claim.id, error) from None
-        return found
+        for claim in compress(self.claims, map(not_, exact)):
+            found[claim.id] = self._judge(claim, {**self.known, **results})
+        return [found[claim.id] for claim in self.claims]
+
+    def _judge(self, claim: Claim, results: Mapping[str, Result]) -> ClaimResult:
+        try:
+            return check_claim(claim, Findings(self.file.scenes, results))
+        except InputError as error:
+            index = self.file.claims.index(claim)
+            raise self.file.located(index, claim.id, error) from None
 
 
 def prepare(file: ClaimsFile, only: Sequence[str] = ()) -> Check:

@@ -5,6 +5,7 @@ scheme and every H. A claim's own value stands under the name of its kind where 
 (`order = 3`), and its verdict always comes with evidence.
 """
 
+import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -14,7 +15,7 @@ from verify.results import Frozen
 from verify.scene import Number, StepSize
 
 EVERY_SEPARABLE = "separable hamiltonian"
-_PRINTED = r"^-?\d{1,20}(\.\d{1,40})?(e[+-]?\d{1,3})?$"
+_PRINTED = re.compile(r"-?\d{1,20}(\.\d{1,1000})?(e[+-]?\d{1,3})?", re.ASCII)
 
 
 class _Claim(Frozen):
@@ -94,16 +95,17 @@ class AreaClaim(_Quantified):
 # -- what runs decide -----------------------------------------------------------------------------
 
 
-def _as_printed(given: Any) -> Any:
+def _as_printed(given: Any) -> str:
     """The text of a number as a paper prints it; TOML's decimals are texts already."""
-    if isinstance(given, int) and not isinstance(given, bool):
-        return str(given)
-    if isinstance(given, str):
-        return given.strip().replace("\N{MINUS SIGN}", "-").replace("E", "e")
-    return given
+    shown = str(given) if isinstance(given, int) and not isinstance(given, bool) else given
+    if isinstance(shown, str):
+        shown = shown.strip().replace("\N{MINUS SIGN}", "-").replace("E", "e")
+        if _PRINTED.fullmatch(shown):
+            return shown
+    raise InputError("number", given, "is not a printed decimal, such as -7.3010 or 1.53e-17")
 
 
-Printed = Annotated[str, Field(pattern=_PRINTED), BeforeValidator(_as_printed)]
+Printed = Annotated[str, BeforeValidator(_as_printed)]
 Row = Annotated[tuple[Printed, ...], Field(min_length=1, max_length=1000)]
 
 

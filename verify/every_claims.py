@@ -24,6 +24,7 @@ from verify.findings import result
 from verify.formula import parse, symbol
 from verify.generators import embed
 from verify.results import ClaimResult
+from verify.schemes import get
 from verify.step_map import H_STEP
 from verify.verdict import Verdict
 
@@ -48,7 +49,10 @@ def check_every(claim: Any) -> ClaimResult:
     if proof.convergence_order is None:
         return result(claim, Verdict.UNDECIDED, proof.reason)
     evidence = f"the map agrees with the exact flow of every H up to h^{proof.convergence_order}"
-    known = Known(proof.convergence_order, True, False, f"{evidence} and, of some, no further")
+    # The proof looks one order beyond the scheme's own; what reaches that may reach further.
+    exact = proof.convergence_order <= get(claim.scheme).order
+    evidence += " and, of some, no further" if exact else "; whether further is not decided"
+    known = Known(proof.convergence_order, exact, False, evidence)
     return judge_order(claim, claim.convergence_order, known)
 
 
