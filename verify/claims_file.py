@@ -72,10 +72,13 @@ class ClaimsFile:
         said = error.name.removeprefix(f"claim {claim}").removeprefix(": ")
         key = re.split(r"[^A-Za-z0-9_]", said)[0]
         keys = (key, *_ALSO.get(key, (f"{key}s",)))
-        line = self.lines.of("claim", index, *keys)
-        if not any(self.lines.has("claim", index, k) for k in keys):
-            shared = [k for k in keys if self.lines.has("defaults", 0, k)]
-            line = self.lines.of("defaults", 0, *shared) if shared else line
+        # A key that is missing is looked for beside those that stand for it.
+        others = [k for group in _GROUPS if set(keys) & set(group) for k in group]
+        lines = self.lines
+        line = lines.of("claim", index, *keys, *others)
+        if not any(lines.has("claim", index, k) for k in (*keys, *others)):
+            shared = [k for k in keys if lines.has("defaults", 0, k)]
+            line = lines.of("defaults", 0, *shared) if shared else line
         where = f"{self.name}:{line}: claim {claim}"
         return InputError(f"{where}: {said}" if said else where, error.value, error.problem)
 
