@@ -5,6 +5,9 @@ and their expansions in h.
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import sympy
@@ -22,8 +25,13 @@ from tests.property.strategies import (
     trigonometric,
 )
 from tests.unit.mutation import mutants
+from tests.unit.stepped import Case, exact
+from verify.check import prepare
 from verify.check_claims import check_claim
 from verify.claims import KINDS
+from verify.claims_file import load_claims
+from verify.exact import decimal
+from verify.execute import Store
 from verify.findings import Findings
 from verify.formula import to_text
 from verify.scene import Scene
@@ -157,3 +165,52 @@ def test_claims_on_symplectic_euler_of_separable_hamiltonians(
     assert verdict(at, "delta_j", formula=H ** data.draw(st.integers(1, 9))) is Verdict.REFUTED
     wrong = p_next + data.draw(st.sampled_from([H**2 * Q, H * P / 10**9, Q * H**7]))
     assert verdict(at, "step_map", p_next=wrong, q_next=q_next) is Verdict.REFUTED
+
+
+# -- numbers --------------------------------------------------------------------------------------
+
+
+def numbers_file(at: Case, printed: dict[str, str], bound: str) -> str:
+    claims = "".join(
+        f'[[claim]]\nid = "{kind}"\nkind = "{kind}"\nprinted = "{text}"\n'
+        for kind, text in printed.items()
+    )
+    return (
+        f'[defaults]\nscheme = "{at.scheme}"\nhamiltonian = "{at.text}"\nstep_size = "{at.h}"\n'
+        f'steps = {at.steps}\nq = "{at.q}"\np = "{at.p}"\n{claims}'
+        f'[[claim]]\nid = "bounded"\nkind = "bounded"\nbound = "{bound}"\n'
+    )
+
+
+def verdicts_of(content: str) -> dict[str, Verdict]:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "claims.toml"
+        path.write_text(content)
+        found = prepare(load_claims(path)).run(Store(None), workers=1)
+    return {claim.id: claim.verdict for claim in found}
+
+
+@settings(deadline=None, max_examples=15)
+@given(polynomials(degree=3, most_terms=2), st.integers(1, 2), st.integers(2, 9), st.data())
+def test_printed_numbers_are_enclosed_and_with_one_digit_changed_refuted(
+    text: str, eta: int, digits: int, data: st.DataObject
+) -> None:
+    """Against the same few steps in rational numbers."""
+    at = Case(text, f"lie{eta}", Fraction(3, 7), Fraction(-2, 5), Fraction(1, 20), 4, {})
+    true = {name: value for name, (value, _) in exact(at).items()}
+    assume(true["mse"] != 0 and true["lambda"] != 0)
+    printed = {kind: decimal(true[kind], digits) for kind in ("mse", "lambda")}
+    largest = true["lambda_max"]
+    good = verdicts_of(numbers_file(at, printed, str(decimal(largest * Fraction(1001, 1000), 30))))
+    assert set(good.values()) == {Verdict.ENCLOSED}
+    wrong = {kind: digit_changed(text, data) for kind, text in printed.items()}
+    bad = verdicts_of(numbers_file(at, wrong, decimal(largest * Fraction(999, 1000), 30)))
+    assert set(bad.values()) == {Verdict.REFUTED}
+
+
+def digit_changed(printed: str, data: st.DataObject) -> str:
+    """Another digit at one place: at least one unit of the last place off."""
+    places = [i for i, c in enumerate(printed.partition("e")[0]) if c.isdigit()]
+    at = data.draw(st.sampled_from(places))
+    other = data.draw(st.sampled_from([d for d in "123456789" if d != printed[at]]))
+    return printed[:at] + other + printed[at + 1 :]
