@@ -204,7 +204,7 @@ class _Certificate:
         self, steps: _Steps, derivatives: Derivatives, error: Ball, summed: Ball
     ) -> dict[str, Ball]:
         asked, count = self.job.observables, self.steps
-        if not asked & {"delta_j_max", "mse", "lambda"}:
+        if not asked & {"delta_j_max", "mse", "lambda", "lambda_max"}:
             return {}
         scale = flint.arb(2) ** -self.shift
         slope = derivatives.gradient(self.values_of_inputs(), self.box(error)) / scale
@@ -218,8 +218,10 @@ class _Certificate:
                 rational_ball(self.values["mse"]) * count / scale / scale, size * size
             )
             result["mse"] = scale * scale * (2 * size * moved / count + added)
-        if "lambda" in asked:
-            result["lambda"] = self.of_lambda(moved, size)
+        if asked & {"lambda", "lambda_max"}:
+            # What bounds the error of the last Λ bounds that of each before it: all sums are to N.
+            bound = self.of_lambda(moved, size)
+            result |= {name: bound for name in ("lambda", "lambda_max") if name in asked}
         return {name: x.abs_upper() for name, x in result.items()}
 
     def added(self, total: Ball, term: Ball) -> Ball:

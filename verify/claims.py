@@ -1,40 +1,38 @@
-"""Claims of a paper: what each kind states, and the file that holds them.
+"""Claims of a paper: what each kind states. `verify.claims_file` reads them, `check_claims` judges.
 
-A claims file is TOML: `[[claim]]` tables with `id`, `source`, `statement`, `scene` (the name of the
-scene it speaks of), `kind`, and what the kind asks for. See `exact_claims` and `measured_claims`
-for the checks; a claim's verdict always comes with evidence.
+A claim speaks of one scheme and of one scene, which has its Hamiltonian and its runs, or of a
+scheme and every H. A claim's own value stands under the name of its kind where it has one
+(`order = 3`), and its verdict always comes with evidence.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+import re
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, TypeAdapter, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from verify.criteria import judge
 from verify.errors import InputError
-from verify.execute import Result
-from verify.plan import grid_task, growth_task, key, proof_task, separation_task
-from verify.results import (
-    AverageResult,
-    ClaimResult,
-    CriterionResult,
-    Frozen,
-    ProofResult,
-    RunResult,
-    SeparationResult,
-)
-from verify.scene import Grid, Number, Scene, StepSize, one_line, read_toml
-from verify.verdict import Verdict
+from verify.results import Frozen
+from verify.scene import Number, StepSize
+
+EVERY_SEPARABLE = "separable hamiltonian"
+_PRINTED = re.compile(r"-?\d{1,20}(\.\d{1,1000})?(e[+-]?\d{1,3})?", re.ASCII)
 
 
 class _Claim(Frozen):
-    id: str
-    source: str
-    statement: str
-    scene: str
+    id: Annotated[str, Field(pattern=r"^[^\s\x00-\x1f]+$", max_length=80)]
+    source: str = ""
+    statement: str = ""
+    scene: str = ""
     scheme: str
+
+
+class _Quantified(_Claim):
+    """A claim that may be made of every H; then it has no scene."""
+
+    every: Literal["hamiltonian", "separable hamiltonian"] | None = None
+
+
+# -- what algebra decides -------------------------------------------------------------------------
 
 
 class StepMapClaim(_Claim):
@@ -52,29 +50,99 @@ class JacobianClaim(_Claim):
     entries: tuple[tuple[str, str], tuple[str, str]]
 
 
-class DeltaJClaim(_Claim):
+_Order = Annotated[int, Field(ge=1, le=64, strict=True)]
+
+
+class DeltaJClaim(_Quantified):
     """ΔJ is `formula`: exactly, or up to O(h^up_to).
 
     `delta_j`: printed as ΔJ itself. `mse_summand`: printed inside the square of Eq. 15.
-    `lambda_factor`: printed as the factor det J of Eq. 16.
+    `lambda_factor`: printed as the factor det J of Eq. 16. Of every H, with the derivatives of H as
+    names, up to the first term.
     """
 
     kind: Literal["delta_j", "mse_summand", "lambda_factor"]
     formula: str
-    up_to: Annotated[int, Field(ge=1, le=64)] | None = None
+    up_to: _Order | None = None
 
 
-class TableClaim(_Claim):
-    """lg MSE as printed, for each step size; every initial value of the grid has this row."""
+class OrderClaim(_Quantified):
+    """ΔJ = c h^order + …, c not the zero function; with `at_least`, ΔJ = O(h^order)."""
 
-    kind: Literal["table"]
-    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
-    printed: tuple[Annotated[str, Field(pattern=r"^-?\d{1,20}(\.\d{1,40})?$")], ...]
+    kind: Literal["order"]
+    order: _Order
+    at_least: bool = False
+
+
+class ConvergenceOrderClaim(_Quantified):
+    """The global error is of this order in h, no higher one; with `at_least`, or of a higher one.
+
+    The map agrees with the exact flow up to h to this power.
+    """
+
+    kind: Literal["convergence_order"]
+    convergence_order: _Order
+    at_least: bool = False
+
+
+class AreaClaim(_Quantified):
+    """det J ≡ 1; or, where it is false, not so."""
+
+    kind: Literal["area_preserving"]
+    area_preserving: Annotated[bool, Field(strict=True)]
+
+
+# -- what runs decide -----------------------------------------------------------------------------
+
+
+def _as_printed(given: Any) -> str:
+    """The text of a number as a paper prints it; TOML's decimals are texts already."""
+    shown = str(given) if isinstance(given, int) and not isinstance(given, bool) else given
+    if isinstance(shown, str):
+        shown = shown.strip().replace("\N{MINUS SIGN}", "-").replace("E", "e")
+        if _PRINTED.fullmatch(shown):
+            return shown
+    raise InputError("number", given, "is not a printed decimal, such as -7.3010 or 1.53e-17")
+
+
+Printed = Annotated[str, BeforeValidator(_as_printed)]
+Row = Annotated[tuple[Printed, ...], Field(min_length=1, max_length=1000)]
+
+
+class ValueClaim(_Claim):
+    """MSE, or Λ, of one run as printed; or its lg, for Λ that of |Λ|."""
+
+    kind: Literal["mse", "lambda"]
+    printed: Printed | None = None
+    lg_printed: Printed | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if len(self.printed) != len(self.step_sizes):
-            raise InputError("printed", len(self.printed), f"give {len(self.step_sizes)} values")
+        if (self.printed is None) == (self.lg_printed is None):
+            raise InputError("printed, lg_printed", "", "give one of the two")
+        return self
+
+
+class TableClaim(_Claim):
+    """Printed values, lg MSE by default, for each step size.
+
+    `printed` is one row that every initial value has, `rows` one row for each initial value.
+    """
+
+    kind: Literal["table"]
+    quantity: Literal["lg_mse", "mse", "lambda", "lg_abs_lambda"] = "lg_mse"
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
+    printed: Row | None = None
+    rows: Annotated[tuple[Row, ...], Field(min_length=1, max_length=1000)] | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.printed is None) == (self.rows is None):
+            raise InputError("printed, rows", "", "give one of the two")
+        name = "printed" if self.rows is None else "rows"
+        for row in self.rows or (self.printed or (),):
+            if len(row) != len(self.step_sizes):
+                raise InputError(name, len(row), f"give {len(self.step_sizes)} values in a row")
         return self
 
 
@@ -117,6 +185,20 @@ class MagnitudeClaim(_Claim):
     quantifier: Literal["some", "every"]
 
 
+class BoundedClaim(_Claim):
+    """|Λ| ≤ bound after every step of every run."""
+
+    kind: Literal["bounded"]
+    bound: Annotated[Number, Field(ge=0)]
+
+
+class GrowthClaim(_Claim):
+    """How the greatest |Λ| of [0, t] grows as t goes on to the end of the run."""
+
+    kind: Literal["growth"]
+    growth: Literal["bounded", "linear"]
+
+
 class CriteriaClaim(_Claim):
     """The scheme satisfies these criteria."""
 
@@ -126,129 +208,43 @@ class CriteriaClaim(_Claim):
     ]
 
 
-Claim = Annotated[
+class TheoremClaim(_Claim):
+    """What a paper says in words, judged by the function of that `name` in `verify.theorems`."""
+
+    kind: Literal["theorem"]
+    name: str
+    scheme: str = ""
+
+
+Claim = (
     StepMapClaim
     | JacobianClaim
     | DeltaJClaim
+    | OrderClaim
+    | ConvergenceOrderClaim
+    | AreaClaim
+    | ValueClaim
     | TableClaim
     | SpreadClaim
     | MonotoneClaim
     | LessClaim
     | MagnitudeClaim
-    | CriteriaClaim,
-    Field(discriminator="kind"),
-]
-_CLAIMS: TypeAdapter[Any] = TypeAdapter(Claim)
-
-
-@dataclass(frozen=True)
-class Findings:
-    """The scenes with all results that were computed for them."""
-
-    scenes: Mapping[str, Scene]
-    results: Mapping[str, Result] = field(default_factory=dict)
-
-    def scene(self, name: str) -> Scene:
-        if name not in self.scenes:
-            raise InputError("claim.scene", name, f"unknown; allowed: {', '.join(self.scenes)}")
-        return self.scenes[name]
-
-    def proof(self, scene: Scene, scheme: str) -> ProofResult:
-        if scheme not in scene.schemes:
-            known = ", ".join(scene.schemes)
-            raise InputError("claim.scheme", scheme, f"is not in scene {scene.name}: {known}")
-        result = self.results[key(proof_task(scene, scheme))]
-        assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's
-        return result
-
-    def runs(self, scene: Scene, scheme: str) -> list[RunResult]:
-        """The grid's runs by initial value, then step size; empty where none were needed."""
-        if scene.grid is None:
-            return []
-        names = [
-            key(grid_task(scene, scheme, h, start))
-            for start in range(len(scene.grid.initial_values))
-            for h in scene.grid.step_sizes
-        ]
-        found = [self.results.get(name) for name in names]
-        return [r for r in found if isinstance(r, RunResult)]
-
-    def separations(self, scene: Scene, scheme: str, grid: Grid) -> list[SeparationResult]:
-        """The separations over a grid by initial value, then step size."""
-        names = [
-            key(separation_task(scene, scheme, grid, h, start))
-            for start in range(len(grid.initial_values))
-            for h in grid.step_sizes
-        ]
-        found = [self.results.get(name) for name in names]
-        return [r for r in found if isinstance(r, SeparationResult)]
-
-    def growth_laws(self, scene: Scene, scheme: str) -> list[AverageResult]:
-        """The growth laws of the grid's orbits, by initial value; empty where none were asked."""
-        if scene.grid is None:
-            return []
-        starts = range(len(scene.grid.initial_values))
-        found = [self.results.get(key(growth_task(scene, scheme, start))) for start in starts]
-        return [r for r in found if isinstance(r, AverageResult)]
-
-    def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:
-        return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))
-
-
-def load_claims(path: Path) -> list[Claim]:
-    """The claims in a TOML file; InputError names the file, the claim and the problem."""
-    data = read_toml(path)
-    if set(data) != {"claim"} or not isinstance(data["claim"], list):
-        raise InputError("file", path.name, "must hold [[claim]] tables and nothing else")
-    claims = []
-    for index, table in enumerate(data["claim"]):
-        name = table.get("id", f"number {index + 1}") if isinstance(table, dict) else str(index)
-        try:
-            claims.append(_CLAIMS.validate_python(table))
-        except ValidationError as error:
-            raise one_line(error, f"{path.name}: claim {name}") from None
-    names = [claim.id for claim in claims]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(f"{path.name}: claim.id", name, "stands twice; each claim has its own")
-    return claims
-
-
-def check_claims(claims: Sequence[Claim], findings: Findings) -> list[ClaimResult]:
-    """Each claim's verdict, in their order."""
-    from verify import exact_claims, measured_claims
-
-    checks: dict[Any, Any] = {
-        CriteriaClaim: _check_criteria,
-        **exact_claims.CHECKS,
-        **measured_claims.CHECKS,
-    }
-    return [checks[type(claim)](claim, findings) for claim in claims]
-
-
-def result(
-    claim: _Claim, verdict: Verdict, evidence: str, details: Sequence[Sequence[str]] = ()
-) -> ClaimResult:
-    """The result for a claim; `details` is a table whose first row is its head."""
-    return ClaimResult(
-        id=claim.id,
-        source=claim.source,
-        statement=claim.statement,
-        scene=claim.scene,
-        verdict=verdict,
-        evidence=evidence,
-        details=tuple(tuple(row) for row in details),
-    )
-
-
-def _check_criteria(claim: CriteriaClaim, findings: Findings) -> ClaimResult:
-    scene = findings.scene(claim.scene)
-    judged = [findings.criterion(scene, claim.scheme, n) for n in claim.numbers]
-    verdicts = [c.verdict for c in judged]
-    evidence = "; ".join(f"criterion {c.number}: {c.evidence}" for c in judged)
-    if Verdict.REFUTED in verdicts:
-        return result(claim, Verdict.REFUTED, evidence)
-    if Verdict.UNDECIDED in verdicts:
-        return result(claim, Verdict.UNDECIDED, evidence)
-    weakest = Verdict.MEASURED if Verdict.MEASURED in verdicts else Verdict.PROVED
-    return result(claim, weakest, evidence)
+    | BoundedClaim
+    | GrowthClaim
+    | CriteriaClaim
+    | TheoremClaim
+)
+KINDS: dict[str, type[Claim]] = {
+    kind: model
+    for model in Claim.__args__
+    for kind in model.model_fields["kind"].annotation.__args__
+}
+EXACT = (
+    StepMapClaim,
+    JacobianClaim,
+    DeltaJClaim,
+    OrderClaim,
+    ConvergenceOrderClaim,
+    AreaClaim,
+    TheoremClaim,
+)

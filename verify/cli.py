@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from verify import show
-from verify.cli_input import hamiltonian_of, with_system
+from verify.cli_check import check
+from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
 from verify.errors import InputError
 
@@ -29,6 +30,7 @@ def cli(context: click.Context) -> None:
     verify prove --system duffing --scheme lie2
     verify run --system duffing --param delta=1 --scheme lie2 \\
            --step-size 0.001 --steps 20000 --q 1.5 --p 0 --digits 50
+    verify check claims.toml
     verify report paper -o paper-report
 
     Numbers are exact: 0.001 is 1/1000, 7/3 is a third of seven.
@@ -39,6 +41,7 @@ def cli(context: click.Context) -> None:
 
 cli.add_command(prove)
 cli.add_command(certificate)
+cli.add_command(check)
 
 
 @cli.command()
@@ -85,7 +88,7 @@ def run(
     exact = hamiltonian_of(system, hamiltonian, params)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     if keep is not None:
-        _writable(keep)
+        writable(keep)
     asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
     keeper = Keeper(keep, name_of(asked))
     with steps_bar(steps) as tell:
@@ -161,7 +164,7 @@ def plan(scene: str, as_json: bool) -> None:
     """Show what SCENE (a TOML file, or `paper`) needs computed, what is left out, and why."""
     from verify.plan import plan_scenes
 
-    _, scenes, _ = _target(scene)
+    _, scenes, _ = target(scene)
     planned = plan_scenes(scenes).as_json()
     if as_json:
         show.print_json(planned)
@@ -180,15 +183,18 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
     from reports.page import write
+    from verify.claim_plan import add_claims
     from verify.execute import Store, cost
     from verify.plan import plan_scenes
     from verify.progress import progress_bar
     from verify.report import make_report
 
-    title, scenes, claims = _target(scene)
+    title, scenes, file = target(scene)
+    claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{scenes[0].name if scene != 'paper' else 'paper'}-report")
-    _writable(folder)
+    writable(folder)
     planned = plan_scenes(scenes)
+    add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     total = sum(cost(task) for task in planned.tasks.values())
     finished = 0
     with progress_bar(f"{len(planned.tasks)} tasks", total, unit="") as advance:
@@ -205,6 +211,7 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
                 claims,
                 Store(folder / "kept"),
                 command=f"verify report {scene} -o {folder.name}",
+                claim_scenes=claim_scenes,
                 plan=planned,
                 workers=workers,
                 done=done,
@@ -221,34 +228,6 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
         show.print_json(made.model_dump(mode="json"))
     else:
         show.print_report(made, page)
-
-
-# -- input ----------------------------------------------------------------------------------------
-
-
-def _target(scene: str) -> tuple[str, list[Any], list[Any]]:
-    """Title, scenes and claims of `paper` or of a scene's file."""
-    from verify.claims import load_claims
-    from verify.scene import load_scene
-
-    if scene != "paper":
-        loaded = load_scene(Path(scene))
-        return loaded.title or loaded.name, [loaded], []
-    from importlib.resources import files
-
-    folder = Path(str(files("reports.paper")))
-    scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]
-    title = "A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, verified"
-    return title, scenes, load_claims(folder / "claims.toml")
-
-
-def _writable(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except BrokenPipeError:  # the reader, such as head, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except OSError as error:
-        raise InputError("--output", str(folder), error.strerror or "cannot be made") from None
 
 
 # -- entry ----------------------------------------------------------------------------------------

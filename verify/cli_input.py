@@ -1,5 +1,6 @@
 """Options that commands share, and what they stand for."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -7,7 +8,9 @@ import click
 from verify.errors import InputError
 
 if TYPE_CHECKING:
+    from verify.claims_file import ClaimsFile
     from verify.hamiltonian import Hamiltonian
+    from verify.scene import Scene
 
 _SYSTEM_OPTIONS = (
     click.option("--system", help="A named system: duffing, pendulum, harmonic."),
@@ -49,3 +52,33 @@ def hamiltonian_of(
     if system is not None:
         return systems.get(system).hamiltonian(values)
     return Hamiltonian.parse(hamiltonian or "", values)
+
+
+def paper_folder() -> Path:
+    """Where the paper's own scenes and claims are."""
+    from importlib.resources import files
+
+    return Path(str(files("reports") / "paper"))
+
+
+def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
+    """Title, scenes and claims of `paper` or of a scene's file."""
+    from verify.scene import load_scene
+
+    if scene != "paper":
+        loaded = load_scene(Path(scene))
+        return loaded.title or loaded.name, [loaded], None
+    from verify.claims_file import load_claims
+
+    folder = paper_folder()
+    scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]
+    title = "A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, verified"
+    return title, scenes, load_claims(folder / "claims.toml")
+
+
+def writable(folder: Path) -> None:
+    """Makes the folder; InputError where that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError("--output", str(folder), error.strerror or "cannot be made") from None

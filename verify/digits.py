@@ -137,7 +137,9 @@ class _Foresight:
         if "lambda" in sizes:
             sizes["lambda"] = max(abs(seen["least"]), abs(seen["most"]))
         short = [
-            missing_digits(sizes[n], error * growth ** (4 if n == "lambda" else 3), self.digits)
+            missing_digits(
+                sizes[n], error * growth ** (4 if n in ("lambda", "lambda_max") else 3), self.digits
+            )
             for n, error in errors.items()
             if sizes.get(n)
         ]

@@ -1,20 +1,25 @@
 """Claims that exact algebra decides: printed step maps, Jacobians, ΔJ, and sums made of ΔJ.
 
-Printed formulas keep the parameters as symbols, so that a claim is checked for all their values.
+A parameter that a formula of the claim names is a symbol there, so that the claim is checked for
+all its values; one that none of them names has the scene's value, where it has one.
 The difference between the printed and the computed expression is decided to be zero or not in the
 ring; where it is not, the evidence is the difference and a point at which it is enclosed away
 from zero.
 """
 
+import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import sympy
 
-from verify.claims import DeltaJClaim, Findings, JacobianClaim, StepMapClaim, result
+from verify.claims import DeltaJClaim, JacobianClaim, StepMapClaim
+from verify.errors import InputError
+from verify.findings import Checks, Findings, result
 from verify.formula import parse, symbol, to_text
 from verify.hamiltonian import Hamiltonian
-from verify.proof.order import Expansion
+from verify.proof.order import Expansion, convergence_of
 from verify.results import ClaimResult
 from verify.ring import Decision, Poly, Ring
 from verify.schemes import get
@@ -24,15 +29,43 @@ from verify.verdict import Verdict
 Gap = tuple[str, Ring, Poly, Decision]  # what, and printed − computed with the decision on it
 
 
-def _step_map(claim: Any, findings: Findings) -> StepMap:
-    """The scheme's exact map with all parameters as symbols."""
-    hamiltonian = findings.scene(claim.scene).exact_hamiltonian()
-    return get(claim.scheme).step_map(Hamiltonian(hamiltonian.expression))
+def formulas(claim: Any) -> dict[str, str]:
+    """The claim's formulas by the keys under which they stand."""
+    if isinstance(claim, StepMapClaim):
+        return {"p_next": claim.p_next, "q_next": claim.q_next}
+    if isinstance(claim, JacobianClaim):
+        return {f"entries.{i}.{j}": claim.entries[i][j] for i in (0, 1) for j in (0, 1)}
+    return {"formula": claim.formula} if isinstance(claim, DeltaJClaim) else {}
 
 
-def _parse(claim: Any, step_map: StepMap, text: str, more: Sequence[str] = ()) -> sympy.Expr:
-    names = ("p", "q", "h", *step_map.hamiltonian.parameters, *more)
-    return parse(text, names, source=f"claim {claim.id}")
+def read_formulas(claim: Any, parameters: Sequence[str]) -> dict[str, sympy.Expr]:
+    """The claim's formulas as expressions in p, q, h and the parameters; InputError names which."""
+    found = {}
+    for key, written in formulas(claim).items():
+        more = ["p_next"] if key == "q_next" else []
+        names = ("p", "q", "h", *parameters, *more)
+        found[key] = parse(written, names, source=f"claim {claim.id}: {key}")
+    return found
+
+
+def _read(claim: Any, findings: Findings) -> tuple[StepMap, dict[str, sympy.Expr]]:
+    """The scheme's exact map, and the claim's formulas with the same parameters as symbols."""
+    given = findings.scene_of(claim).exact_hamiltonian()
+    read = read_formulas(claim, given.parameters)
+    named = set(re.findall(r"[A-Za-z]\w*", " ".join(formulas(claim).values())))
+    values = tuple((name, value) for name, value in given.values if name not in named)
+    try:
+        step_map = step_map_of(Hamiltonian(given.expression, values), claim.scheme)
+    except InputError:  # a scheme may take H for the given values only
+        step_map = step_map_of(given, claim.scheme)
+    put_in = step_map.hamiltonian.put_in
+    return step_map, {key: put_in(expression) for key, expression in read.items()}
+
+
+@lru_cache(maxsize=64)
+def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
+    """The scheme's exact map; several claims speak of one."""
+    return get(scheme).step_map(hamiltonian)
 
 
 def _gaps(step_map: StepMap, pairs: Sequence[tuple[str, sympy.Expr, sympy.Expr]]) -> list[Gap]:
@@ -46,34 +79,34 @@ def _gaps(step_map: StepMap, pairs: Sequence[tuple[str, sympy.Expr, sympy.Expr]]
 
 
 def check_step_map(claim: StepMapClaim, findings: Findings) -> ClaimResult:
-    step_map = _step_map(claim, findings)
-    p_next = _parse(claim, step_map, claim.p_next)
-    q_next = _parse(claim, step_map, claim.q_next, ["p_next"]).subs(symbol("p_next"), p_next)
-    pairs = [("p′", p_next, step_map.p_next), ("q′", q_next, step_map.q_next)]
-    order = findings.proof(findings.scene(claim.scene), claim.scheme).convergence_order
+    step_map, read = _read(claim, findings)
+    q_next = read["q_next"].subs(symbol("p_next"), read["p_next"])
+    pairs = [("p′", read["p_next"], step_map.p_next), ("q′", q_next, step_map.q_next)]
+    gaps = _gaps(step_map, pairs)
+    if any(gap[3].zero is not True for gap in gaps):
+        return _from_gaps(claim, gaps, "")
+    order = convergence_of(step_map).order
     agreement = "every order looked at" if order is None else f"h^{order}"
     holds = (
         f"p′ and q′ are those of {claim.scheme}, term by term, and agree with the exact flow up to "
         f"{agreement}"
     )
-    return _from_gaps(claim, _gaps(step_map, pairs), holds)
+    return _from_gaps(claim, gaps, holds)
 
 
 def check_jacobian(claim: JacobianClaim, findings: Findings) -> ClaimResult:
-    step_map = _step_map(claim, findings)
+    step_map, read = _read(claim, findings)
     computed = step_map.jacobian
     names = (("∂p′/∂p", "∂p′/∂q"), ("∂q′/∂p", "∂q′/∂q"))
     pairs = [
-        (names[i][j], _parse(claim, step_map, claim.entries[i][j]), computed[i, j])
-        for i in (0, 1)
-        for j in (0, 1)
+        (names[i][j], read[f"entries.{i}.{j}"], computed[i, j]) for i in (0, 1) for j in (0, 1)
     ]
     return _from_gaps(
         claim, _gaps(step_map, pairs), "all four entries are those of the exact Jacobian"
     )
 
 
-_PRINTED_AS = {
+PRINTED_AS = {
     "delta_j": "ΔJ",
     "mse_summand": "the bracket that is squared in the mean (ΔJ by Eq. 15)",
     "lambda_factor": "the factor of the product (det J by Eq. 16)",
@@ -81,11 +114,9 @@ _PRINTED_AS = {
 
 
 def check_delta_j(claim: DeltaJClaim, findings: Findings) -> ClaimResult:
-    step_map = _step_map(claim, findings)
-    printed = _parse(claim, step_map, claim.formula)
-    if claim.kind == "lambda_factor":
-        printed -= 1
-    what = _PRINTED_AS[claim.kind]
+    what = PRINTED_AS[claim.kind]
+    step_map, read = _read(claim, findings)
+    printed = delta_j_printed(claim, read["formula"])
     gap = _gaps(step_map, [(what, printed, step_map.delta_j)])[0]
     if claim.up_to is None:
         holds = f"{what}, as printed, agrees with det J − 1 exactly, for all p, q, h and parameters"
@@ -93,23 +124,33 @@ def check_delta_j(claim: DeltaJClaim, findings: Findings) -> ClaimResult:
     return _up_to(claim, gap)
 
 
+def delta_j_printed(claim: DeltaJClaim, formula: sympy.Expr) -> sympy.Expr:
+    """ΔJ as the claim's formula prints it."""
+    return formula - 1 if claim.kind == "lambda_factor" else formula
+
+
 def _up_to(claim: DeltaJClaim, gap: Gap) -> ClaimResult:
     """Whether the difference is O(h^up_to)."""
     what, ring, x, _ = gap
-    expansion = Expansion(ring, x)
     assert claim.up_to is not None  # noqa: S101 - the caller's condition
-    for n in range(claim.up_to):
-        own, coefficient = expansion.coefficient(n)
-        decision = own.decide(coefficient)
-        if decision.zero is not True:
-            term = H_STEP**n * own.factored(coefficient)
-            return _refuted_or_not(claim, what, to_text(term), decision)
-    return result(
+    return differs_below(claim, what, ring, x, claim.up_to) or result(
         claim,
         Verdict.PROVED,
         f"{what} as printed differs from det J − 1 by O(h^{claim.up_to}): the "
         f"difference is {to_text(-grouped(ring, x))}",
     )
+
+
+def differs_below(claim: Any, what: str, ring: Ring, x: Poly, power: int) -> ClaimResult | None:
+    """The claim's result where printed − computed = x is not shown to be O(h^power)."""
+    expansion = Expansion(ring, x)
+    for n in range(power):
+        own, coefficient = expansion.coefficient(n)
+        decision = own.decide(coefficient)
+        if decision.zero is not True:
+            term = H_STEP**n * own.factored(coefficient)
+            return _refuted_or_not(claim, what, to_text(term), decision)
+    return None
 
 
 def _from_gaps(claim: Any, gaps: Sequence[Gap], holds: str) -> ClaimResult:
@@ -137,7 +178,7 @@ def _refuted_or_not(claim: Any, what: str, difference: str, decision: Decision) 
     )
 
 
-CHECKS = {
+CHECKS: Checks = {
     StepMapClaim: check_step_map,
     JacobianClaim: check_jacobian,
     DeltaJClaim: check_delta_j,

@@ -1,7 +1,8 @@
 """Step map + observables → a loop over N steps in one arithmetic, with nothing not asked for.
 
 Observables: `delta_j_max` max |ΔJ|, `mse` Σ ΔJ² (Eq. 15 before its 1/N), `lambda` Λ (Eq. 16) by
-the closed form of ΔJ as Λ ← Λ + ΔJ + Λ ΔJ, `lambda_plain` Π det J the plain way (four entries,
+the closed form of ΔJ as Λ ← Λ + ΔJ + Λ ΔJ, `lambda_max` the greatest |Λ| after any step,
+`lambda_plain` Π det J the plain way (four entries,
 their determinant, the product), `extremes` the least and greatest ΔJ and Λ of one call's steps.
 
 `tangent` carries the tangent map along (see `verify.tangent`), for a rigorous bound.
@@ -33,8 +34,10 @@ from verify.scaling import divided, lowest_power
 from verify.schemes import get
 from verify.step_map import StepMap
 
-OBSERVABLES = ("delta_j_max", "mse", "lambda", "lambda_plain", "extremes", "tangent")
-CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "extremes"})
+OBSERVABLES = (
+    "delta_j_max", "mse", "lambda", "lambda_max", "lambda_plain", "extremes", "tangent",
+)  # fmt: skip
+CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes"})
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
@@ -202,8 +205,11 @@ class Writer:
             lines.append(f"plain = plain * {value['det']}")
         if asked & CLOSED_FORM:
             lines.append(f"dj = {value['dj']}")
-        if {"lambda", "extremes"} & asked:
+        if {"lambda", "lambda_max", "extremes"} & asked:
             lines += self.product_of_factors()
+        if "lambda_max" in asked:
+            self.carry("lam_top", 0, "sum")
+            lines += ["lam_size = abs(lam)", self.keep_extreme("lam_top", "lam_size", ">")]
         if "mse" in asked:
             lines += self.accumulate("mse", "dj * dj")
         if "delta_j_max" in asked:

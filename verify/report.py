@@ -3,13 +3,16 @@
 import os
 import platform
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from verify import systems
-from verify.claims import Claim, Findings, check_claims
+from verify.check_claims import check_claims
+from verify.claim_plan import add_claims
+from verify.claims import Claim
 from verify.exact import text
 from verify.execute import Done, Store, execute
+from verify.findings import Findings
 from verify.formula import to_text
 from verify.keeping import versions
 from verify.plan import Plan, key, plan_scenes, series_task
@@ -32,20 +35,28 @@ def make_report(
     store: Store,
     *,
     command: str,
+    claim_scenes: Mapping[str, Scene] | None = None,
     plan: Plan | None = None,
     workers: int | None = None,
     done: Done | None = None,
 ) -> Report:
-    """Compute what the scenes and claims need, and judge. The claims' scenes must be given."""
+    """Compute what the scenes and claims need, and judge.
+
+    A claim speaks of one of the scenes, or of `claim_scenes`, which the report does not show.
+    """
     begun = time.perf_counter()
     plan = plan_scenes(list(scenes)) if plan is None else plan
+    own = {scene.name: scene for scene in scenes}
+    spoken_of = {**(claim_scenes or {}), **own}
+    known = add_claims(plan, claims, spoken_of)
     before = store.taken
     results = execute(plan, store, workers=workers, done=done)
     kept = store.taken - before
-    findings = Findings({scene.name: scene for scene in scenes}, results)
+    findings = Findings(own, results)
+    of_claims = Findings(spoken_of, {**known, **results})
     return Report(
         title=title,
-        claims=tuple(check_claims(claims, findings)),
+        claims=tuple(check_claims(claims, of_claims)),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         left_out=tuple(plan.left_out),
         provenance=Provenance(

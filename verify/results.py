@@ -242,10 +242,12 @@ class CriterionResult(Frozen):
 class ClaimResult(Frozen):
     """One claim with its verdict; `evidence` is one line, `details` a table of texts.
 
+    `scene` is empty where the claim speaks of every H.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
     """
 
     id: str
+    kind: str = ""
     source: str
     statement: str
     scene: str

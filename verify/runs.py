@@ -34,6 +34,7 @@ MAX_DIGITS = 10_000
 AUTO = "auto"
 CLOSED_FORM = ("delta_j_max", "mse", "lambda")
 ASKED = (*CLOSED_FORM, "lambda_plain")
+OBSERVABLES = (*ASKED, "lambda_max")  # the last: the greatest |Λ| after any of the steps
 
 
 def run(
@@ -99,6 +100,43 @@ def run(
     )
 
 
+def known_run(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    *,
+    q: Fraction,
+    p: Fraction,
+    step_size: Fraction,
+    steps: int,
+    digits: int,
+    observables: Sequence[str],
+) -> RunResult | None:
+    """The observables without any step, and without p and q, where a proof gives all of them."""
+    check(hamiltonian, steps, digits, observables)
+    known = proved(get(scheme).step_map(hamiltonian), step_size, steps, digits)
+    if not set(observables) <= set(known):
+        return None
+    return RunResult(
+        hamiltonian=to_text(hamiltonian.expression),
+        parameters={name: text(value) for name, value in hamiltonian.values},
+        scheme=scheme,
+        arithmetic="ball",
+        digits=digits,
+        step_size=text(step_size),
+        steps=steps,
+        q=text(q),
+        p=text(p),
+        status="finished",
+        failed_step=None,
+        values={n: _printed(*known[n], digits) for n in observables},
+        error_kind="enclosed",
+        error_method="a proof, and no run",
+        exact=tuple(observables),
+        series=(),
+        seconds=0.0,
+    )
+
+
 def _run(
     job: Job, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
 ) -> Measured:
@@ -115,8 +153,8 @@ def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequen
         if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
             raise InputError(name, value, f"must be a whole number, 1 … {most}")
     for name in observables:
-        if name not in ASKED:
-            raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
+        if name not in OBSERVABLES:
+            raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
 
 
 def _series_needs(known: dict[str, Any], points: int) -> frozenset[str]:
@@ -130,7 +168,7 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them."""
     zero = Fraction(0), Fraction(0)
     if step_map.preserves_area:
-        return dict.fromkeys(CLOSED_FORM, zero)
+        return dict.fromkeys((*CLOSED_FORM, "lambda_max"), zero)
     if len(step_map.substeps) > 1:
         return {}
     step = step_map.substeps[0]
@@ -143,6 +181,8 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     with working_precision(bits):
         lam = (1 + delta_j) ** steps - 1
         balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
+        if delta_j > -1:  # (1 + ΔJ)^k moves in one direction
+            balls["lambda_max"] = abs(lam)
         return {name: middle_and_radius(ball) for name, ball in balls.items() if in_reach(ball)}
 
 

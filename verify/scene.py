@@ -50,7 +50,7 @@ from verify.errors import InputError
 from verify.exact import positive, rational, text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
-from verify.runs import ASKED, AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
+from verify.runs import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
 
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
@@ -98,8 +98,8 @@ class Grid(Frozen):
         if (self.time is None) == (self.steps is None):
             raise InputError("grid", "time, steps", "give one of the two")
         for name in self.observables:
-            if name not in ASKED:
-                raise InputError("observable", name, f"unknown; allowed: {', '.join(ASKED)}")
+            if name not in OBSERVABLES:
+                raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
         if self.growth and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")
         if len(set(self.step_sizes)) < len(self.step_sizes):

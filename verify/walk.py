@@ -18,8 +18,15 @@ if TYPE_CHECKING:
 Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
 _SECTIONS = 16
-_ACCUMULATORS = {"lambda": "lam", "mse": "mse", "delta_j_max": "top", "lambda_plain": "plain"}
-_SCALED = {"lam": 1, "mse": 2, "top": 1, "dj": 1}  # powers of the 2^s that the kernel carries
+_ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
+                 "lambda_plain": "plain"}  # fmt: skip
+_SCALED = {
+    "lam": 1,
+    "lam_top": 1,
+    "mse": 2,
+    "top": 1,
+    "dj": 1,
+}  # powers of the 2^s that the kernel carries
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 
 

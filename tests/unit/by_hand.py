@@ -4,8 +4,10 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from verify.claims import Claim, Findings, check_claims
+from verify.check_claims import check_claims
+from verify.claims import Claim
 from verify.exact import decimal, text
+from verify.findings import Findings
 from verify.plan import grid_task, key, proof_task
 from verify.results import ClaimResult, ProofResult, RunResult, Value
 from verify.scene import Scene, scene_from

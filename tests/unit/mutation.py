@@ -16,6 +16,14 @@ def changes_of(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
             other = copy.deepcopy(node)
             other.op = ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()
             yield "sign", other
+            yield "term lost", node.left
+            alone = (
+                node.right if isinstance(node.op, ast.Add) else ast.UnaryOp(ast.USub(), node.right)
+            )
+            yield "term lost", alone
+            twice = [ast.BinOp(ast.Constant(2), ast.Mult(), x) for x in (node.left, node.right)]
+            yield "term doubled", ast.BinOp(node.left, node.op, twice[1])
+            yield "term doubled", ast.BinOp(twice[0], node.op, node.right)
         case ast.BinOp(op=ast.Mult() | ast.Div()):
             negated = ast.UnaryOp(ast.USub(), copy.deepcopy(node.left))
             yield "sign", ast.BinOp(negated, node.op, node.right)
@@ -38,7 +46,7 @@ class Replace(ast.NodeTransformer):
 
 def mutants(formula: str) -> list[str]:
     """The formula with one thing in it changed, in every way."""
-    found = []
+    found: list[str] = []
     count = len(list(ast.walk(ast.parse(formula, mode="eval"))))
     for index in range(count):
         tree = ast.parse(formula, mode="eval")

@@ -20,7 +20,7 @@ from verify.hamiltonian import Hamiltonian
 from verify.precision import working_precision
 from verify.stepping import Job
 
-OBSERVABLES = frozenset({"lambda", "mse", "delta_j_max"})
+OBSERVABLES = frozenset({"lambda", "lambda_max", "mse", "delta_j_max"})
 True_ = tuple[Fraction, Fraction]  # a value and the radius around it in which the true one is
 _NOTHING = Fraction(1, 2**800)
 _FUNCTIONS = ("sin", "cos", "exp", "log", "sinh", "cosh", "atan", "sqrt")
@@ -106,13 +106,15 @@ def _power(x: Any, n: int) -> Any:
 
 
 def _values(step: Any, p: Any, q: Any, steps: int, zero: Any, greatest: Any) -> dict[str, Any]:
-    product, squares, top = zero + 1, zero, zero
+    product, squares, top, highest = zero + 1, zero, zero, zero
     for _ in range(steps):
         after_p, after_q, delta_j = step(p, q)
         product, squares = product * (1 + delta_j), squares + delta_j * delta_j
         top = greatest(top, abs(delta_j))
+        highest = greatest(highest, abs(product - 1))
         p, q = after_p, after_q
-    return {"p": p, "q": q, "lambda": product - 1, "mse": squares / steps, "delta_j_max": top}
+    return {"p": p, "q": q, "lambda": product - 1, "lambda_max": highest, "mse": squares / steps,
+            "delta_j_max": top}  # fmt: skip
 
 
 def exact(case: Case) -> dict[str, True_]:

@@ -7,20 +7,20 @@ from typing import Any
 import pytest
 
 from tests.unit.by_hand import CLAIM, FLAT, made_findings, made_proof, made_run, made_scene
+from verify.check_claims import check_claims
 from verify.claims import (
     Claim,
     CriteriaClaim,
-    Findings,
     LessClaim,
     MagnitudeClaim,
     MonotoneClaim,
     SpreadClaim,
     StepMapClaim,
     TableClaim,
-    check_claims,
-    load_claims,
 )
+from verify.claims_file import load_claims
 from verify.errors import InputError
+from verify.findings import Findings
 from verify.plan import grid_task, key
 from verify.verdict import Verdict
 
@@ -160,7 +160,7 @@ def test_a_claim_that_says_too_little_or_too_much_is_named_when_it_is_read(
     """An empty table or list of criteria would be true of everything."""
     path = tmp_path / "claims.toml"
     path.write_text(HEAD + body)
-    with pytest.raises(InputError, match=r"claims\.toml: claim mine") as caught:
+    with pytest.raises(InputError, match=r"claims\.toml:\d+: claim mine") as caught:
         load_claims(path)
     assert "\n" not in str(caught.value)
 

@@ -18,8 +18,10 @@ from tests.unit.by_hand import (
     made_scene,
     one_changed,
 )
-from verify.claims import Findings, TableClaim, check_claims
+from verify.check_claims import check_claims
+from verify.claims import TableClaim
 from verify.execute import Store, execute
+from verify.findings import Findings
 from verify.plan import plan_scenes
 from verify.verdict import Verdict
 

@@ -169,6 +169,7 @@ OWN_NAMES = {
     "delta_j_max": {"top", "size"},
     "mse": {"mse"},
     "lambda": {"lam"},
+    "lambda_max": {"lam", "lam_top", "lam_size"},
     "lambda_plain": {"plain"},
     "extremes": {"dj_low", "dj_high", "lam_low", "lam_high", "lam"},
     "tangent": {"growth", "m_pp", "q_low"},

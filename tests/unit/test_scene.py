@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from verify import execute, results
-from verify.claims import load_claims
+from verify.claims_file import load_claims
 from verify.errors import InputError
 from verify.report import make_report
 from verify.results import Frozen, Report, RunResult
@@ -210,7 +210,7 @@ def test_the_scenes_of_the_paper_survive_json_too(name: str) -> None:
 def full_report(folder: Path) -> Report:
     scene = load(folder, FULL)
     (folder / "claims.toml").write_text(CLAIMS)
-    claims = load_claims(folder / "claims.toml")
+    claims = load_claims(folder / "claims.toml").claims
     return make_report("All", [scene], claims, execute.Store(None), command="test", workers=1)
 
 

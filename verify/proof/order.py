@@ -143,7 +143,7 @@ def _first(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Lead
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """The order of ΔJ and of the map by exact algebra, and whether `scheme`'s claims hold."""
     convergence = convergence_of(step_map)
-    leading = _leading_of_delta_j(step_map)
+    leading = leading_of(step_map)
     verdict, reason = _verdict(convergence, leading, scheme)
     return Proof(
         verdict=verdict,
@@ -190,7 +190,8 @@ class _BySeries:
         return field.ring, delta_j(p, q).coefficients[n]
 
 
-def _leading_of_delta_j(step_map: StepMap) -> Leading:
+def leading_of(step_map: StepMap) -> Leading:
+    """The first coefficient in h of ΔJ that is not shown to vanish."""
     if step_map.preserves_area:
         return _VANISHES
     series = _BySeries(step_map)

@@ -1,0 +1,346 @@
+"""Claims on numbers that stand alone: printed values, tables, a bound of |Λ|, its growth."""
+
+import math
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.unit.by_hand import CLAIM, Given, made_findings, made_run, made_scene
+from verify.check import prepare
+from verify.check_claims import check_claim
+from verify.claims import BoundedClaim, GrowthClaim, TableClaim, ValueClaim
+from verify.claims_file import load_claims
+from verify.execute import Store
+from verify.findings import Findings
+from verify.growth_claims import growth_tasks
+from verify.plan import key
+from verify.results import ClaimResult
+from verify.verdict import Verdict
+
+MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED
+ENCLOSED, PROVED = Verdict.ENCLOSED, Verdict.PROVED
+H = Fraction(1, 100)
+
+
+def on_runs(claim: Any, values: dict[str, Given], *, starts: int = 1) -> ClaimResult:
+    """The claim's result where each run at h = 0.01 has these values."""
+    scene = made_scene(("0.01",), [(str(k), "0") for k in range(1, starts + 1)])
+    return check_claim(claim, made_findings(scene, lambda h, k: values))
+
+
+# -- one value ------------------------------------------------------------------------------------
+
+
+def printed(text: Any, kind: Any = "mse", lg: bool = False) -> ValueClaim:
+    key_ = "lg_printed" if lg else "printed"
+    return ValueClaim(**CLAIM, kind=kind, **{key_: text})
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "expected"),
+    [
+        ("1.53e-17", "1.5297518454e-17", MEASURED),
+        ("1.5298e-17", "1.5297518454e-17", MEASURED),
+        ("1.52e-17", "1.5297518454e-17", REFUTED),
+        ("1.5297e-17", "1.5297518454e-17", REFUTED),
+        ("1.53e-16", "1.5297518454e-17", REFUTED),
+        ("2e-17", "1.5297518454e-17", MEASURED),
+        ("0.0000000000000000153", "1.5297518454e-17", MEASURED),
+        ("1.5E-17", "1.5297518454e-17", MEASURED),
+        ("153e-19", "1.5297518454e-17", MEASURED),
+        ("1.53e-17", ("1.5297518454e-17", "1e-19"), UNDECIDED),
+        ("1.5e-17", ("1.5297518454e-17", "1e-19"), MEASURED),
+        ("1.7e-17", ("1.5297518454e-17", "1e-19"), REFUTED),
+        ("1.5", "1.5", MEASURED),
+        ("1", "1.5", MEASURED),  # on the border, both are right
+        ("2", "1.5", MEASURED),
+        ("1.6e-17", ("1.55e-17", "1e-40"), UNDECIDED),
+        (0, "0", MEASURED),
+        ("1.5e-17", "0", REFUTED),
+    ],
+)
+def test_a_printed_value_is_true_where_the_whole_ball_rounds_to_it(
+    text: Any, given: Given, expected: Verdict
+) -> None:
+    assert on_runs(printed(text), {"mse": given}).verdict is expected
+
+
+@pytest.mark.parametrize("sign", ["-", "\N{MINUS SIGN}"])
+def test_the_sign_of_a_value_counts_and_may_be_a_minus_sign(sign: str) -> None:
+    found = {s: on_runs(printed(s + "2.666e-06", "lambda"), {"lambda": "-2.66639e-6"}).verdict
+             for s in ("", sign)}  # fmt: skip
+    assert found == {"": REFUTED, sign: MEASURED}
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "text", "expected"),
+    [
+        ("mse", "1e-17", "-17.0000", MEASURED),
+        ("mse", "1.001e-17", "-17.0000", REFUTED),
+        ("mse", "1.001e-17", "-16.9996", MEASURED),
+        ("mse", "1.001e-17", "\N{MINUS SIGN}17", MEASURED),
+        ("mse", ("1e-17", "1e-20"), "-17.0000", UNDECIDED),
+        ("mse", ("1e-17", "2e-17"), "-17.0000", UNDECIDED),
+        ("mse", "0", "-17.0000", REFUTED),
+        ("lambda", "-1e-5", "-5.00", MEASURED),
+        ("lambda", "-1e-5", "-5.01", REFUTED),
+    ],
+)
+def test_a_printed_logarithm_is_of_mse_or_of_the_size_of_lambda(
+    kind: str, given: Given, text: str, expected: Verdict
+) -> None:
+    assert on_runs(printed(text, kind, lg=True), {kind: given}).verdict is expected
+
+
+@pytest.mark.parametrize("place", range(2, 9))
+def test_every_digit_that_is_changed_refutes_a_value(place: int) -> None:
+    true = "-2.6663913e-06"
+    assert on_runs(printed(true, "lambda"), {"lambda": "-2.66639128641007e-6"}).verdict is MEASURED
+    at = place + 1 if place > 1 else place
+    wrong = true[:at] + str((int(true[at]) + 1) % 10) + true[at + 1 :]
+    assert on_runs(printed(wrong, "lambda"), {"lambda": "-2.66639128641007e-6"}).verdict is REFUTED
+
+
+# -- tables of several rows -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("quantity", "rows", "expected"),
+    [
+        ("mse", (("2.0e-9",), ("3.0e-9",)), MEASURED),
+        ("mse", (("2.0e-9",), ("2.0e-9",)), REFUTED),
+        ("mse", (("3.0e-9",), ("2.0e-9",)), REFUTED),
+        ("lambda", (("-2e-3",), ("-3e-3",)), MEASURED),
+        ("lambda", (("-2e-3",), ("3e-3",)), REFUTED),
+        ("lg_mse", (("-8.6990",), ("-8.5229",)), MEASURED),
+        ("lg_abs_lambda", (("-2.699",), ("-2.523",)), MEASURED),
+        ("lg_abs_lambda", (("-2.699",), ("-2.524",)), REFUTED),
+    ],
+)
+def test_a_table_has_a_row_for_each_initial_value(
+    quantity: Any, rows: Any, expected: Verdict
+) -> None:
+    claim = TableClaim(**CLAIM, kind="table", quantity=quantity, step_sizes=(H,), rows=rows)
+    scene = made_scene(("0.01",), [("1", "0"), ("2", "0")])
+
+    def values(_: Fraction, k: int) -> dict[str, Given]:
+        return {"mse": (k + 2) * Fraction(1, 10**9), "lambda": -(k + 2) * Fraction(1, 10**3)}
+
+    assert check_claim(claim, made_findings(scene, values)).verdict is expected
+
+
+# -- a bound --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("bound", "given", "expected"),
+    [
+        ("1e-3", "9.9e-4", MEASURED),
+        ("0.125", "0.125", MEASURED),
+        ("1e-3", "1.0001e-3", REFUTED),
+        ("1e-3", ("1e-3", "1e-9"), UNDECIDED),
+        ("1e-3", ("9.9e-4", "1e-5"), UNDECIDED),
+        ("0", "0", MEASURED),
+        ("0", "1e-300", REFUTED),
+    ],
+)
+def test_a_bound_holds_for_the_greatest_lambda(bound: str, given: Given, expected: Verdict) -> None:
+    claim = BoundedClaim(**CLAIM, kind="bounded", bound=bound)
+    assert on_runs(claim, {"lambda_max": given}).verdict is expected
+
+
+# -- growth, by hand ------------------------------------------------------------------------------
+
+
+def growing(growth: Any, *sizes: Given, **run: Any) -> ClaimResult:
+    claim = GrowthClaim(**CLAIM, kind="growth", growth=growth)
+    scene = made_scene(("0.01",), [("1", "0")])
+    runs = [
+        made_run(t.step_size, {"lambda_max": size}, steps=t.steps, **run)
+        for t, size in zip(growth_tasks(scene, "lie2"), sizes, strict=True)
+    ]
+    names = [key(task) for task in growth_tasks(scene, "lie2")]
+    return check_claim(claim, Findings({"made": scene}, dict(zip(names, runs, strict=True))))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "bounded", "linear"),
+    [
+        (("1", "2", "4", "8"), REFUTED, MEASURED),
+        (("1", "2.1", "4.1", "8.0"), REFUTED, MEASURED),
+        (("1", "1", "1", "1"), MEASURED, REFUTED),
+        (("1", "1.05", "1.06", "1.06"), MEASURED, REFUTED),
+        (("1", "1.4", "2", "2.8"), UNDECIDED, UNDECIDED),
+        (("1", "4", "16", "64"), UNDECIDED, UNDECIDED),
+        (("1", "1", "2", "4"), UNDECIDED, UNDECIDED),
+        (("0", "0", "0", "0"), UNDECIDED, UNDECIDED),
+        (("1", ("2", "1"), "4", "8"), UNDECIDED, UNDECIDED),
+        (("1", ("2", "2"), "4", "8"), UNDECIDED, UNDECIDED),
+    ],
+)
+def test_growth_is_read_from_three_doublings(
+    sizes: tuple[Given, ...], bounded: Verdict, linear: Verdict
+) -> None:
+    assert growing("bounded", *sizes).verdict is bounded
+    assert growing("linear", *sizes).verdict is linear
+
+
+def test_growth_of_an_orbit_that_leaves_the_range_is_undecided() -> None:
+    found = growing("linear", *"1111", status="left range", failed_step=9)
+    assert found.verdict is UNDECIDED
+    assert "left the range at step 9" in found.evidence
+
+
+# -- files, with their runs -----------------------------------------------------------------------
+
+ONE_RUN = """
+[defaults]
+scheme = "lie2"
+system = "duffing"
+parameters = { delta = 1 }
+step_size = 0.001
+steps = 2000
+q = 1.5
+p = 0
+
+"""
+
+
+def check_file(folder: Path, content: str) -> dict[str, ClaimResult]:
+    path = folder / "claims.toml"
+    path.write_text(content)
+    return {found.id: found for found in prepare(load_claims(path)).run(Store(None), workers=1)}
+
+
+def test_numbers_of_one_run_are_enclosed_or_refuted_in_a_file_that_stands_alone(
+    tmp_path: Path,
+) -> None:
+    mse, lam, largest = plain_run(2000)
+    claims = {
+        "mse": ('kind = "mse"', f'printed = "{mse:.11e}"', f'printed = "{mse * 1.0000001:.11e}"'),
+        "lg": ('kind = "mse"', f"lg_printed = {lg(mse)}", f"lg_printed = {lg(mse * 1.01)}"),
+        "lam": ('kind = "lambda"', f'printed = "{lam:.9e}"', f'printed = "{-lam:.9e}"'),
+        "bound": ('kind = "bounded"', f'bound = "{largest * 1.000001:.12e}"',
+                  f'bound = "{largest * 0.999999:.12e}"'),
+    }  # fmt: skip
+    content = ONE_RUN
+    for name, (kind, true, wrong) in claims.items():
+        content += f'[[claim]]\nid = "{name}"\n{kind}\n{true}\n'
+        content += f'[[claim]]\nid = "{name}-wrong"\n{kind}\n{wrong}\n'
+    found = check_file(tmp_path, content)
+    assert {n: r.verdict for n, r in found.items()} == {
+        n + tail: verdict for n in claims for tail, verdict in (("", ENCLOSED), ("-wrong", REFUTED))
+    }
+
+
+def lg(x: float) -> str:
+    return f"{math.log10(x):.4f}"
+
+
+def plain_run(steps: int) -> tuple[float, float, float]:
+    """MSE, Λ and max |Λ| of Eq. 19 by plain floats, δ = 1, h = 0.001 from (1.5, 0)."""
+    h, p, q = 0.001, 0.0, 1.5
+    squares, lam, largest = 0.0, 0.0, 0.0
+    for _ in range(steps):
+        a, d = q + q**3, 1 + 3 * q * q
+        delta_j = 3 * h**3 * p * q + h**4 * d * d / 4
+        squares, lam = squares + delta_j**2, lam + delta_j + lam * delta_j
+        largest = max(largest, abs(lam))
+        p, q = p - h * a - h * h / 2 * p * d, q + h * p - h * h / 2 * a
+    return squares / steps, lam, largest
+
+
+def test_where_a_proof_gives_the_numbers_nothing_is_run(tmp_path: Path) -> None:
+    content = (
+        ONE_RUN.replace("lie2", "symplectic-euler").replace("2000", "900000000000")
+        + """
+[[claim]]
+id = "zero"
+kind = "lambda"
+printed = 0
+[[claim]]
+id = "not-zero"
+kind = "mse"
+printed = "1e-17"
+[[claim]]
+id = "bounded"
+kind = "bounded"
+bound = 0
+[[claim]]
+id = "stays"
+kind = "growth"
+growth = "bounded"
+[[claim]]
+id = "grows"
+kind = "growth"
+growth = "linear"
+[[claim]]
+id = "constant"
+kind = "lambda"
+scheme = "lie2"
+system = "harmonic"
+parameters = { omega = 1 }
+printed = "0.2523"
+"""
+    )
+    path = tmp_path / "claims.toml"
+    path.write_text(content)
+    prepared = prepare(load_claims(path))
+    assert prepared.plan.tasks == {}
+    assert prepared.plan.left_out
+    found = {r.id: r.verdict for r in prepared.run(Store(None))}
+    assert found == {"zero": ENCLOSED, "not-zero": REFUTED, "bounded": ENCLOSED, "stays": PROVED,
+                     "grows": REFUTED, "constant": ENCLOSED}  # fmt: skip
+
+
+def test_growth_of_an_odd_and_of_an_even_scheme_is_seen_in_runs(tmp_path: Path) -> None:
+    content = """
+[defaults]
+kind = "growth"
+system = "pendulum"
+step_size = 0.05
+time = 400
+q = 1.5
+p = 0
+[[claim]]
+id = "odd-linear"
+scheme = "lie3"
+growth = "linear"
+[[claim]]
+id = "odd-bounded"
+scheme = "lie3"
+growth = "bounded"
+"""
+    found = check_file(tmp_path, content)
+    assert found["odd-linear"].verdict is MEASURED
+    assert found["odd-bounded"].verdict is REFUTED
+
+
+def test_a_chaotic_or_escaping_orbit_decides_nothing(tmp_path: Path) -> None:
+    content = """
+[[claim]]
+id = "escapes"
+kind = "lambda"
+scheme = "lie2"
+hamiltonian = "p**2/2 - q**4"
+step_size = 1
+steps = 60
+q = 1.5
+p = 0
+printed = "1.0"
+"""
+    found = check_file(tmp_path, content)["escapes"]
+    assert found.verdict is UNDECIDED
+    assert "left the range" in found.evidence
+
+
+def test_more_digits_are_computed_where_more_are_printed(tmp_path: Path) -> None:
+    digits = "-2.6663912864100748882473012881433962680021897177896e-06"
+    content = ONE_RUN.replace("2000", "20000") + (
+        f'[[claim]]\nid = "a"\nkind = "lambda"\nprinted = "{digits}"\n'
+        f'[[claim]]\nid = "b"\nkind = "lambda"\nprinted = "{digits.replace("896e", "897e")}"\n'
+    )
+    found = check_file(tmp_path, content)
+    assert (found["a"].verdict, found["b"].verdict) == (ENCLOSED, REFUTED)

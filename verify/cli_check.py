@@ -1,0 +1,112 @@
+"""The command `verify check`: the claims of a paper, one verdict each."""
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify import show
+from verify.cli_input import paper_folder, writable
+
+if TYPE_CHECKING:
+    from verify.results import ClaimResult
+
+REFUTED = 1  # exit status
+
+
+@click.command()
+@click.argument("claims", metavar="CLAIMS")
+@click.option(
+    "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
+)
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep what is finished there; the same command goes on from it.",
+)
+@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+def check(
+    claims: str, only: tuple[str, ...], keep: Path | None, workers: int | None, as_json: bool
+) -> None:
+    """Check the claims in CLAIMS (a TOML file, or `paper`); exit status 1 where one is refuted.
+
+    \b
+    [defaults]                        # what the claims share
+    scheme = "lie2"
+    system = "duffing"                # or hamiltonian = "…", with parameters = { … }
+
+    \b
+    [[claim]]
+    id = "eq-21"
+    kind = "delta_j"
+    formula = "3*h**3*delta*p*q"
+    up_to = 4                         # + O(h⁴); without it, exactly
+
+    \b
+    [[claim]]
+    id = "order-of-every-H"
+    kind = "order"                    # ΔJ = c h³ + …
+    order = 3
+    every = "hamiltonian"             # or "separable hamiltonian"
+
+    \b
+    [[claim]]
+    id = "area-error"
+    kind = "lambda"
+    parameters = { delta = 1 }
+    system = "duffing"
+    step_size = 0.001
+    steps = 20000
+    q = 1.5
+    p = 0
+    printed = "-2.666e-06"            # or lg_printed
+
+    \b
+    Kinds: step_map jacobian delta_j order convergence_order area_preserving
+           mse lambda table bounded growth spread monotone less magnitude criteria theorem
+    """
+    from verify.check import prepare
+    from verify.claims_file import load_claims
+    from verify.execute import Store, cost
+    from verify.progress import progress_bar
+
+    path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
+    prepared = prepare(load_claims(path), only)
+    if keep is not None:
+        writable(keep)
+    tasks = prepared.plan.tasks
+    finished = 0
+    with progress_bar(f"{len(tasks)} tasks", sum(map(cost, tasks.values())), unit="") as advance:
+
+        def done(name: str, _: object) -> None:
+            nonlocal finished
+            finished += 1
+            advance(cost(tasks[name]))
+
+        try:
+            found = prepared.run(Store(keep), workers=workers, done=done)
+        except KeyboardInterrupt:
+            if keep is not None:
+                kept = f"interrupted: {finished} of {len(tasks)} tasks are kept in {keep}"
+                click.echo(f"{kept}; the same command goes on from there", err=True)
+            raise
+    if as_json:
+        keys = {"id", "kind", "source", "statement", "verdict", "evidence"}
+        show.print_json({"claims": [c.model_dump(mode="json", include=keys) for c in found]})
+    else:
+        _print(found)
+    if any(claim.verdict == "REFUTED" for claim in found):
+        raise SystemExit(REFUTED)
+
+
+def _print(found: "list[ClaimResult]") -> None:
+    width = max(len(claim.id) for claim in found)
+    for claim in found:
+        source = f"{claim.source}: " if claim.source else ""
+        click.echo(f"{claim.verdict:9}  {claim.id:{width}}  {source}{claim.evidence}")
+    counted = Counter(str(claim.verdict) for claim in found)
+    of = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
+    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in counted.most_common()))
