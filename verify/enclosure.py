@@ -38,6 +38,8 @@ def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
             values[g.index] = box[str(g.expression)]
         elif g.kind == "pi":
             values[g.index] = flint.arb.pi()
+        elif g.kind == "stage":
+            values[g.index] = _at(g.argument, values)
         else:
             values[g.index] = BALLS[g.kind](_at(g.argument, values), g.degree)
         if not values[g.index].is_finite():
@@ -68,7 +70,6 @@ BALLS: dict[str, Callable[[Any, int], Any]] = {
     "atan": lambda x, _: x.atan(),
     "root": lambda x, n: x.root(n),
     "inverse": lambda x, _: 1 / x,
-    "stage": lambda x, _: x,
 }
 
 
