@@ -191,6 +191,8 @@ def _with_defaults(
         taken -= {"q", "p"} if not one and "initial_values" in defaults else set()
     for group in _GROUPS:
         taken -= set(group) if set(group) & set(table) else set()
+    if not set(SUBJECTS) & set(table):  # `parameters` alone are of the H that the claims share
+        taken |= {key for key in SUBJECTS if key != "every" or "every" in fields}
     return {**{key: value for key, value in defaults.items() if key in taken}, **table}
 
 

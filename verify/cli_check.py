@@ -57,7 +57,6 @@ def check(
     id = "area-error"
     kind = "lambda"
     parameters = { delta = 1 }
-    system = "duffing"
     step_size = 0.001
     steps = 20000
     q = 1.5

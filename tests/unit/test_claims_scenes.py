@@ -78,6 +78,11 @@ kind = "order"
 order = 3
 every = "hamiltonian"
 [[claim]]
+id = "f"
+kind = "order"
+order = 3
+parameters = { delta = 9 }
+[[claim]]
 id = "e"
 kind = "bounded"
 bound = 1
@@ -93,7 +98,8 @@ step_size = 0.5
     assert (len(grid.step_sizes), len(grid.initial_values), grid.time) == (2, 2, 3)
     assert scene_of(file, 2).parameters == {}
     assert file.claims[3].scene == ""
-    grid = scene_of(file, 4).grid
+    assert (scene_of(file, 4).system, scene_of(file, 4).parameters) == ("duffing", {"delta": 9})
+    grid = scene_of(file, 5).grid
     assert [(s.q, s.p) for s in grid.initial_values] == [(7, 8)]
     assert grid.step_sizes == (Fraction(1, 2),)
 
