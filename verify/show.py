@@ -230,6 +230,9 @@ def _task_line(task: dict[str, Any]) -> str:
     reasons = "; ".join(task["reasons"])
     if task["kind"] == "proof":
         return f"prove {task['scheme']} for H = {task['hamiltonian']} ({reasons})"
+    if task["kind"] == "growth":
+        orbit = f"the orbit from q = {task['q']}, p = {task['p']}"
+        return f"growth law of Λ on {orbit} for {task['scheme']} ({reasons})"
     where = (
         f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from "
         f"q = {task['q']}, p = {task['p']}"

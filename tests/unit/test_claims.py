@@ -29,7 +29,9 @@ from verify.verdict import Verdict
 
 PAPER = Path(__file__).parents[2] / "reports" / "paper"
 CLAIMS: dict[str, Any] = {claim.id: claim for claim in load_claims(PAPER / "claims.toml").claims}
-EQUATIONS = {id_: claim for id_, claim in CLAIMS.items() if id_.startswith("eq-")}
+EQUATIONS = {
+    id_: claim for id_, claim in CLAIMS.items() if id_.startswith("eq-") and claim.kind != "theorem"
+}
 SCENES = {name: load_scene(PAPER / f"{name}.toml") for name in ("duffing", "pendulum")}
 ENERGY = {"duffing": "p**2/2 + q**2/2 + delta*q**4/4", "pendulum": "p**2/2 - cos(q)"}
 POINTS = [
