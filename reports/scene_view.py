@@ -13,7 +13,7 @@ from reports.plots import Plot
 from reports.run_table import RunTable, run_table
 from reports.typography import listed, whole
 from verify.criteria import NAMES
-from verify.results import CriterionResult, ProofResult, SceneResult
+from verify.results import CriterionResult, EveryResult, ProofResult, SceneResult
 
 if TYPE_CHECKING:
     from reports.growth_view import GrowthView
@@ -27,6 +27,7 @@ class SchemeView:
     criteria: tuple[tuple[CriterionResult, str], ...]  # each with what it asks for
     matrix: Markup | None
     leading: Markup | None
+    every: EveryResult | None  # what holds for every H
     plots: tuple[Plot, ...]
     series: tuple[Plot, ...]
     runs: RunTable | None
@@ -73,6 +74,7 @@ def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> 
 def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeView:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
     series = [run for run in scene.series if run.scheme == proof.scheme and run.series]
+    every = next((e for e in scene.every if e.scheme == proof.scheme), None)
     leading = None
     if proof.order is not None:
         leading = mathml.order_equation(proof.leading, proof.order)
@@ -84,6 +86,7 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         ),
         matrix=mathml.matrix(mathml.NAMED["J"], proof.jacobian) if proof.jacobian else None,
         leading=leading,
+        every=every,
         plots=tuple(plots.against_step_size(runs, scene, proof, name=anchor)),
         series=tuple(
             plots.over_time(run, name=f"time-{index}-of-{anchor}")

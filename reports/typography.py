@@ -151,20 +151,34 @@ def _kept_together(match: re.Match[str]) -> Markup:
     return Markup('<span class="nowrap">{}</span>').format(match[0])
 
 
-def _indexed(match: re.Match[str]) -> Markup:
-    return Markup("{}<sub>{}</sub>").format(match[1], match[2])
+def _raised(match: re.Match[str]) -> Markup:
+    return Markup("<sup>{}</sup>").format(_sentence(_unbracketed(match[1])))
+
+
+def _lowered(match: re.Match[str]) -> Markup:
+    return Markup("{}<sub>{}</sub>").format(match[1], _sentence(_unbracketed(match[2])))
+
+
+def _unbracketed(text: str) -> str:
+    return text[1:-1] if text[0] in "({" else text
 
 
 def _number_in_text(match: re.Match[str]) -> Markup:
     return Markup("{}").format(number(match[0]))
 
 
+# A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}.
+_INDEX = (
+    r"(?<![A-Za-z0-9_.])((?:ΔJ|[A-Za-zΔΣ])[\u0300-\u036f]?)_"
+    r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
+)
 _RULES: list[tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]] = [
+    (re.compile(_INDEX), _lowered),
     (re.compile(r"\b(?:([A-Za-z]\w*)|(?<=\w)) = (?=-?[0-9])"), _equals),
     (re.compile(r"\w+/\|\w+\|"), _kept_together),
     (re.compile(rf"\[(-?{_NUMBER}) \+/- ({_NUMBER})\]"), _interval),
     (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b"), _power),
-    (re.compile(r"(?<![A-Za-z])((?:ΔJ|[pqzJ]))_(k|N)\b"), _indexed),
+    (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+)"), _raised),
     (re.compile(r"(?<![\w.)])-?[0-9]+(?:\.[0-9]+)?[eE][+-]?[0-9]+\b"), _number_in_text),
     (re.compile(r"(?<![\w.)])-[0-9]+(?:\.[0-9]+)?(?![\w])"), _number_in_text),
 ]

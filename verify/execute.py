@@ -21,20 +21,21 @@ from verify.float_bounds import DIRECT_STEPS
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper, fingerprint, write_atomically
-from verify.plan import GrowthTask, Plan, ProofTask, RunTask, SeparationTask, Task
+from verify.plan import EveryTask, GrowthTask, Plan, ProofTask, RunTask, SeparationTask, Task
 from verify.proof.order import prove
-from verify.results import AverageResult, ProofResult, RunResult, SeparationResult
+from verify.results import AverageResult, EveryResult, ProofResult, RunResult, SeparationResult
 from verify.runs import AUTO, run
 from verify.schemes import get
 from verify.separation import separate
 from verify.step_map import grouped
 
-Result = ProofResult | RunResult | SeparationResult | AverageResult
+Result = ProofResult | RunResult | SeparationResult | AverageResult | EveryResult
 _MODELS: dict[str, type[Result]] = {
     "proof": ProofResult,
     "run": RunResult,
     "separation": SeparationResult,
     "growth": AverageResult,
+    "every": EveryResult,
 }
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
@@ -46,6 +47,8 @@ _STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000
 
 def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
     """Do one task; a run goes on from the checkpoint that the keeper may have."""
+    if isinstance(task, EveryTask):
+        return _every(task.scheme)
     hamiltonian = Hamiltonian.parse(task.hamiltonian, task.parameters)
     if isinstance(task, ProofTask):
         return _proof(hamiltonian, task.scheme)
@@ -109,6 +112,15 @@ def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
         q_next=q_next,
         jacobian=jacobian,
         seconds=time.perf_counter() - begun,
+    )
+
+
+def _every(scheme: str) -> EveryResult:
+    from verify.proof.every import prove_every
+
+    proof = prove_every(scheme)
+    return EveryResult(
+        **{name: getattr(proof, name) for name in EveryResult.model_fields},
     )
 
 

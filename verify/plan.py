@@ -66,7 +66,14 @@ class GrowthTask(Frozen):
     digits: int
 
 
-Task = ProofTask | RunTask | SeparationTask | GrowthTask
+class EveryTask(Frozen):
+    """What is proved of a scheme for every H."""
+
+    kind: Literal["every"] = "every"
+    scheme: str
+
+
+Task = ProofTask | RunTask | SeparationTask | GrowthTask | EveryTask
 SEPARATED_DIGITS = 6  # of each part
 AVERAGE_DIGITS = 30
 
@@ -174,6 +181,8 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
     name = scene.name or scene.title or "scene"
     for scheme in scene.schemes:
         plan.need(proof_task(scene, scheme), f"{name}: closed form and order of ΔJ")
+        if scene.every_hamiltonian:
+            _plan_every(plan, name, scheme)
         step_map = get(scheme).step_map(scene.exact_hamiltonian())
         preserves = step_map.preserves_area
         if scene.grid:
@@ -187,6 +196,9 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
                 plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
             else:
                 plan.need(series_task(scene, scheme, index), f"{what}, for its plot")
+    if not scene.every_hamiltonian:
+        why = "the scene does not say `every_hamiltonian = true`"
+        plan.leave_out(f"{name}: proofs for every H", why)
     if not scene.grid:
         plan.leave_out(f"{name}: runs over step sizes", "the scene has no [grid]")
     if not grids_separated(scene):
@@ -199,6 +211,13 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
         plan.leave_out(f"{name}: trajectories and plots over time", "the scene has no [[series]]")
     if not scene.criteria:
         plan.leave_out(f"{name}: criteria 1–4", "the scene names no criteria")
+
+
+def _plan_every(plan: Plan, name: str, scheme: str) -> None:
+    if get(scheme).generic is None:
+        plan.leave_out(f"{name}: {scheme} for every H", "it is given for one H")
+    else:
+        plan.need(EveryTask(scheme=scheme), f"{name}: what holds for every H")
 
 
 def _plan_separation(plan: Plan, scene: Scene, scheme: str, grid: Grid, preserves: bool) -> None:

@@ -15,8 +15,9 @@ from verify.execute import Done, Store, execute
 from verify.findings import Findings
 from verify.formula import to_text
 from verify.keeping import versions
-from verify.plan import Plan, key, plan_scenes, series_task
+from verify.plan import EveryTask, Plan, key, plan_scenes, series_task
 from verify.results import (
+    EveryResult,
     GrowthLawResult,
     Provenance,
     Report,
@@ -89,6 +90,7 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         series=tuple(_series(scene, findings)),
         separations=_separations(scene, findings, own=True),
         crossovers=_separations(scene, findings, own=False),
+        every=_every(scene, findings),
         growth_laws=_growth_laws(scene, findings),
         growth_explains=scene.grid.growth_explains if scene.grid else "",
     )
@@ -116,6 +118,12 @@ def _separations(scene: Scene, findings: Findings, *, own: bool) -> tuple[Separa
             rows = [results[i : i + width] for i in range(0, len(results), width)]
             found += [as_grid(row) for row in rows]
     return tuple(found)
+
+
+def _every(scene: Scene, findings: Findings) -> tuple[EveryResult, ...]:
+    """What is proved of the scene's schemes for every H, where it was asked for."""
+    found = (findings.results.get(key(EveryTask(scheme=name))) for name in scene.schemes)
+    return tuple(r for r in found if scene.every_hamiltonian and isinstance(r, EveryResult))
 
 
 def _growth_laws(scene: Scene, findings: Findings) -> tuple[GrowthLawResult, ...]:

@@ -46,6 +46,25 @@ class ProofResult(Frozen):
     seconds: Seconds
 
 
+class EveryResult(Frozen):
+    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it."""
+
+    scheme: str
+    quantifier: str
+    verdict: Verdict
+    reason: str
+    order: int | None
+    area_preserving: bool | None
+    convergence_order: int | None
+    formula: str
+    leading: str
+    telescopes: bool | None
+    potential: str | None
+    why: str
+    checked: tuple[str, ...]
+    argument: str
+
+
 class SeriesPoint(Frozen):
     """The least and greatest ΔJ and Λ over the steps first … last."""
 
@@ -262,7 +281,8 @@ class SceneResult(Frozen):
 
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
     scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
-    `growth_explains` is what of a paper the scene says that the law explains.
+    `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
+    proved of its schemes for every H.
     """
 
     name: str
@@ -279,6 +299,7 @@ class SceneResult(Frozen):
     crossovers: tuple[SeparationGrid, ...] = ()
     growth_laws: tuple[GrowthLawResult, ...] = ()
     growth_explains: str = ""
+    every: tuple[EveryResult, ...] = ()
 
 
 class Provenance(Frozen):

@@ -5,6 +5,7 @@
     parameters = { delta = "7/3" }
     schemes = ["lie2", "symplectic-euler"] # or "p_next = …; q_next = …"
     criteria = [1, 2, 3, 4]
+    every_hamiltonian = true               # and what holds of the schemes for every H
 
     [grid]                                 # runs: every step size with every initial value
     time = 20000                           # or steps = 5000
@@ -185,6 +186,7 @@ class Scene(Frozen):
     hamiltonian: str | None = None
     parameters: dict[str, Number] = Field(default_factory=dict)
     schemes: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+    every_hamiltonian: bool = False
     criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
     grid: Grid | None = None
     separation: tuple[SeparationOver, ...] = ()

@@ -52,6 +52,7 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
     plan = plan_scenes([load(tmp_path, HEAD)])
     assert not runs_of(plan)
     assert dict(plan.left_out) == {
+        "mine: proofs for every H": "the scene does not say `every_hamiltonian = true`",
         "mine: runs over step sizes": "the scene has no [grid]",
         "mine: trajectories and plots over time": "the scene has no [[series]]",
         "mine: truncation separated from rounding": "the scene has no [[separation]], and its "

@@ -274,6 +274,31 @@ def test_the_page_of_a_real_scene_says_what_was_found() -> None:
         assert re.search(rf"(?<![\d.]){re.escape(shown)}(?![\d.])", text), shown
 
 
+def test_what_holds_for_every_h_is_shown_where_it_was_asked_for() -> None:
+    asked = {"hamiltonian": "p**2/2 - cos(q)", "schemes": ["lie2", "rk4"], "name": "mine"}
+    pages = []
+    for every in (True, False):
+        given = scene_from({**asked, "every_hamiltonian": every}, "mine.toml")
+        made = make_report("Mine", [given], [], Store(None), command="test", workers=1)
+        pages.append(render(made))
+    with_every, without = pages
+    assert with_every.count("For every smooth H") == 2
+    assert "X·G" in with_every
+    assert with_every.count("The argument for every η at once, on paper") == 1
+    assert "every smooth H" not in without
+
+
+def test_an_argument_on_paper_stands_with_its_claim_and_is_escaped() -> None:
+    claim = ClaimResult(
+        id="a", kind="theorem", source="Eq. 3", statement="s", scene="", verdict=Verdict.PROVED,
+        evidence="e", proof=f"By H_qq and {EVIL}. ∎",
+    )  # fmt: skip
+    page = render(report(claims=(claim,)))
+    assert "By H<sub>qq</sub> and" in page
+    assert EVIL not in page
+    assert "on paper" not in render(report(claims=(claim.model_copy(update={"proof": ""}),)))
+
+
 def test_a_run_that_left_the_range_says_where() -> None:
     page = render(report((scene(runs=(run(status="left range", failed_step=7, values={}),)),)))
     assert "left the range of float64 at step 7" in page

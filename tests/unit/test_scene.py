@@ -155,6 +155,7 @@ system = "duffing"
 parameters = { delta = "7/3" }
 schemes = ["lie2", "symplectic-euler", "p_next = p - h*q*(1 + delta*q^2); q_next = q + h*p"]
 criteria = [1, 2, 3, 4]
+every_hamiltonian = true
 [grid]
 steps = 30
 step_sizes = [0.01, "1/30"]

@@ -29,6 +29,11 @@ def test_a_value_without_a_known_digit_is_shown_as_a_bound() -> None:
     ("text", "markup"),
     [
         ("ΔJ_k = O(h^4)", "ΔJ<sub>k</sub> = O(h⁴)"),
+        ("H_qq and z̄_(k+1)", "H<sub>qq</sub> and z̄<sub>k+1</sub>"),
+        ("x_k², e_n", "x<sub>k</sub>², e<sub>n</sub>"),
+        ("h^η X^(η−k)", "h<sup>η</sup> X<sup>η−k</sup>"),
+        ("(−D)^((η+1)/2)", "(−D)<sup>(η+1)/2</sup>"),
+        ("p_next stays", "p_next stays"),
         ("from -21.95 to 2.6e+05", "from −21.95 to 2.6\xa0×\xa010⁵"),
         ("at p = 7/17 it is [0.5 +/- 2e-13]", "0.5\xa0±\xa02\xa0×\xa010⁻¹³"),
         ("the difference is h**2*q", "the difference is <math>"),

@@ -23,12 +23,24 @@ from dataclasses import dataclass
 
 from verify.errors import InputError
 from verify.generic import Generic, StageEquations, TaylorSeries
-from verify.proof.jets import Jets, Poly
+from verify.proof.jets import Jets, Poly, shown
 from verify.proof.telescoping import Telescoping, potential_of_lie, telescopes
 from verify.scheme import Scheme
 from verify.schemes import get
 from verify.verdict import Verdict
 
+ARGUMENT = (
+    "For any η: the exact flow has det 1, so that all coefficients of h, h², … in its determinant "
+    "vanish. The scheme shares its terms up to h^η, so the coefficients of h … h^η vanish for it "
+    "too. In that of h^(η+1) the flow has one term more, which is linear: div(X^η f)/(η+1)!, f = "
+    "(−H_q, H_p); the scheme's coefficient is L = −div(X^η f)/(η+1)!. For even η it is X·G, G = "
+    "−1/(η+1)! Σ_k (−1)^k P_(η−k, k), k = 0 … η, P_(a, b) = ∂(Xᵃp, X^b q)/∂(p, q): the two-forms "
+    "[a, b] = d(Xᵃp)∧d(X^b q) + d(X^b p)∧d(Xᵃq) are symmetric, the Lie derivative takes [a, b] to "
+    "[a+1, b] + [a, b+1], so that in its alternating sum over a + b = η all but 2 [η+1, 0] cancel, "
+    "and [η+1, 0] is div(X^η f) dp∧dq. Along an orbit the leading term therefore sums to a "
+    "boundary term, and Λ gains one order in h. For odd η it does not: X·G vanishes at an "
+    "equilibrium for every smooth G, and L is −2 (−D)^((η+1)/2)/(η+1)! there, D = det Hess H. ∎"
+)
 _MORE = 4  # orders beyond the claimed one that are looked at
 
 
@@ -55,6 +67,13 @@ class EveryProof:
     potential: str | None = None
     why: str = ""
     checked: tuple[str, ...] = ()
+
+    @property
+    def argument(self) -> str:
+        """What is proved on paper beside what the machine checked; see the module's text."""
+        if isinstance(get(self.scheme).generic, TaylorSeries):
+            return ARGUMENT
+        return ""
 
     @property
     def quantifier(self) -> str:
@@ -186,8 +205,3 @@ def _telescoping(
             identity = "X·G is that coefficient"
             return Telescoping(True, reason, potential), formula, (*checked, identity)
     return telescopes(jets, leading), formula, checked
-
-
-def shown(x: Poly) -> str:
-    """A polynomial in the jets as a formula, 0 for zero."""
-    return str(x).replace("^", "**")

@@ -123,3 +123,8 @@ class Jets:
 def multiplied(x: Series, y: Series) -> Series:
     """The product of two series of one length, cut off there."""
     return [sum((x[k] * y[n - k] for k in range(n + 1)), x[0] * 0) for n in range(len(x))]
+
+
+def shown(x: Poly) -> str:
+    """A polynomial in the jets as a formula, 0 for zero."""
+    return str(x).replace("^", "**")

@@ -21,7 +21,7 @@ from typing import Any, Protocol
 
 import flint
 
-from verify.proof.jets import Jets, Poly
+from verify.proof.jets import Jets, Poly, shown
 
 
 class Derivation(Protocol):
@@ -64,7 +64,8 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
     at_rest = _at_equilibrium(jets, leading)
     if at_rest != 0:
         return Telescoping(
-            False, f"X·G vanishes where H_p = H_q = 0, for any smooth G; there L is {at_rest}"
+            False,
+            f"X·G vanishes where H_p = H_q = 0, for any smooth G; there L is {shown(at_rest)}",
         )
     graded: dict[tuple[int, int, int], dict[tuple[int, ...], Any]] = {}
     for monomial, coefficient in leading.to_dict().items():
