@@ -11,6 +11,7 @@ from verify import show
 from verify.cli_check import check
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
+from verify.cli_stability import stability
 from verify.errors import InputError
 
 INTERRUPTED = 130
@@ -41,6 +42,7 @@ def cli(context: click.Context) -> None:
 
 cli.add_command(prove)
 cli.add_command(certificate)
+cli.add_command(stability)
 cli.add_command(check)
 
 
