@@ -58,9 +58,9 @@ def test_powers_of_the_matrix_stay_bounded_inside_and_grow_outside(name: str) ->
     step = schemes.get(name).step_map(HARMONIC)
     matrix = sympy.lambdify(sympy.Symbol("h", real=True), step.jacobian)
     end = float(found.interval)
-    for share, grows in ((0.4, False), (0.98, False), (1.02, True)):
+    for share, grows in ((0.4, False), (0.98, False), (1.1, True)):
         numbers = np.array(matrix(share * end), dtype=float)
-        size = np.linalg.norm(np.linalg.matrix_power(numbers, 400))
+        size = np.linalg.norm(np.linalg.matrix_power(numbers, 300))
         assert bool(size > 1e3) is grows, (share, size)
 
 
