@@ -230,6 +230,8 @@ def _task_line(task: dict[str, Any]) -> str:
     reasons = "; ".join(task["reasons"])
     if task["kind"] == "proof":
         return f"prove {task['scheme']} for H = {task['hamiltonian']} ({reasons})"
+    if task["kind"] == "every":
+        return f"prove {task['scheme']} for every H ({reasons})"
     if task["kind"] == "growth":
         orbit = f"the orbit from q = {task['q']}, p = {task['p']}"
         return f"growth law of Λ on {orbit} for {task['scheme']} ({reasons})"
