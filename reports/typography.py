@@ -169,7 +169,7 @@ def _number_in_text(match: re.Match[str]) -> Markup:
 
 # A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}.
 _INDEX = (
-    r"(?<![A-Za-z0-9_.])((?:ΔJ|[A-Za-zΔΣ])[\u0300-\u036f]?)_"
+    r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ])[\u0300-\u036f]?|(?<=[a-z])[A-Z])_"
     r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
 )
 _RULES: list[tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]] = [

@@ -33,6 +33,7 @@ def test_a_value_without_a_known_digit_is_shown_as_a_bound() -> None:
         ("x_k², e_n", "x<sub>k</sub>², e<sub>n</sub>"),
         ("h^η X^(η−k)", "h<sup>η</sup> X<sup>η−k</sup>"),
         ("(−D)^((η+1)/2)", "(−D)<sup>(η+1)/2</sup>"),
+        ("(1 + hL_p)", "(1 + hL<sub>p</sub>)"),
         ("p_next stays", "p_next stays"),
         ("from -21.95 to 2.6e+05", "from −21.95 to 2.6\xa0×\xa010⁵"),
         ("at p = 7/17 it is [0.5 +/- 2e-13]", "0.5\xa0±\xa02\xa0×\xa010⁻¹³"),
