@@ -28,6 +28,7 @@ from pydantic import ValidationError
 from verify import schemes
 from verify.claim_scenes import ON_RUNS, ONE_RUN, RUN_KEYS, SUBJECT_KEYS, SUBJECTS, scene_for
 from verify.claims import (
+    EVERY_SEPARABLE,
     KINDS,
     Claim,
     DeltaJClaim,
@@ -199,7 +200,12 @@ def _with_defaults(
 def _check_every(claim: Claim, subject: Mapping[str, Any]) -> None:
     if others := [key for key in subject if key != "every"]:
         raise InputError(others[0], subject[others[0]], "says which H, and `every` says every H")
-    schemes.get(claim.scheme)
+    generic = schemes.get(claim.scheme).generic
+    if generic is None:
+        raise InputError("scheme", claim.scheme, "is given for one H, not for every H")
+    if generic.separable and subject["every"] != EVERY_SEPARABLE:
+        problem = f"{claim.scheme} takes H = T(p) + V(q) only; say {EVERY_SEPARABLE!r}"
+        raise InputError("every", subject["every"], problem)
     if isinstance(claim, DeltaJClaim):
         if claim.up_to is None:
             raise InputError("up_to", "", "is missing: of every H only the first term is known")

@@ -5,7 +5,6 @@ not zero for some H; det J ≡ 1 is false where some H has another det J.
 """
 
 import re
-from importlib import import_module
 from typing import Any
 
 import sympy
@@ -58,7 +57,8 @@ def check_every(claim: Any) -> ClaimResult:
 
 def _proof(claim: Any) -> Any:
     """A `verify.proof.every.EveryProof`."""
-    prove_every = import_module("verify.proof.every").prove_every
+    from verify.proof.every import prove_every
+
     return prove_every(claim.scheme, separable=claim.every == EVERY_SEPARABLE)
 
 

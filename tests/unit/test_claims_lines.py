@@ -131,6 +131,12 @@ BAD: dict[str, tuple[str, int, str]] = {
     "symbol-in-a-run": (MSE + 'system = "duffing"\n', 20, "delta: has no value"),
     "scene-missing": ('kind = "order"\norder = 3\nscene = "lorenz"\n', 16, "no lorenz.toml beside"),
     "scene-path": ('kind = "order"\norder = 3\nscene = "../x"\n', 16, "is no name of a scene"),
+    "every-of-a-splitting": (
+        'kind = "order"\norder = 3\nscheme = "stormer-verlet"\nevery = "hamiltonian"\n', 17,
+        "say 'separable hamiltonian'"),
+    "every-of-ones-own": (
+        'kind = "order"\norder = 3\nscheme = "p_next = p; q_next = q"\nevery = "hamiltonian"\n', 16,
+        "is given for one H"),
     "every-what": ('kind = "order"\norder = 3\nevery = "system"\n', 16, "every"),
     "every-step-map": ('kind = "step_map"\np_next = "p"\nq_next = "q"\nevery = "hamiltonian"\n', 17,
                        "a claim of kind step_map speaks of one H"),

@@ -236,6 +236,11 @@ def test_explicit_euler_is_lie1(prove_made) -> None:
     assert (euler.order, euler.leading) == (2, prove_every("lie1").leading)
 
 
+def test_an_order_whose_polynomials_are_too_long_is_refused_at_once() -> None:
+    with pytest.raises(InputError, match="order 14 at most"):
+        prove_every("lie100")
+
+
 def test_a_users_own_map_is_known_for_one_hamiltonian_only() -> None:
     with pytest.raises(InputError, match="one H"):
         prove_every("p_next = p - h*q; q_next = q + h*p_next")

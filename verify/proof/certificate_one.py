@@ -93,7 +93,11 @@ class _Plain:
         made = [g for g in ring.generators if g.kind != "variable"]
         for g in made:
             if g.kind not in _KINDS:
-                raise InputError("hamiltonian", str(g.expression), "no certificate has this")
+                raise InputError(
+                    "hamiltonian",
+                    str(g.expression),
+                    "no certificate: it takes sin, cos, exp, denominators",
+                )
         self.functions = [
             [self.names[g.index], g.kind, terms(g.argument, self.names)] for g in made
         ]

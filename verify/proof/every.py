@@ -41,6 +41,7 @@ ARGUMENT = (
     "boundary term, and Λ gains one order in h. For odd η it does not: X·G vanishes at an "
     "equilibrium for every smooth G, and L is −2 (−D)^((η+1)/2)/(η+1)! there, D = det Hess H. ∎"
 )
+_MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s
 _MORE = 4  # orders beyond the claimed one that are looked at
 
 
@@ -84,11 +85,14 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
     """The order of ΔJ and of the map of the scheme of that name, for every H that it takes.
 
     `separable`: only for every H = T(p) + V(q), of which more may be true. Raises InputError for a
-    scheme that is known for one H at a time only.
+    scheme that is known for one H at a time only, or of an order above 14.
     """
     scheme = get(name)
     if scheme.generic is None:
         raise InputError("scheme", name, "is given for one H; it cannot be proved for every H")
+    if scheme.order > _MOST_ORDER:
+        problem = f"of order {_MOST_ORDER} at most: its polynomials have too many terms"
+        raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
     separable = separable or scheme.generic.separable
     if isinstance(scheme.generic, StageEquations):
         return _of_stages(scheme, scheme.generic, separable)
