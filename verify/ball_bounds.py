@@ -6,10 +6,9 @@ all of them cost. Where twice the digits end at the same step, the orbit has lef
 domain there. Where too many digits or attempts would be needed, the run is "unresolved".
 """
 
-from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.bounds import Bounds, digits_of, missing_digits
+from verify.bounds import Bounds, digits_of, missing_of
 from verify.number_system import Arithmetic
 from verify.stepping import Job, Outcome
 from verify.walk import Progress
@@ -28,7 +27,7 @@ def enclosed(
         has, wanted = digits_of(own), 2 * digits_of(own)
         if run.done == job.steps:
             found = {n: (x, run.radii[n]) for n, x in run.values.items()}
-            missing = max(_missing(n, *value, digits) for n, value in found.items())
+            missing = max(missing_of(n, *value, digits) for n, value in found.items())
             if missing <= 0:
                 return Bounds(found, f"ball arithmetic with {has} digits", rigorous=True), run
             wanted = has + missing + 5
@@ -44,9 +43,3 @@ def enclosed(
         own = number_systems.get(own.name, wanted)
     method = f"balls that grow too wide in {has} digits; {wanted} would be tried next"
     return Bounds({}, method, "unresolved"), run
-
-
-def _missing(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
-    if name == "lambda_plain" and abs(value) <= bound:
-        value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
-    return missing_digits(value, bound, digits)

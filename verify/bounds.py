@@ -72,7 +72,7 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
             n: (second.values[n], abs(x - second.values[n]) + unit * abs(x))
             for n, x in first.values.items()
         }
-        missing = max(missing_digits(value, bound, digits) for value, bound in found.values())
+        missing = max(missing_of(name, *value, digits) for name, value in found.items())
         if missing <= 0:
             return Bounds(found, method)
         own = number_systems.get(own.name, digits_of(own) + missing + 5)
@@ -89,3 +89,10 @@ def missing_digits(value: Fraction, bound: Fraction, digits: int) -> int:
     if bound == 0 or value == 0:
         return 0
     return digits - (magnitude(value) - magnitude(2 * bound))
+
+
+def missing_of(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
+    """The same for an observable of that name."""
+    if name == "lambda_plain" and abs(value) <= bound:
+        value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
+    return missing_digits(value, bound, digits)

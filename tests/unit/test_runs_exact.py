@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from tests.property.strategies import (
@@ -80,6 +80,10 @@ def test_a_polynomial_h_is_stepped_as_mpmath_steps_it(
 
 
 @settings(max_examples=20, deadline=None)
+@example(  # ΔJ ≡ 0, and its product is 1 but for rounding
+    text="(-1/3)*q**1 + (1)*cos((2)*p + (2)*q)", eta=2,
+    at=(Fraction(-1), Fraction(-3, 2), Fraction(1, 7)),
+)  # fmt: skip
 @given(text=trigonometric(), eta=st.sampled_from([1, 2]), at=starts)
 def test_a_trigonometric_h_is_stepped_as_mpmath_steps_it(
     text: str, eta: int, at: tuple[Fraction, Fraction, Fraction]
