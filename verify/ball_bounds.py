@@ -6,7 +6,6 @@ all of them cost. Where twice the digits end at the same step, the orbit has lef
 domain there. Where too many digits or attempts would be needed, the run is "unresolved".
 """
 
-
 from verify import arithmetic as number_systems
 from verify.bounds import Bounds, digits_of, missing_of
 from verify.number_system import Arithmetic

@@ -12,6 +12,9 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonian import Hamiltonian
+    from verify.proof.order import Proof
+    from verify.proof.potential import Potential
+    from verify.scheme import Scheme
 
 
 @click.command()
@@ -28,7 +31,8 @@ if TYPE_CHECKING:
     "--certificate",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Write the identities there, for `verify certificate check`.",
+    help="Write the identities there, for `verify certificate check`; where H has functions other "
+    "than sin, cos, exp and quotients, those of the proof for every H.",
 )
 def prove(
     system: str | None,
@@ -81,13 +85,26 @@ def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Pa
     potential = potential_of(proof, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        from verify.proof.certificate_one import of_one
-
-        _write(of_one(proof, potential), certificate)
+        _write(_certificate(proof, potential, chosen), certificate)
     if as_json:
         show.print_json(show.proof_json(exact, chosen.name, proof, potential, seconds))
     else:
         show.print_proof(exact, chosen.name, proof, potential)
+
+
+def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> dict[str, Any]:
+    """Of this proof; or, where the checker does not know H's functions, of that for every H."""
+    from verify.proof.certificate import of_every
+    from verify.proof.certificate_one import of_one
+    from verify.proof.every import prove_every
+
+    try:
+        return of_one(proof, potential)
+    except InputError as error:
+        if scheme.generic is None or proof.verdict != "PROVED":
+            raise
+        click.echo(f"the certificate is of the proof for every H: {error}", err=True)
+        return of_every(prove_every(scheme.name))
 
 
 # -- certificates ---------------------------------------------------------------------------------

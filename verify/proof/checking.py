@@ -38,9 +38,10 @@ def statement(data: dict[str, Any]) -> str:
     if "stages" in data:
         return f"det J = 1 for {where} and the scheme of its stages"
     order, agreed = data["order"], data["convergence_order"]
-    area = (
-        "det J = 1" if order is None else f"det J − 1 = L h^{order} + O(h^{order + 1}), L not zero"
-    )
+    generic = " for a generic H" if data["hamiltonian"] == "every" else ""
+    area = "det J = 1"
+    if order is not None:
+        area = f"det J − 1 = L h^{order} + O(h^{order + 1}), L not zero{generic}"
     telescopes = "; L = X·G" if data.get("potential") is not None else ""
     flow = f"which agrees with the flow up to h^{agreed}"
     return f"{area}, for {where} and the map that it holds, {flow}{telescopes}"

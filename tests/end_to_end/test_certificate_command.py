@@ -1,0 +1,80 @@
+"""`verify prove --certificate` and `verify certificate check`, every H, and linear stability."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.test_command_line import here, json_of
+
+ONE = ["prove", "--system", "pendulum", "--scheme", "lie2"]
+EVERY = ["prove", "--every-hamiltonian", "--scheme", "lie4"]
+# H has functions, or the map stages, that the checker does not know.
+OTHERS = [
+    ["prove", "--hamiltonian", "p**2/2 + log(q)", "--scheme", "lie2"],
+    ["prove", "--system", "pendulum", "--scheme", "stormer-verlet"],
+]
+
+
+@pytest.mark.parametrize("command", [ONE, EVERY, *OTHERS], ids=" ".join)
+def test_what_is_proved_has_a_certificate_that_holds(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, command: list[str]
+) -> None:
+    path = tmp_path / "c.json"
+    status, out, err = here(capsys, *command, "--certificate", str(path))
+    assert status == 0
+    assert out.startswith("PROVED")
+    assert ("for every H" in err) is (command in OTHERS)
+    status, out, _ = here(capsys, "certificate", "check", str(path))
+    assert (status, out.split(":")[0]) == (0, "holds")
+
+
+def test_a_changed_certificate_is_refused_with_status_1(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "c.json"
+    here(capsys, *ONE, "--certificate", str(path))
+    data = json.loads(path.read_text())
+    data["leading"][0][0] = "1/3"
+    path.write_text(json.dumps(data))
+    status, out, _ = here(capsys, "certificate", "check", str(path), "--json")
+    assert status == 1
+    assert json_of(out)["accepted"] is False
+    assert "det 3" in json_of(out)["reason"]
+
+
+def test_what_is_refuted_gets_none(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    command = ["prove", "--system", "pendulum", "--scheme", "p_next = p; q_next = q"]
+    status, _, err = here(capsys, *command, "--certificate", str(path))
+    assert status == 2
+    assert "nothing to certify" in err
+    assert not path.exists()
+
+
+def test_a_proof_for_every_h_has_the_keys_of_one(capsys: pytest.CaptureFixture[str]) -> None:
+    found = json_of(here(capsys, *EVERY, "--json")[1])
+    assert found["order"] == 5
+    assert found["telescopes"] is True
+    assert found["potential"]
+    assert set(json_of(here(capsys, *ONE, "--json")[1])) - {"parameters", "witness"} <= set(found)
+
+
+@pytest.mark.parametrize(
+    "more", [["--system", "duffing"], ["--param", "a=1"], ["--hamiltonian", "p**2"]]
+)
+def test_every_hamiltonian_goes_with_none(
+    capsys: pytest.CaptureFixture[str], more: list[str]
+) -> None:
+    status, _, err = here(capsys, *EVERY, *more)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "--every-hamiltonian" in err
+
+
+def test_linear_stability_is_exact(capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["stability", "--linear", "--scheme", "lie4"]
+    found = json_of(here(capsys, *command, "--json")[1])
+    assert found["interval_exact"] == "2*sqrt(2)"
+    assert found["interval"].startswith("2.828427124746190097603377448")
+    assert "2*sqrt(2)" in here(capsys, *command)[1]
+    assert here(capsys, "stability", "--scheme", "lie4")[0] == 2
