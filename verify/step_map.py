@@ -278,7 +278,7 @@ class StepMap:
             return step.ring.factored(step.delta_j)
         return _by_powers(step.ring, self._coefficients)
 
-    @property
+    @cached_property
     def _coefficients(self) -> dict[int, Poly]:
         return {n: self.flat.coefficient(n) for n in range((self.flat.degree or 0) + 1)}
 

@@ -22,11 +22,11 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.exact import text
-from verify.generic import StageEquations
+from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.checking import FORMAT
 from verify.proof.every import EveryProof
 from verify.proof.jets import Jets
-from verify.proof.telescoping import potential_of_lie, telescopes
+from verify.proof.telescoping import telescopes, telescopes_of_lie
 from verify.ring import Poly
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -50,14 +50,14 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
     names = dict(enumerate(jets.names))
     data |= map_of(proof.order, proof.convergence_order, leading, series, names)
     if proof.telescopes:
-        data["potential"] = terms(_potential(jets, proof, leading), names)
+        data["potential"] = terms(_potential(jets, generic, leading), names)
     return data
 
 
-def _potential(jets: Jets, proof: EveryProof, leading: Poly) -> Poly:
-    eta = (proof.order or 0) - 1
-    found = potential_of_lie(jets, eta) if eta % 2 == 0 else jets.zero
-    return found if jets.derive(found) == leading else telescopes(jets, leading).potential
+def _potential(jets: Jets, generic: Generic, leading: Poly) -> Poly:
+    if isinstance(generic, TaylorSeries):
+        return telescopes_of_lie(jets, leading, generic.eta).potential
+    return telescopes(jets, leading).potential
 
 
 def map_of(

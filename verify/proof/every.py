@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from verify.errors import InputError
 from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.jets import Jets, Poly, shown
-from verify.proof.telescoping import Telescoping, potential_of_lie, telescopes
+from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
 from verify.scheme import Scheme
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -202,10 +202,7 @@ def _telescoping(
     if order == eta + 1 and leading * math.factorial(eta + 1) == -divergence:
         formula = f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
         checked = (f"that of h^{eta + 1} is −div(X^{eta} f)/{eta + 1}!",)
-    if eta % 2 == 0:
-        potential = potential_of_lie(jets, eta)
-        if jets.derive(potential) == leading:
-            reason = f"G = −1/{eta + 1}! Σ_k (−1)^k ∂(X^({eta}−k) p, X^k q)/∂(p, q), k = 0 … {eta}"
-            identity = "X·G is that coefficient"
-            return Telescoping(True, reason, potential), formula, (*checked, identity)
-    return telescopes(jets, leading), formula, checked
+    found = telescopes_of_lie(jets, leading, eta)
+    if found.holds:
+        checked = (*checked, "X·G is that coefficient")
+    return found, formula, checked

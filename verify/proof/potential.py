@@ -12,7 +12,6 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations_with_replacement, islice, product
 
-import flint
 import sympy
 
 from verify.enclosure import enclose, points
@@ -20,6 +19,7 @@ from verify.errors import InputError
 from verify.generators import embed
 from verify.generic import TaylorSeries
 from verify.hamiltonian import VectorField
+from verify.proof.combination import combination
 from verify.proof.order import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.ring import Poly, Ring
@@ -139,9 +139,9 @@ def _among_polynomials(field: VectorField, leading: Poly) -> Poly | None:
         monomials += more
         if len(monomials) > _MOST_MONOMIALS:
             return None
-        found = _solved(field, monomials, leading)
+        found, _ = combination([field.derive(m) for m in monomials], leading)
         if found is not None:
-            return found
+            return sum((c * monomials[k] for k, c in found.items()), ring.zero)
     return None
 
 
@@ -149,21 +149,3 @@ def _by_degree(gens: list[Poly], one: Poly) -> Iterator[list[Poly]]:
     for degree in range(1, 20):
         chosen = combinations_with_replacement(gens, degree)
         yield [math.prod(factors, start=one) for factors in chosen]
-
-
-def _solved(field: VectorField, monomials: list[Poly], leading: Poly) -> Poly | None:
-    columns = [field.derive(m).to_dict() for m in monomials] + [leading.to_dict()]
-    rows = {m: k for k, m in enumerate({m for column in columns for m in column})}
-    matrix = flint.fmpq_mat(len(rows), len(columns))
-    for at, column in enumerate(columns):
-        for monomial, coefficient in column.items():
-            matrix[rows[monomial], at] = coefficient
-    reduced, rank = matrix.rref()
-    last = len(monomials)
-    total = field.ring.zero
-    for r in range(rank):
-        pivot = next(c for c in range(last + 1) if reduced[r, c] != 0)
-        if pivot == last:
-            return None
-        total += reduced[r, last] * monomials[pivot]
-    return total

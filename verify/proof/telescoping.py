@@ -19,8 +19,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-import flint
-
+from verify.proof.combination import combination
 from verify.proof.jets import Jets, Poly, shown
 
 
@@ -84,6 +83,16 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
     return Telescoping(True, "X·G = L, solved for G by linear algebra", total)
 
 
+def telescopes_of_lie(jets: Jets, leading: Poly, eta: int) -> Telescoping:
+    """The same for `lieη`: by the formula for even η, where it gives this L."""
+    if eta % 2 == 0:
+        potential = potential_of_lie(jets, eta)
+        if jets.derive(potential) == leading:
+            reason = f"G = −1/{eta + 1}! Σ_k (−1)^k ∂(X^({eta}−k) p, X^k q)/∂(p, q), k = 0 … {eta}"
+            return Telescoping(True, reason, potential)
+    return telescopes(jets, leading)
+
+
 def _at_equilibrium(jets: Jets, x: Poly) -> Poly:
     return x.compose(
         *(
@@ -116,20 +125,11 @@ def _solved(jets: Jets, grade: tuple[int, int, int], x: Poly) -> tuple[Poly | No
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
     indices = [(i, j) for i, j in jets.indices if i + j < highest]
     candidates = [_monomial(jets, m) for m in _multisets(indices, factors, by_p, by_q)]
-    images = [jets.derive(m).to_dict() for m in candidates]
-    wanted = x.to_dict()
-    rows = {m: k for k, m in enumerate({m for image in [*images, wanted] for m in image})}
-    matrix = flint.fmpq_mat(len(rows), len(images) + 1)
-    for column, image in enumerate([*images, wanted]):
-        for monomial, coefficient in image.items():
-            matrix[rows[monomial], column] = coefficient
-    reduced, rank = matrix.rref()
-    last = len(images)
-    pivots = [next(c for c in range(last + 1) if reduced[r, c] != 0) for r in range(rank)]
-    if last in pivots:
-        return None, rank - 1, last
-    terms = (reduced[r, last] * candidates[c] for r, c in enumerate(pivots))
-    return sum(terms, jets.zero), rank, last
+    found, rank = combination([jets.derive(m) for m in candidates], x)
+    if found is None:
+        return None, rank, len(candidates)
+    terms = (c * candidates[k] for k, c in found.items())
+    return sum(terms, jets.zero), rank, len(candidates)
 
 
 def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:

@@ -25,7 +25,7 @@ from verify.wide.limbs import I64, Value, bits, constant, resized
 from verify.wide.products import Products
 
 INTEGER_BITS = 16
-_ANGLES = 4096
+_ANGLES = 4096  # table steps of a full turn
 _EXPONENTIALS = 256  # table steps of a factor 2
 _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
 _DOUBLE = ir.DoubleType()
