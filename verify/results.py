@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer
 
+from verify.conditions import Condition
 from verify.verdict import Verdict
 
 _DECIMAL = r"^-?\d+(\.\d+)?(e[+-]\d+)?$"
@@ -62,6 +63,7 @@ class EveryResult(Frozen):
     potential: str | None
     why: str
     checked: tuple[str, ...]
+    conditions: tuple[Condition, ...] = ()
     argument: str
 
 

@@ -13,7 +13,8 @@ class Scheme:
     """A one-step scheme; tests hold its claims against proofs.
 
     `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
-    that the scheme takes. `explicit`: no equation is solved. `source`: where it is defined.
+    that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
+    −h undoes that of h. `source`: where it is defined.
     `build` raises InputError for an H that the scheme does not take. `generic`: the scheme as it is
     for every H; None where it is known for one H at a time.
     """
@@ -22,6 +23,7 @@ class Scheme:
     order: int
     area_preserving: bool
     explicit: bool
+    symmetric: bool
     source: str
     build: Callable[[Hamiltonian], StepMap]
     generic: Generic | None = None

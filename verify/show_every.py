@@ -1,6 +1,7 @@
 """Proofs for every H, as JSON and on the terminal."""
 
 import textwrap
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -29,6 +30,7 @@ def every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
         "potential": proof.potential,
         "why": proof.why,
         "checked": list(proof.checked),
+        "conditions": [asdict(condition) for condition in proof.conditions],
         "seconds": seconds,
     }
 
@@ -48,6 +50,9 @@ def print_every(proof: "EveryProof") -> None:
     _line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
     for identity in proof.checked:
         _line("checked", identity)
+    for condition in proof.conditions:
+        found = "holds" if condition.holds else f"residue {condition.residue}"
+        _line("condition", f"{condition.name}: {found}")
 
 
 def _line(name: str, text: str) -> None:

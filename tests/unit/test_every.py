@@ -32,7 +32,7 @@ VERLET = StageEquations((Stage(HALF, NONE), Stage(NONE, ONE), Stage(HALF, NONE))
 
 def made(generic: object, order: int, area_preserving: bool = False) -> Scheme:
     return Scheme(
-        name="made", order=order, area_preserving=area_preserving, explicit=True,
+        name="made", order=order, area_preserving=area_preserving, explicit=True, symmetric=False,
         source="this test", build=lambda _: None, generic=generic,
     )  # fmt: skip
 

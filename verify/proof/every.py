@@ -21,6 +21,7 @@ Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determi
 import math
 from dataclasses import dataclass
 
+from verify.conditions import Condition
 from verify.errors import InputError
 from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.jets import Jets, Poly, shown
@@ -52,7 +53,8 @@ class EveryProof:
     `order`, `area_preserving`, `convergence_order` as in `verify.proof.order.Proof`, for a generic
     H; `leading` is the coefficient of h^order, a polynomial in H_p, H_q, H_pp, …, and `formula`
     what it is in closed form, where that is known. `telescopes`: whether it is X·`potential` for
-    every H, `why` says how that is known. `checked` names the identities that were checked.
+    every H, `why` says how that is known. `checked` names the identities that were checked,
+    `conditions` those on the coefficients, of a scheme that is given by them.
     """
 
     scheme: str
@@ -68,6 +70,7 @@ class EveryProof:
     potential: str | None = None
     why: str = ""
     checked: tuple[str, ...] = ()
+    conditions: tuple[Condition, ...] = ()
 
     @property
     def argument(self) -> str:

@@ -15,6 +15,7 @@ def make(name: str) -> Scheme | None:
         order=1,
         area_preserving=False,
         explicit=True,
+        symmetric=False,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
         build=lambda hamiltonian: lie_map(hamiltonian, 1),
         generic=TaylorSeries(1),

@@ -25,6 +25,7 @@ def make(name: str) -> Scheme | None:
         order=1,
         area_preserving=False,
         explicit=True,
+        symmetric=False,
         source="the user's formulas",
         build=lambda hamiltonian: StepMap.from_formulas(hamiltonian, p_next, q_next),
     )

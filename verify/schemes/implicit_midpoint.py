@@ -24,6 +24,7 @@ def make(name: str) -> Scheme | None:
         order=2,
         area_preserving=True,
         explicit=False,
+        symmetric=True,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.4",
         build=midpoint_map,
         generic=StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE / 2, at_q=_ONE / 2),)),

@@ -26,6 +26,7 @@ def make(name: str) -> Scheme | None:
         order=1,
         area_preserving=True,
         explicit=False,
+        symmetric=False,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.3",
         build=implicit_euler_map,
         generic=StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE),)),

@@ -32,6 +32,7 @@ def make(name: str) -> Scheme | None:
         order=eta,
         area_preserving=False,
         explicit=True,
+        symmetric=False,
         source="Eq. 2–5",
         build=lambda hamiltonian: lie_map(hamiltonian, eta),
         generic=TaylorSeries(eta),

@@ -22,6 +22,7 @@ def make(name: str) -> Scheme | None:
         order=4,
         area_preserving=False,
         explicit=True,
+        symmetric=False,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.1",
         build=lambda hamiltonian: runge_kutta_map(hamiltonian, _TABLEAU),
         generic=RungeKutta(_TABLEAU.rows, _TABLEAU.weights),

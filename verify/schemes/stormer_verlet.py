@@ -21,6 +21,7 @@ def make(name: str) -> Scheme | None:
         order=2,
         area_preserving=True,
         explicit=True,
+        symmetric=True,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4 and VI.3",
         build=lambda hamiltonian: shears(hamiltonian, name, _PARTS),
         generic=StageEquations.of_shears(_PARTS),

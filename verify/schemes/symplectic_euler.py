@@ -22,6 +22,7 @@ def make(name: str) -> Scheme | None:
         order=1,
         area_preserving=True,
         explicit=True,
+        symmetric=False,
         source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
         build=lambda hamiltonian: shears(hamiltonian, name, PARTS),
         generic=StageEquations.of_shears(PARTS),

@@ -33,6 +33,7 @@ def make(name: str) -> Scheme | None:
         order=4,
         area_preserving=True,
         explicit=True,
+        symmetric=True,
         source="Yoshida, Phys. Lett. A 150 (1990) 262–268; Hairer, Lubich, Wanner, "
         "Geometric Numerical Integration, II.4",
         build=lambda hamiltonian: shears(hamiltonian, name, _PARTS),
