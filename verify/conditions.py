@@ -1,0 +1,34 @@
+"""Conditions on a scheme's coefficients, evaluated exactly, each with its residue."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One equation between coefficients: `name` says which, e.g. "Σ b_i c_i = 1/2".
+
+    `order`: the power of h that needs it; 0 where it is about area or symmetry. `residue`: left
+    side − right side, "0" where it is exactly 0, else a decimal that is known to its last digit.
+    `holds`: exactly so; None where that is not decided.
+    """
+
+    name: str
+    order: int
+    residue: str
+    holds: bool | None
+
+
+class ByConditions(Protocol):
+    """A scheme for every H (`separable`: every H = T(p) + V(q)) that is given by coefficients."""
+
+    @property
+    def separable(self) -> bool: ...
+
+    def order_conditions(self, order: int) -> tuple[Condition, ...]:
+        """All that make the map agree with the exact flow up to h^order, for every H."""
+        ...
+
+    def area_conditions(self) -> tuple[Condition, ...]:
+        """All that make det J ≡ 1 for every H; they suffice."""
+        ...
