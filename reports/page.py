@@ -9,7 +9,7 @@ from markupsafe import Markup
 from reports import mathml, typography
 from reports.views import page_view
 from verify.keeping import write_atomically
-from verify.results import Report
+from verify.scene_results import Report
 from verify.verdict import Verdict
 
 PAGE, DATA = "index.html", "results.json"

@@ -13,7 +13,8 @@ from markupsafe import Markup
 
 from reports.claim_view import ClaimView, is_decimal
 from reports.typography import number, start, superscript, whole
-from verify.results import ProofResult, RunResult, SceneResult
+from verify.results import ProofResult, RunResult
+from verify.scene_results import SceneResult
 
 if TYPE_CHECKING:
     from reports.figures import Line

@@ -13,7 +13,8 @@ from reports.plots import Plot
 from reports.run_table import RunTable, run_table
 from reports.typography import listed, whole
 from verify.criteria import NAMES
-from verify.results import CriterionResult, EveryResult, ProofResult, SceneResult
+from verify.results import CriterionResult, EveryResult, ProofResult
+from verify.scene_results import SceneResult
 
 if TYPE_CHECKING:
     from reports.growth_view import GrowthView

@@ -9,7 +9,8 @@ from reports.claim_view import Anchors, ClaimView, Contrast, contrasts
 from reports.plots import Plot
 from reports.scene_view import SceneView, scene_view
 from reports.typography import listed, superscript
-from verify.results import ProofResult, Report
+from verify.results import ProofResult
+from verify.scene_results import Report
 from verify.verdict import Verdict
 
 

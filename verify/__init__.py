@@ -8,13 +8,13 @@ if TYPE_CHECKING:
     from verify.hamiltonian import Hamiltonian as Hamiltonian
     from verify.proof.order import Proof as Proof
     from verify.proof.order import prove as prove
-    from verify.results import Report as Report
     from verify.results import RunResult as RunResult
     from verify.results import SeparationGrid as SeparationGrid
     from verify.results import SeparationResult as SeparationResult
     from verify.runs import run as run
     from verify.scene import Scene as Scene
     from verify.scene import load_scene as load_scene
+    from verify.scene_results import Report as Report
     from verify.scheme import Scheme as Scheme
     from verify.separation import separate as separate
     from verify.separation import separate_grid as separate_grid
@@ -28,7 +28,7 @@ _HOMES = {
     "Hamiltonian": "verify.hamiltonian",
     "InputError": "verify.errors",
     "Proof": "verify.proof.order",
-    "Report": "verify.results",
+    "Report": "verify.scene_results",
     "RunResult": "verify.results",
     "Scene": "verify.scene",
     "Scheme": "verify.scheme",

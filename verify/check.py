@@ -11,8 +11,9 @@ from verify.claim_plan import add_claims
 from verify.claims import EXACT, Claim
 from verify.claims_file import ClaimsFile
 from verify.errors import InputError
-from verify.execute import Done, Result, Store, execute
+from verify.execute import Done, Store, execute
 from verify.findings import Findings
+from verify.perform import Result
 from verify.plan import Plan
 from verify.results import ClaimResult
 

@@ -8,12 +8,13 @@ from collections.abc import Mapping, Sequence
 
 from verify.claim_scenes import ON_RUNS
 from verify.claims import Claim, CriteriaClaim, GrowthClaim
-from verify.execute import Result
 from verify.growth_claims import growth_tasks
 from verify.hamiltonian import Hamiltonian
-from verify.plan import Plan, RunTask, grid_task, key, proof_task
+from verify.perform import Result
+from verify.plan import Plan, grid_task, proof_task
 from verify.runs import known_run
 from verify.scene import Scene
+from verify.tasks import RunTask, key
 
 _BY_PROOF_ALONE = (1, 2)  # criteria
 

@@ -27,7 +27,8 @@ from verify.claims import (
 from verify.errors import InputError
 from verify.results import Frozen
 from verify.runs import AUTO, CLOSED_FORM
-from verify.scene import Digits, Grid, InitialValue, Number, Scene, Steps, StepSize, Time
+from verify.scene import Grid, Scene
+from verify.scene_values import Digits, InitialValue, Number, Steps, StepSize, Time
 
 SUBJECTS = ("scene", "system", "hamiltonian", "every")
 SUBJECT_KEYS = (*SUBJECTS, "parameters")

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from verify.errors import InputError
 from verify.results import Frozen
-from verify.scene import Number, StepSize
+from verify.scene_values import Number, StepSize
 
 EVERY_SEPARABLE = "separable hamiltonian"
 _PRINTED = re.compile(r"-?\d{1,20}(\.\d{1,1000})?(e[+-]?\d{1,3})?", re.ASCII)

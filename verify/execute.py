@@ -9,119 +9,26 @@ import contextlib
 import multiprocessing
 import os
 import signal
-import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from verify.exact import text
 from verify.float_bounds import DIRECT_STEPS
-from verify.formula import to_text
-from verify.hamiltonian import Hamiltonian
-from verify.keeping import NOTHING, Keeper, fingerprint, write_atomically
-from verify.plan import EveryTask, GrowthTask, Plan, ProofTask, RunTask, SeparationTask, Task
-from verify.proof.order import prove
-from verify.results import AverageResult, EveryResult, ProofResult, RunResult, SeparationResult
-from verify.runs import AUTO, run
-from verify.schemes import get
-from verify.separation import separate
-from verify.step_map import grouped
+from verify.keeping import Keeper, fingerprint, write_atomically
+from verify.perform import Result, perform, result_model
+from verify.plan import Plan
+from verify.runs import AUTO
+from verify.tasks import RunTask, SeparationTask, Task, WorkPrecisionTask
 
-Result = ProofResult | RunResult | SeparationResult | AverageResult | EveryResult
-_MODELS: dict[str, type[Result]] = {
-    "proof": ProofResult,
-    "run": RunResult,
-    "separation": SeparationResult,
-    "growth": AverageResult,
-    "every": EveryResult,
-}
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
 _VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
+_POINT_COST = 30_000_000  # of a point of error against run time: some tenths of a second
 # In float64 steps; an arithmetic that is not listed counts as one in between.
 _STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000}
-
-
-def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
-    """Do one task; a run goes on from the checkpoint that the keeper may have."""
-    if isinstance(task, EveryTask):
-        return _every(task.scheme)
-    hamiltonian = Hamiltonian.parse(task.hamiltonian, task.parameters)
-    if isinstance(task, ProofTask):
-        return _proof(hamiltonian, task.scheme)
-    if isinstance(task, GrowthTask):
-        return _growth(hamiltonian, task)
-    if isinstance(task, SeparationTask):
-        return separate(
-            hamiltonian,
-            task.scheme,
-            q=task.q,
-            p=task.p,
-            step_size=task.step_size,
-            steps=task.steps,
-            digits=task.digits,
-            keeper=keeper,
-        )
-    return run(
-        hamiltonian,
-        task.scheme,
-        q=task.q,
-        p=task.p,
-        step_size=task.step_size,
-        steps=task.steps,
-        arithmetic=task.arithmetic,
-        digits=task.digits,
-        observables=task.observables,
-        points=task.points,
-        keeper=keeper,
-    )
-
-
-def _growth(hamiltonian: Hamiltonian, task: GrowthTask) -> AverageResult:
-    from verify.growth import average_of
-
-    return average_of(hamiltonian, task.scheme, q=task.q, p=task.p, digits=task.digits)
-
-
-def _proof(hamiltonian: Hamiltonian, scheme: str) -> ProofResult:
-    begun = time.perf_counter()
-    step_map = get(scheme).step_map(hamiltonian)
-    proof = prove(step_map, get(scheme))
-    closed, p_next, q_next, jacobian = step_map.closed, None, None, None
-    if closed is not None:
-        written = (closed.p_next, closed.q_next, *closed.jacobian)
-        p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in written)
-        jacobian = (a, b), (c, d)
-    return ProofResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
-        scheme=scheme,
-        verdict=proof.verdict,
-        reason=proof.reason,
-        order=proof.order,
-        leading=proof.first.text,
-        delta_j=step_map.delta_j_text,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
-        witness={name: text(value) for name, value in proof.witness.items()},
-        enclosure=proof.enclosure,
-        p_next=p_next,
-        q_next=q_next,
-        jacobian=jacobian,
-        seconds=time.perf_counter() - begun,
-    )
-
-
-def _every(scheme: str) -> EveryResult:
-    from verify.proof.every import prove_every
-
-    proof = prove_every(scheme)
-    return EveryResult(
-        **{name: getattr(proof, name) for name in EveryResult.model_fields},
-    )
 
 
 class Store:
@@ -139,7 +46,7 @@ class Store:
         if path is None or not path.exists():
             return None
         try:
-            found: Result = _MODELS[task.kind].model_validate_json(path.read_text())
+            found: Result = result_model(task).model_validate_json(path.read_text())
         except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
             return None
         self.taken += 1
@@ -178,7 +85,12 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
-    for name, result in _performed(waiting, _workers(waiting, workers), store):
+    together = {name: task for name, task in waiting.items() if not task.alone}
+    for name, result in _performed(together, _workers(together, workers), store):
+        store.put(name, result)
+        finish(name, result)
+    for name in waiting.keys() - together.keys():  # here, when no other task is under way
+        result = perform(waiting[name], store.keeper(name))
         store.put(name, result)
         finish(name, result)
     return results
@@ -186,6 +98,8 @@ def execute(
 
 def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
+    if isinstance(task, WorkPrecisionTask):
+        return _POINT_COST * len(task.schemes) * len(task.step_sizes)
     if isinstance(task, SeparationTask):
         return 3 * task.steps * _STEP_COST[AUTO]
     if isinstance(task, RunTask):

@@ -6,8 +6,8 @@ from typing import Any
 
 from verify.criteria import judge
 from verify.errors import InputError
-from verify.execute import Result
-from verify.plan import grid_task, growth_task, key, proof_task, separation_task
+from verify.perform import Result
+from verify.plan import grid_task, growth_task, proof_task, separation_task
 from verify.results import (
     AverageResult,
     ClaimResult,
@@ -17,6 +17,7 @@ from verify.results import (
     SeparationResult,
 )
 from verify.scene import Grid, Scene
+from verify.tasks import key
 from verify.verdict import Verdict
 
 

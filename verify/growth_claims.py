@@ -29,9 +29,10 @@ from verify.claims import BoundedClaim, GrowthClaim
 from verify.errors import InputError
 from verify.exact import text
 from verify.findings import Checks, Findings, result
-from verify.plan import RunTask, grid_task, key
+from verify.plan import grid_task
 from verify.results import ClaimResult, RunResult
 from verify.scene import Scene
+from verify.tasks import RunTask, key
 from verify.verdict import Verdict
 
 _DOUBLINGS = 3

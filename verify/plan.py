@@ -1,87 +1,20 @@
 """What is asked → what is needed: tasks, each once, with reasons; and what is left out and why."""
 
-import hashlib
-import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any
 
 from verify.exact import text
 from verify.formula import to_text
-from verify.results import Frozen
 from verify.runs import CLOSED_FORM
-from verify.scene import Grid, Number, Scene, StepSize
+from verify.scene import Grid, Scene
 from verify.schemes import get
+from verify.section_plan import work_precision_task
+from verify.tasks import EveryTask, GrowthTask, ProofTask, RunTask, SeparationTask, Task, key
 
-
-class ProofTask(Frozen):
-    """Prove the order of ΔJ and of the map for one H and one scheme."""
-
-    kind: Literal["proof"] = "proof"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
-
-
-class RunTask(Frozen):
-    """Run N steps and report the observables."""
-
-    kind: Literal["run"] = "run"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
-    step_size: StepSize
-    steps: int
-    q: Number
-    p: Number
-    arithmetic: str
-    digits: int
-    observables: tuple[str, ...]
-    points: int
-
-
-class SeparationTask(Frozen):
-    """Split Λ of a float64 run into truncation and rounding."""
-
-    kind: Literal["separation"] = "separation"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
-    step_size: StepSize
-    steps: int
-    q: Number
-    p: Number
-    digits: int
-
-
-class GrowthTask(Frozen):
-    """The growth law of Λ on one orbit, with the time average in it."""
-
-    kind: Literal["growth"] = "growth"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
-    q: Number
-    p: Number
-    digits: int
-
-
-class EveryTask(Frozen):
-    """What is proved of a scheme for every H."""
-
-    kind: Literal["every"] = "every"
-    scheme: str
-
-
-Task = ProofTask | RunTask | SeparationTask | GrowthTask | EveryTask
 SEPARATED_DIGITS = 6  # of each part
 AVERAGE_DIGITS = 30
-
-
-def key(task: Task) -> str:
-    """A name for the task by its content."""
-    content = json.dumps(task.model_dump(mode="json"), sort_keys=True)
-    return hashlib.sha256(content.encode()).hexdigest()[:24]
 
 
 @dataclass
@@ -196,21 +129,46 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
                 plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
             else:
                 plan.need(series_task(scene, scheme, index), f"{what}, for its plot")
-    if not scene.every_hamiltonian:
-        why = "the scene does not say `every_hamiltonian = true`"
-        plan.leave_out(f"{name}: proofs for every H", why)
-    if not scene.grid:
-        plan.leave_out(f"{name}: runs over step sizes", "the scene has no [grid]")
-    if not grids_separated(scene):
-        why = "the scene has no [[separation]], and its [grid] does not say `separate = true`"
-        plan.leave_out(f"{name}: truncation separated from rounding", why)
-    if not (scene.grid and scene.grid.growth):
-        why = "the scene has no [grid] that says `growth = true`"
-        plan.leave_out(f"{name}: Λ against its growth law", why)
-    if not scene.series:
-        plan.leave_out(f"{name}: trajectories and plots over time", "the scene has no [[series]]")
-    if not scene.criteria:
-        plan.leave_out(f"{name}: criteria 1–4", "the scene names no criteria")
+    if scene.work_precision:
+        task = work_precision_task(scene, scene.work_precision)
+        plan.need(task, f"{name}: error against run time")
+        for peer, why in task.peers_left_out:
+            plan.leave_out(f"{name}: {peer} beside the schemes", why)
+    for what, why, asked in _SECTIONS:
+        if not asked(scene):
+            plan.leave_out(f"{name}: {what}", why)
+
+
+# What a scene may ask for: what it is, why it is left out, and whether the scene asks for it.
+_SECTIONS: tuple[tuple[str, str, Callable[[Scene], object]], ...] = (
+    (
+        "proofs for every H",
+        "the scene does not say `every_hamiltonian = true`",
+        lambda scene: scene.every_hamiltonian,
+    ),
+    ("runs over step sizes", "the scene has no [grid]", lambda scene: scene.grid),
+    (
+        "truncation separated from rounding",
+        "the scene has no [[separation]], and its [grid] does not say `separate = true`",
+        grids_separated,
+    ),
+    (
+        "Λ against its growth law",
+        "the scene has no [grid] that says `growth = true`",
+        lambda scene: scene.grid and scene.grid.growth,
+    ),
+    (
+        "trajectories and plots over time",
+        "the scene has no [[series]]",
+        lambda scene: scene.series,
+    ),
+    ("criteria 1–4", "the scene names no criteria", lambda scene: scene.criteria),
+    (
+        "error against run time",
+        "the scene has no [work_precision]",
+        lambda scene: scene.work_precision,
+    ),
+)
 
 
 def _plan_every(plan: Plan, name: str, scheme: str) -> None:

@@ -15,18 +15,14 @@ from verify.execute import Done, Store, execute
 from verify.findings import Findings
 from verify.formula import to_text
 from verify.keeping import versions
-from verify.plan import EveryTask, Plan, key, plan_scenes, series_task
-from verify.results import (
-    EveryResult,
-    GrowthLawResult,
-    Provenance,
-    Report,
-    RunResult,
-    SceneResult,
-    SeparationGrid,
-)
+from verify.plan import Plan, plan_scenes, series_task
+from verify.results import EveryResult, GrowthLawResult, RunResult, SeparationGrid
 from verify.scene import Scene
+from verify.scene_results import Provenance, Report, SceneResult
+from verify.section_plan import work_precision_task
 from verify.separation import as_grid
+from verify.tasks import EveryTask, key
+from verify.work_precision_results import WorkPrecisionResult
 
 
 def make_report(
@@ -93,6 +89,7 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         every=_every(scene, findings),
         growth_laws=_growth_laws(scene, findings),
         growth_explains=scene.grid.growth_explains if scene.grid else "",
+        work_precision=_work_precision(scene, findings),
     )
 
 
@@ -140,3 +137,12 @@ def _growth_laws(scene: Scene, findings: Findings) -> tuple[GrowthLawResult, ...
             own.sort(key=lambda run: Fraction(run.step_size))
             found.append(GrowthLawResult(law=law, predictions=predictions(exact, law, own)))
     return tuple(found)
+
+
+def _work_precision(scene: Scene, findings: Findings) -> WorkPrecisionResult | None:
+    """Error against run time, where it was asked for."""
+    if scene.work_precision is None:
+        return None
+    found = findings.results[key(work_precision_task(scene, scene.work_precision))]
+    assert isinstance(found, WorkPrecisionResult)  # noqa: S101 - the key is such a task's
+    return found

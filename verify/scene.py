@@ -26,6 +26,11 @@
     initial_value = { q = 1.5, p = 0 }
     source = "Figure 2"                    # what it repeats, for its caption; may be left out
 
+    [work_precision]                       # error against run time; see verify.scene_sections
+    time = 20
+    step_sizes = [0.1, 0.05, 0.025]
+    initial_value = { q = 1.5, p = 0 }
+
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
@@ -35,49 +40,27 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Field,
-    PlainSerializer,
-    ValidationError,
-    model_validator,
-)
+from pydantic import Field, ValidationError, model_validator
 
-from verify import arithmetic as number_systems
 from verify import schemes as scheme_catalogue
 from verify import systems
 from verify.errors import InputError
-from verify.exact import positive, rational, text
+from verify.exact import text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
-from verify.runs import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
+from verify.runs import CLOSED_FORM, MAX_STEPS, OBSERVABLES
+from verify.scene_sections import WorkPrecision
+from verify.scene_values import (
+    ArithmeticName,
+    Digits,
+    InitialValue,
+    Number,
+    Steps,
+    StepSize,
+    Time,
+)
 
-Number = Annotated[
-    Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
-]
-StepSize = Annotated[
-    Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
-]
 _MAX_DEPTH = 12
-Time = Annotated[Fraction, BeforeValidator(lambda x: positive(x, "time")), PlainSerializer(text)]
-Digits = Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)]
-Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
-
-
-def _known(name: str) -> str:
-    if name != AUTO and name not in number_systems.names():
-        allowed = ", ".join((AUTO, *number_systems.names()))
-        raise InputError("arithmetic", name, f"unknown; allowed: {allowed}")
-    return name
-
-
-ArithmeticName = Annotated[str, AfterValidator(_known)]
-
-
-class InitialValue(Frozen):
-    q: Number
-    p: Number
 
 
 class Grid(Frozen):
@@ -191,15 +174,18 @@ class Scene(Frozen):
     grid: Grid | None = None
     separation: tuple[SeparationOver, ...] = ()
     series: tuple[Series, ...] = ()
+    work_precision: WorkPrecision | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.system is None) == (self.hamiltonian is None):
             raise InputError("scene", "system, hamiltonian", "give one of the two")
         exact = self.exact_hamiltonian()
-        for name in self.schemes:
+        sections = self.grid, self.series, self.separation, self.work_precision
+        also = self.work_precision.schemes if self.work_precision else ()
+        for name in (*self.schemes, *also):
             scheme_catalogue.get(name).step_map(exact)
-        if (self.grid or self.series or self.separation) and exact.symbols:
+        if any(sections) and exact.symbols:
             raise InputError("parameter", exact.symbols[0], "has no value; a run needs one")
         return self
 

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from verify.results import (
         CrossoverResult,
         EvaluationResult,
-        Report,
         RunResult,
         SeparationGrid,
         SeparationResult,
     )
+    from verify.scene_results import Report
 
 _LONGEST = 400  # characters of a formula on the terminal
 _LABELS = {
@@ -235,6 +235,9 @@ def _task_line(task: dict[str, Any]) -> str:
     if task["kind"] == "growth":
         orbit = f"the orbit from q = {task['q']}, p = {task['p']}"
         return f"growth law of Λ on {orbit} for {task['scheme']} ({reasons})"
+    if task["kind"] == "work_precision":
+        runs = f"{len(task['schemes'])} schemes at {len(task['step_sizes'])} step sizes"
+        return f"error against run time of {runs} over [0, {task['time']}] ({reasons})"
     where = (
         f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from "
         f"q = {task['q']}, p = {task['p']}"

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import RUN, SCENE, apart, arguments, here
-from verify.results import Report
+from verify.scene_results import Report
 
 VERIFY = Path(sys.executable).with_name("verify")
 # 9 tasks: six runs of half a second or more, a series, two proofs; symplectic Euler is not run.

@@ -8,9 +8,10 @@ from verify.check_claims import check_claims
 from verify.claims import Claim
 from verify.exact import decimal, text
 from verify.findings import Findings
-from verify.plan import grid_task, key, proof_task
+from verify.plan import grid_task, proof_task
 from verify.results import ClaimResult, ProofResult, RunResult, Value
 from verify.scene import Scene, scene_from
+from verify.tasks import key
 from verify.verdict import Verdict
 
 STEP_SIZES = ("0.001", "0.002", "0.004", "0.006", "0.008", "0.01")

@@ -21,7 +21,8 @@ from verify.claims import (
 from verify.claims_file import load_claims
 from verify.errors import InputError
 from verify.findings import Findings
-from verify.plan import grid_task, key
+from verify.plan import grid_task
+from verify.tasks import key
 from verify.verdict import Verdict
 
 PROVED, MEASURED, REFUTED, UNDECIDED = (

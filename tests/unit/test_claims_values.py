@@ -10,8 +10,8 @@ from verify.check_claims import check_claim
 from verify.claims import BoundedClaim, GrowthClaim, TableClaim, ValueClaim
 from verify.findings import Findings
 from verify.growth_claims import growth_tasks
-from verify.plan import key
 from verify.results import ClaimResult
+from verify.tasks import key
 from verify.verdict import Verdict
 
 MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED

@@ -9,9 +9,9 @@ import pytest
 
 from tests.unit.by_hand import STEP_SIZES, Given, made_proof, made_run
 from verify.criteria import judge, measured_slopes
-from verify.execute import perform
-from verify.plan import ProofTask
+from verify.perform import perform
 from verify.results import ProofResult, RunResult
+from verify.tasks import ProofTask
 from verify.verdict import Verdict
 
 PROVED, MEASURED, REFUTED, UNDECIDED = (

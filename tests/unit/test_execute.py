@@ -17,9 +17,11 @@ from tests.unit.test_scene import DUFFING, GRID, SERIES, load
 from verify import execute as execution
 from verify import keeping
 from verify.errors import InputError
-from verify.execute import Result, Store, execute
+from verify.execute import Store, execute
 from verify.keeping import fingerprint, write_atomically
-from verify.plan import Plan, ProofTask, plan_scenes
+from verify.perform import Result
+from verify.plan import Plan, plan_scenes
+from verify.tasks import ProofTask
 
 CONTENT = (
     DUFFING.replace('"lie2"', '"lie2", "lie3"')
@@ -266,7 +268,8 @@ INTERRUPTED = """
 import sys, time
 from fractions import Fraction
 from verify.execute import Store, execute
-from verify.plan import Plan, RunTask
+from verify.plan import Plan
+from verify.tasks import RunTask
 
 def stop(name, result):
     raise KeyboardInterrupt

@@ -9,8 +9,8 @@ from reports.page import render
 from verify.cli import cli
 from verify.execute import Store
 from verify.report import make_report
-from verify.results import Report
 from verify.scene import scene_from
+from verify.scene_results import Report
 
 LARGE = "p**2/(2*(1 + q**2))"
 SCHEMES = ["rk4", "yoshida4", "stormer-verlet", "euler"]

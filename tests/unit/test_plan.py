@@ -8,9 +8,10 @@ import pytest
 
 from tests.unit.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
-from verify.plan import GrowthTask, Plan, RunTask, key, plan_scenes
+from verify.plan import Plan, plan_scenes
 from verify.runs import CLOSED_FORM
 from verify.scene import load_scene
+from verify.tasks import GrowthTask, RunTask, key
 
 
 def runs_of(plan: Plan) -> list[RunTask]:
@@ -59,6 +60,7 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
         "[grid] does not say `separate = true`",
         "mine: Λ against its growth law": "the scene has no [grid] that says `growth = true`",
         "mine: criteria 1–4": "the scene names no criteria",
+        "mine: error against run time": "the scene has no [work_precision]",
     }
     plan = plan_scenes([load(tmp_path, GOOD.replace("lie2", "symplectic-euler"))])
     assert not runs_of(plan)

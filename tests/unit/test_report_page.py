@@ -17,16 +17,9 @@ from reports.typography import number
 from verify.claims import Claim, MonotoneClaim, TableClaim
 from verify.execute import Store
 from verify.report import make_report
-from verify.results import (
-    ClaimResult,
-    ProofResult,
-    Provenance,
-    Report,
-    RunResult,
-    SceneResult,
-    Value,
-)
+from verify.results import ClaimResult, ProofResult, RunResult, Value
 from verify.scene import scene_from
+from verify.scene_results import Provenance, Report, SceneResult
 from verify.verdict import Verdict
 
 EVIL = '<script>alert("x")</script>'

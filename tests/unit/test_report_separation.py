@@ -13,7 +13,8 @@ from reports.typography import grouped, step
 from tests.unit.made_separations import BELOW, BOTH, CROSSING, PARTS, evaluation, grid, point
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_page import EVIL, Reader, proof, report, run, scene
-from verify.results import SceneResult, SeparationGrid, SeriesPoint, Value
+from verify.results import SeparationGrid, SeriesPoint, Value
+from verify.scene_results import SceneResult
 from verify.separation import as_grid
 
 

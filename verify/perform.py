@@ -1,0 +1,143 @@
+"""One task → its result, by the kind of the task; what only one kind needs is imported for it."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from verify.exact import text
+from verify.formula import to_text
+from verify.hamiltonian import Hamiltonian
+from verify.keeping import NOTHING, Keeper
+from verify.proof.order import prove
+from verify.results import AverageResult, EveryResult, ProofResult, RunResult, SeparationResult
+from verify.runs import run
+from verify.schemes import get
+from verify.separation import separate
+from verify.step_map import grouped
+from verify.tasks import (
+    EveryTask,
+    GrowthTask,
+    ProofTask,
+    RunTask,
+    SeparationTask,
+    Task,
+    WorkPrecisionTask,
+)
+from verify.work_precision_results import WorkPrecisionResult
+
+Result = (
+    ProofResult | RunResult | SeparationResult | AverageResult | EveryResult | WorkPrecisionResult
+)
+
+
+def perform(task: Task, keeper: Keeper = NOTHING) -> Result:
+    """Do one task; a run goes on from the checkpoint that the keeper may have."""
+    return KINDS[task.kind].do(task, keeper)
+
+
+def result_model(task: Task) -> type[Result]:
+    """The model of the task's result."""
+    return KINDS[task.kind].model
+
+
+def _given(task: Any) -> Hamiltonian:
+    return Hamiltonian.parse(task.hamiltonian, task.parameters)
+
+
+def _run(task: RunTask, keeper: Keeper) -> RunResult:
+    return run(
+        _given(task),
+        task.scheme,
+        q=task.q,
+        p=task.p,
+        step_size=task.step_size,
+        steps=task.steps,
+        arithmetic=task.arithmetic,
+        digits=task.digits,
+        observables=task.observables,
+        points=task.points,
+        keeper=keeper,
+    )
+
+
+def _separation(task: SeparationTask, keeper: Keeper) -> SeparationResult:
+    return separate(
+        _given(task),
+        task.scheme,
+        q=task.q,
+        p=task.p,
+        step_size=task.step_size,
+        steps=task.steps,
+        digits=task.digits,
+        keeper=keeper,
+    )
+
+
+def _growth(task: GrowthTask, _: Keeper) -> AverageResult:
+    from verify.growth import average_of
+
+    return average_of(_given(task), task.scheme, q=task.q, p=task.p, digits=task.digits)
+
+
+def _work_precision(task: WorkPrecisionTask, _: Keeper) -> WorkPrecisionResult:
+    from verify.work_precision import work_precision
+
+    return work_precision(_given(task), task)
+
+
+def _proof(task: ProofTask, _: Keeper) -> ProofResult:
+    hamiltonian, scheme = _given(task), task.scheme
+    begun = time.perf_counter()
+    step_map = get(scheme).step_map(hamiltonian)
+    proof = prove(step_map, get(scheme))
+    closed, p_next, q_next, jacobian = step_map.closed, None, None, None
+    if closed is not None:
+        written = (closed.p_next, closed.q_next, *closed.jacobian)
+        p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in written)
+        jacobian = (a, b), (c, d)
+    return ProofResult(
+        hamiltonian=to_text(hamiltonian.expression),
+        parameters={name: text(value) for name, value in hamiltonian.values},
+        scheme=scheme,
+        verdict=proof.verdict,
+        reason=proof.reason,
+        order=proof.order,
+        leading=proof.first.text,
+        delta_j=step_map.delta_j_text,
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        witness={name: text(value) for name, value in proof.witness.items()},
+        enclosure=proof.enclosure,
+        p_next=p_next,
+        q_next=q_next,
+        jacobian=jacobian,
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def _every(task: EveryTask, _: Keeper) -> EveryResult:
+    from verify.proof.every import prove_every
+
+    proof = prove_every(task.scheme)
+    return EveryResult(
+        **{name: getattr(proof, name) for name in EveryResult.model_fields},
+    )
+
+
+@dataclass(frozen=True)
+class Kind:
+    """How tasks of one kind are done, and the model of what they give."""
+
+    do: Callable[[Any, Keeper], Result]
+    model: type[Result]
+
+
+KINDS: dict[str, Kind] = {
+    "proof": Kind(_proof, ProofResult),
+    "run": Kind(_run, RunResult),
+    "separation": Kind(_separation, SeparationResult),
+    "growth": Kind(_growth, AverageResult),
+    "every": Kind(_every, EveryResult),
+    "work_precision": Kind(_work_precision, WorkPrecisionResult),
+}

@@ -1,0 +1,62 @@
+"""What was found for a scene, and a whole report: results of all kinds put together."""
+
+from verify.results import (
+    ClaimResult,
+    CriterionResult,
+    EveryResult,
+    Frozen,
+    GrowthLawResult,
+    ProofResult,
+    RunResult,
+    Seconds,
+    SeparationGrid,
+)
+from verify.work_precision_results import WorkPrecisionResult
+
+
+class SceneResult(Frozen):
+    """Everything found for one scene; `time` is the length of its runs where it has a grid.
+
+    `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
+    scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
+    `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
+    proved of its schemes for every H, `work_precision` error against run time.
+    """
+
+    name: str
+    title: str
+    hamiltonian: str
+    parameters: dict[str, str]
+    source: str
+    time: str | None
+    proofs: tuple[ProofResult, ...]
+    criteria: tuple[CriterionResult, ...]
+    runs: tuple[RunResult, ...]
+    series: tuple[RunResult, ...]
+    separations: tuple[SeparationGrid, ...] = ()
+    crossovers: tuple[SeparationGrid, ...] = ()
+    growth_laws: tuple[GrowthLawResult, ...] = ()
+    growth_explains: str = ""
+    every: tuple[EveryResult, ...] = ()
+    work_precision: WorkPrecisionResult | None = None
+
+
+class Provenance(Frozen):
+    """What made a report: the command, versions, machine, and time."""
+
+    command: str
+    versions: dict[str, str]
+    machine: str
+    seconds: Seconds
+    kept: int  # results taken from an earlier, interrupted or finished, call
+    computed: int
+
+
+class Report(Frozen):
+    """A whole report; its JSON is `results.json`."""
+
+    title: str
+    claims: tuple[ClaimResult, ...]
+    scenes: tuple[SceneResult, ...]
+    left_out: tuple[tuple[str, str], ...]
+    provenance: Provenance

@@ -1,0 +1,106 @@
+"""The kinds of task, each with all that its result depends on."""
+
+import hashlib
+import json
+from typing import ClassVar, Literal
+
+from verify.results import Frozen
+from verify.scene_values import Number, StepSize
+
+
+class _Task(Frozen):
+    """`alone`: it measures run times, so that nothing else may run beside it."""
+
+    alone: ClassVar[bool] = False
+
+
+class ProofTask(_Task):
+    """Prove the order of ΔJ and of the map for one H and one scheme."""
+
+    kind: Literal["proof"] = "proof"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+
+
+class RunTask(_Task):
+    """Run N steps and report the observables."""
+
+    kind: Literal["run"] = "run"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    step_size: StepSize
+    steps: int
+    q: Number
+    p: Number
+    arithmetic: str
+    digits: int
+    observables: tuple[str, ...]
+    points: int
+
+
+class SeparationTask(_Task):
+    """Split Λ of a float64 run into truncation and rounding."""
+
+    kind: Literal["separation"] = "separation"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    step_size: StepSize
+    steps: int
+    q: Number
+    p: Number
+    digits: int
+
+
+class GrowthTask(_Task):
+    """The growth law of Λ on one orbit, with the time average in it."""
+
+    kind: Literal["growth"] = "growth"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    q: Number
+    p: Number
+    digits: int
+
+
+class EveryTask(_Task):
+    """What is proved of a scheme for every H."""
+
+    kind: Literal["every"] = "every"
+    scheme: str
+
+
+class WorkPrecisionTask(_Task):
+    """Error against run time of schemes over step sizes, of number systems, and of peers.
+
+    `peers`: names of those that are drawn; `peers_left_out`: the others, each with the reason.
+    """
+
+    alone: ClassVar[bool] = True
+    kind: Literal["work_precision"] = "work_precision"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    schemes: tuple[str, ...]
+    time: Number
+    step_sizes: tuple[StepSize, ...]
+    q: Number
+    p: Number
+    repeats: int
+    number_systems: tuple[str, ...]
+    digits: tuple[int, ...]
+    number_systems_scheme: str
+    number_systems_step_size: StepSize
+    peers: tuple[str, ...]
+    peers_left_out: tuple[tuple[str, str], ...]
+
+
+Task = ProofTask | RunTask | SeparationTask | GrowthTask | EveryTask | WorkPrecisionTask
+
+
+def key(task: Task) -> str:
+    """A name for the task by its content."""
+    content = json.dumps(task.model_dump(mode="json"), sort_keys=True)
+    return hashlib.sha256(content.encode()).hexdigest()[:24]
