@@ -14,20 +14,32 @@ from verify.results import AverageResult, EveryResult, ProofResult, RunResult, S
 from verify.runs import run
 from verify.schemes import get
 from verify.separation import separate
+from verify.stability_results import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.step_map import grouped
 from verify.tasks import (
     EveryTask,
     GrowthTask,
+    LargestStepTask,
     ProofTask,
     RunTask,
     SeparationTask,
+    StabilityMapTask,
+    StabilityTask,
     Task,
     WorkPrecisionTask,
 )
 from verify.work_precision_results import WorkPrecisionResult
 
 Result = (
-    ProofResult | RunResult | SeparationResult | AverageResult | EveryResult | WorkPrecisionResult
+    ProofResult
+    | RunResult
+    | SeparationResult
+    | AverageResult
+    | EveryResult
+    | WorkPrecisionResult
+    | StabilityResult
+    | LargestStepResult
+    | StabilityMapResult
 )
 
 
@@ -86,6 +98,24 @@ def _work_precision(task: WorkPrecisionTask, _: Keeper) -> WorkPrecisionResult:
     return work_precision(_given(task), task)
 
 
+def _stability(task: StabilityTask, _: Keeper) -> StabilityResult:
+    from verify.stability_tasks import judged
+
+    return judged(_given(task), task)
+
+
+def _largest_step(task: LargestStepTask, _: Keeper) -> LargestStepResult:
+    from verify.stability_tasks import largest
+
+    return largest(_given(task), task)
+
+
+def _stability_map(task: StabilityMapTask, _: Keeper) -> StabilityMapResult:
+    from verify.stability_tasks import mapped
+
+    return mapped(_given(task), task)
+
+
 def _proof(task: ProofTask, _: Keeper) -> ProofResult:
     hamiltonian, scheme = _given(task), task.scheme
     begun = time.perf_counter()
@@ -139,5 +169,8 @@ KINDS: dict[str, Kind] = {
     "separation": Kind(_separation, SeparationResult),
     "growth": Kind(_growth, AverageResult),
     "every": Kind(_every, EveryResult),
+    "stability": Kind(_stability, StabilityResult),
+    "largest_step": Kind(_largest_step, LargestStepResult),
+    "stability_map": Kind(_stability_map, StabilityMapResult),
     "work_precision": Kind(_work_precision, WorkPrecisionResult),
 }

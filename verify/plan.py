@@ -11,6 +11,7 @@ from verify.runs import CLOSED_FORM
 from verify.scene import Grid, Scene
 from verify.schemes import get
 from verify.section_plan import work_precision_task
+from verify.stability_plan import largest_step_tasks, stability_map_tasks, stability_tasks
 from verify.tasks import EveryTask, GrowthTask, ProofTask, RunTask, SeparationTask, Task, key
 
 SEPARATED_DIGITS = 6  # of each part
@@ -134,6 +135,12 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
         plan.need(task, f"{name}: error against run time")
         for peer, why in task.peers_left_out:
             plan.leave_out(f"{name}: {peer} beside the schemes", why)
+    for case, judged in stability_tasks(scene):
+        plan.need(judged, f"{case}: is it stable, and whose fault is it if not")
+    for largest in largest_step_tasks(scene):
+        plan.need(largest, f"{name}: the largest step with bounded motion")
+    for over in stability_map_tasks(scene):
+        plan.need(over, f"{name}: stability over step size and {over.parameter}")
     for what, why, asked in _SECTIONS:
         if not asked(scene):
             plan.leave_out(f"{name}: {what}", why)
@@ -167,6 +174,21 @@ _SECTIONS: tuple[tuple[str, str, Callable[[Scene], object]], ...] = (
         "error against run time",
         "the scene has no [work_precision]",
         lambda scene: scene.work_precision,
+    ),
+    (
+        "stability, and whose fault it is where there is none",
+        "the scene has no [[stability]]",
+        lambda scene: scene.stability,
+    ),
+    (
+        "the largest stable step",
+        "the scene has no [[largest_step]]",
+        lambda scene: scene.largest_step,
+    ),
+    (
+        "the map of step size and stiffness",
+        "the scene has no [[stability_map]]",
+        lambda scene: scene.stability_map,
     ),
 )
 

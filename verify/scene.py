@@ -59,6 +59,7 @@ from verify.scene_values import (
     StepSize,
     Time,
 )
+from verify.stability_sections import LargestStepOver, Stability, StabilityMap
 
 _MAX_DEPTH = 12
 
@@ -175,18 +176,30 @@ class Scene(Frozen):
     separation: tuple[SeparationOver, ...] = ()
     series: tuple[Series, ...] = ()
     work_precision: WorkPrecision | None = None
+    stability: tuple[Stability, ...] = ()
+    largest_step: tuple[LargestStepOver, ...] = ()
+    stability_map: tuple[StabilityMap, ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.system is None) == (self.hamiltonian is None):
             raise InputError("scene", "system, hamiltonian", "give one of the two")
         exact = self.exact_hamiltonian()
-        sections = self.grid, self.series, self.separation, self.work_precision
-        also = self.work_precision.schemes if self.work_precision else ()
-        for name in (*self.schemes, *also):
+        of_stability = *self.stability, *self.largest_step, *self.stability_map
+        also = [name for section in of_stability for name in section.schemes]
+        also += self.work_precision.schemes if self.work_precision else ()
+        for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
-        if any(sections) and exact.symbols:
-            raise InputError("parameter", exact.symbols[0], "has no value; a run needs one")
+        runs = self.grid, self.series, self.separation, self.work_precision, self.stability
+        free = set(exact.symbols)
+        if not any((*runs, self.largest_step)):
+            free -= {over.parameter for over in self.stability_map}
+        if any((*runs, *of_stability)) and free:
+            raise InputError("parameter", min(free), "has no value; a run needs one")
+        for over in self.stability_map:
+            if over.parameter not in exact.parameters:
+                known = ", ".join(exact.parameters) or "none"
+                raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
         return self
 
     def exact_hamiltonian(self) -> Hamiltonian:

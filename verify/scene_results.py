@@ -11,6 +11,7 @@ from verify.results import (
     Seconds,
     SeparationGrid,
 )
+from verify.stability_results import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.work_precision_results import WorkPrecisionResult
 
 
@@ -20,7 +21,8 @@ class SceneResult(Frozen):
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
     scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
     `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
-    proved of its schemes for every H, `work_precision` error against run time.
+    proved of its schemes for every H, `work_precision` error against run time;
+    `stability`, `largest_steps` and `stability_maps` how stable they are.
     """
 
     name: str
@@ -39,6 +41,9 @@ class SceneResult(Frozen):
     growth_explains: str = ""
     every: tuple[EveryResult, ...] = ()
     work_precision: WorkPrecisionResult | None = None
+    stability: tuple[StabilityResult, ...] = ()
+    largest_steps: tuple[LargestStepResult, ...] = ()
+    stability_maps: tuple[StabilityMapResult, ...] = ()
 
 
 class Provenance(Frozen):

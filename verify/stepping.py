@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 from verify.errors import InputError
 from verify.exact import text
@@ -55,15 +56,23 @@ def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
     a = 1; then the values are put in.
     """
     generic = hamiltonian.generic()
+    return generic if _takes(generic, scheme) else Hamiltonian(hamiltonian.exact)
+
+
+@lru_cache(maxsize=256)
+def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
     try:
-        get(scheme).step_map(generic)
+        get(scheme).step_map(hamiltonian)
     except InputError:
-        return Hamiltonian(hamiltonian.exact)
-    return generic
+        return False
+    return True
 
 
 class Job:
-    """What is run, apart from the arithmetic it is run in."""
+    """What is run, apart from the arithmetic it is run in.
+
+    The state is noted `points` times on the way where a series is kept, else `sections` times.
+    """
 
     def __init__(
         self,
@@ -74,16 +83,19 @@ class Job:
         observables: frozenset[str],
         points: int,
         keeper: Keeper = NOTHING,
+        sections: int = 16,
     ) -> None:
         self.generic, self.scheme = _compilable(hamiltonian, scheme), scheme
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
+        self.sections = points or sections
         self.keeper = keeper
 
     def observing(self, observables: frozenset[str]) -> "Job":
         """The same job with other observables, and without a series."""
         other = copy(self)
         other.observables, other.points = observables, 0
+        other.sections = 16
         return other
 
     def fits(self, arithmetic: Arithmetic) -> bool:

@@ -97,7 +97,57 @@ class WorkPrecisionTask(_Task):
     peers_left_out: tuple[tuple[str, str], ...]
 
 
-Task = ProofTask | RunTask | SeparationTask | GrowthTask | EveryTask | WorkPrecisionTask
+class StabilityTask(_Task):
+    """Judge one run: stable, drifting, unstable, and whose fault it is."""
+
+    kind: Literal["stability"] = "stability"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    step_size: StepSize
+    steps: int
+    q: Number
+    p: Number
+
+
+class LargestStepTask(_Task):
+    """The largest step size with bounded motion until `time`."""
+
+    kind: Literal["largest_step"] = "largest_step"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    time: Number
+    q: Number
+    p: Number
+
+
+class StabilityMapTask(_Task):
+    """Verdicts over a parameter's values and step sizes."""
+
+    kind: Literal["stability_map"] = "stability_map"
+    hamiltonian: str
+    parameters: dict[str, Number]
+    scheme: str
+    parameter: str
+    values: tuple[Number, ...]
+    step_sizes: tuple[StepSize, ...]
+    steps: int
+    q: Number
+    p: Number
+
+
+Task = (
+    ProofTask
+    | RunTask
+    | SeparationTask
+    | GrowthTask
+    | EveryTask
+    | WorkPrecisionTask
+    | StabilityTask
+    | LargestStepTask
+    | StabilityMapTask
+)
 
 
 def key(task: Task) -> str:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
-_SECTIONS = 16
 _ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
                  "lambda_plain": "plain"}  # fmt: skip
 _SCALED = {
@@ -47,7 +46,7 @@ class Walk:
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
-        self.section = -(-job.steps // (job.points or _SECTIONS))  # steps between two notes
+        self.section = -(-job.steps // job.sections)  # steps between two notes
         self.done, self.seconds = 0, 0.0
         self.trail: list[dict[str, Fraction]] = []
         self.tangents: list[dict[str, Fraction]] = []

@@ -89,7 +89,7 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
         p, q = (flow.number(x) for x in start)
         return Orbit(flow, ((p, q),), None, (zero, zero))
     rough = Flow(field, _ROUGH)
-    found = _Walk(rough, start, list(_shifts(hamiltonian))).back()
+    found = _Walk(rough, start, list(shifts(hamiltonian))).back()
     for more in _MORE:
         orbit = _polished(Flow(field, digits + more), start, found, digits, count)
         if orbit is not None:
@@ -117,7 +117,7 @@ def _at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool
     return False not in zero
 
 
-def _shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
+def shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
     """(0, 0) and ± the periods of H in p and in q, in units of 2π."""
     zero = Fraction(0)
     yield zero, zero

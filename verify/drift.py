@@ -1,0 +1,64 @@
+"""Whether a bounded run drifts: its energy moves on in one direction, however much it swings.
+
+The run is cut into eight stretches of equal length. A drift is a mean energy that moves in one
+direction from each to the next, by more in all than the means are uncertain; and that still does so
+in a run four times as long, so that no slow beat is taken for one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from statistics import fmean, pstdev
+
+from verify.followed import MOST_INTERPRETED, Case, Trail, follow_precisely
+from verify.motion import Motion
+
+_STRETCHES = 8
+_LONGER = 4
+_SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
+_SURE = 4.0  # standard errors of a mean
+_SLOWER = 16.0  # times less, at most, in the longer run
+
+
+def drift_of(motion: Motion) -> Fraction | None:
+    """The energy's change in a unit of time, in parts of its scale; None where none is seen."""
+    case, (trail, _) = motion.case, motion.precise
+    first = _rate(motion, case, trail)
+    if first is None:
+        return None
+    longer = replace(case, steps=_LONGER * trail.asked)
+    if longer.steps <= MOST_INTERPRETED:
+        again, _ = follow_precisely(longer, motion.digits)
+        if motion.stays(again):  # else it has drifted away
+            second = _rate(motion, longer, again)
+            if second is None or second / first < 1 / _SLOWER:
+                return None
+    return Fraction(first)
+
+
+def _rate(motion: Motion, case: Case, trail: Trail) -> float | None:
+    if not motion.orbit.scale or len(trail.points) < 4 * _STRETCHES:
+        return None
+    found = [motion.energy(point) for point in trail.points]
+    known = [x for x in found if x is not None]
+    if len(known) < len(found):
+        return None
+    errors = [float((x - known[0]) / motion.orbit.scale) for x in known]
+    length = len(errors) // _STRETCHES
+    parts = [errors[k * length : (k + 1) * length] for k in range(_STRETCHES)]
+    means = [fmean(part) for part in parts]
+    steps = [b - a for a, b in pairwise(means)]
+    moved = means[-1] - means[0]
+    if not (all(s > 0 for s in steps) or all(s < 0 for s in steps)) or abs(moved) < _SEEN:
+        return None
+    if abs(moved) < _SURE * _uncertain(errors, length):
+        return None
+    stretch = trail.points[length].step * float(case.step_size)
+    return float(moved / (stretch * (_STRETCHES - 1)))
+
+
+def _uncertain(errors: Sequence[float], count: int) -> float:
+    """The standard error of a mean of so many; second differences show the noise and no trend."""
+    bends = [a - 2 * b + c for a, b, c in zip(errors, errors[1:], errors[2:], strict=False)]
+    return pstdev(bends) / (6 * count) ** 0.5

@@ -1,0 +1,56 @@
+"""A scene's sections on stability → the tasks that they need."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from verify.exact import text
+from verify.formula import to_text
+from verify.scene import Scene
+from verify.tasks import LargestStepTask, StabilityMapTask, StabilityTask
+
+
+def _given(scene: Scene) -> dict[str, Any]:
+    exact = scene.exact_hamiltonian()
+    return {"hamiltonian": to_text(exact.expression), "parameters": dict(exact.values)}
+
+
+def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
+    """Each case with its name: scene, section, scheme, step size and which initial value."""
+    given = _given(scene) if scene.stability else {}
+    for section in scene.stability:
+        for scheme in section.schemes or scene.schemes:
+            for k, at in enumerate(section.initial_values, start=1):
+                for h in section.step_sizes:
+                    parts = [scene.name or "scene", section.name, scheme, f"h={text(h)}"]
+                    if len(section.initial_values) > 1:
+                        parts.append(f"z0 no. {k}")
+                    steps = section.steps_for(h)
+                    task = StabilityTask(
+                        **given, scheme=scheme, step_size=h, steps=steps, q=at.q, p=at.p
+                    )
+                    yield "/".join(filter(None, parts)), task
+
+
+def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
+    given = _given(scene) if scene.largest_step else {}
+    for section in scene.largest_step:
+        at = section.initial_value
+        for scheme in section.schemes or scene.schemes:
+            yield LargestStepTask(**given, scheme=scheme, time=section.time, q=at.q, p=at.p)
+
+
+def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
+    given = _given(scene) if scene.stability_map else {}
+    for section in scene.stability_map:
+        at = section.initial_value
+        for scheme in section.schemes or scene.schemes:
+            yield StabilityMapTask(
+                **given,
+                scheme=scheme,
+                parameter=section.parameter,
+                values=section.values,
+                step_sizes=section.step_sizes,
+                steps=section.steps,
+                q=at.q,
+                p=at.p,
+            )

@@ -1,0 +1,110 @@
+"""Tasks on stability → their results, with numbers as decimals."""
+
+from fractions import Fraction
+
+from verify.blame import Judgement, judge
+from verify.exact import decimal, text
+from verify.followed import Case
+from verify.formula import to_text
+from verify.hamiltonian import Hamiltonian
+from verify.stability import frequency, largest_step, linear_limit, stability_map
+from verify.stability_results import (
+    LargestStepResult,
+    MapCell,
+    StabilityMapResult,
+    StabilityResult,
+)
+from verify.tasks import LargestStepTask, StabilityMapTask, StabilityTask
+
+
+def judged(hamiltonian: Hamiltonian, task: StabilityTask) -> StabilityResult:
+    case = Case(hamiltonian, task.scheme, task.step_size, task.steps, task.p, task.q)
+    found = judge(case)
+    limit, h_omega = linear_limit(task.scheme), task.step_size * frequency(found.orbit)
+    return StabilityResult(
+        hamiltonian=to_text(hamiltonian.expression),
+        parameters=_shown(hamiltonian),
+        scheme=task.scheme,
+        step_size=text(task.step_size),
+        steps=task.steps,
+        q=text(task.q),
+        p=text(task.p),
+        kind=found.kind,
+        step=found.step,
+        rate=_rounded(found.rate),
+        energy_error=_rounded(found.energy_error),
+        h_omega=_rounded(h_omega) if h_omega else None,
+        linear_limit=_rounded(limit, 6),
+        exact_orbit=found.orbit.told,
+        detail=found.detail + _against_theory(found, h_omega, limit),
+    )
+
+
+def _against_theory(found: Judgement, h_omega: Fraction, limit: Fraction | None) -> str:
+    """What linear theory says of a scheme that is to blame."""
+    if found.kind != "unstable: scheme" or limit is None or not h_omega:
+        return ""
+    if limit == 0:
+        return "; in linear theory it is stable for no step size"
+    side = "beyond" if h_omega > limit else "within"
+    return f"; hω = {_plain(h_omega)} is {side} its linear limit {_plain(limit)}"
+
+
+def largest(hamiltonian: Hamiltonian, task: LargestStepTask) -> LargestStepResult:
+    found = largest_step(hamiltonian, task.scheme, task.p, task.q, task.time)
+    h = found.bounded
+    return LargestStepResult(
+        hamiltonian=to_text(hamiltonian.expression),
+        parameters=_shown(hamiltonian),
+        scheme=task.scheme,
+        time=text(task.time),
+        q=text(task.q),
+        p=text(task.p),
+        bounded=_rounded(h, 4),
+        unbounded=_rounded(found.unbounded, 4),
+        linear=_rounded(found.linear, 4),
+        h_omega=_rounded(h * frequency(found.orbit), 4) if h else None,
+        exact_orbit=found.orbit.told,
+        detail=found.detail,
+    )
+
+
+def mapped(hamiltonian: Hamiltonian, task: StabilityMapTask) -> StabilityMapResult:
+    rows = list(
+        stability_map(
+            hamiltonian,
+            task.scheme,
+            parameter=task.parameter,
+            values=task.values,
+            step_sizes=task.step_sizes,
+            steps=task.steps,
+            p=task.p,
+            q=task.q,
+        )
+    )
+    return StabilityMapResult(
+        hamiltonian=to_text(hamiltonian.expression),
+        parameters=_shown(hamiltonian),
+        scheme=task.scheme,
+        parameter=task.parameter,
+        values=tuple(map(text, task.values)),
+        step_sizes=tuple(map(text, task.step_sizes)),
+        steps=task.steps,
+        q=text(task.q),
+        p=text(task.p),
+        cells=tuple(tuple(MapCell(kind=x.kind, step=x.step) for x in row) for _, row in rows),
+        linear=tuple(_rounded(h, 4) for h, _ in rows),
+    )
+
+
+def _shown(hamiltonian: Hamiltonian) -> dict[str, str]:
+    return {name: text(value) for name, value in hamiltonian.values}
+
+
+def _rounded(x: Fraction | None, digits: int = 3) -> str | None:
+    return None if x is None else decimal(x, digits)
+
+
+def _plain(x: Fraction) -> str:
+    """Three digits, without an exponent where the number is of ordinary size."""
+    return f"{float(x):.3g}" if abs(x) < 10**300 else decimal(x, 3)
