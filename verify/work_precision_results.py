@@ -52,14 +52,14 @@ class CostResult(Frozen):
     """What one step executes: operations of the compiled loop, the same subexpression once.
 
     `functions`: calls by name. `gradient`: evaluations of H_p and H_q, where the scheme is made of
-    such; None where it is not.
+    such (explicit Runge–Kutta, kicks and drifts); None where it is not.
     """
 
     additions: int
     multiplications: int
     divisions: int
     functions: dict[str, int]
-    gradient: int | None
+    gradient: dict[str, int] | None
 
 
 class WorkLine(Frozen):

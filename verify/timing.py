@@ -1,0 +1,91 @@
+"""Run times: repeated in rounds, the timer's and the call's own time subtracted.
+
+The rounds go over all that is timed before any of it is timed again, so that a slow moment of the
+machine falls on all alike. A call that is short is repeated within one timing until that is well
+above the timer's resolution. Where the system can tell it, the time is the processor time of this
+thread, so that what other programs take of the processor does not count.
+"""
+
+import gc
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import repeat
+from statistics import median
+
+Call = Callable[[], object]
+_LEAST = 0.004  # seconds of one timing
+_RESOLVED = 1e-6  # a clock this fine will do
+_MOST_CALLS = 1 << 20
+
+
+@dataclass(frozen=True)
+class Timed:
+    """Seconds of one call, over the rounds."""
+
+    least: float
+    median: float
+
+
+@cache
+def clock() -> tuple[Callable[[], int], str]:
+    """What tells nanoseconds, and what it is."""
+    if hasattr(time, "thread_time_ns") and _resolution("thread_time") < _RESOLVED:
+        return time.thread_time_ns, "processor time of the thread"
+    return time.perf_counter_ns, "time on the clock"
+
+
+def _resolution(name: str) -> float:
+    return time.get_clock_info(name).resolution  # type: ignore[arg-type]
+
+
+def interleaved(calls: Sequence[Call], rounds: int) -> list[Timed]:
+    """Each call timed once in each round; every call is made once before, as a warm-up."""
+    counts = [_count(call) for call in calls]
+    found: list[list[float]] = [[] for _ in calls]
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for k in range(rounds):
+            order = range(len(calls)) if k % 2 == 0 else reversed(range(len(calls)))
+            for i in order:
+                found[i].append(_seconds(calls[i], counts[i]))
+    finally:
+        if collecting:
+            gc.enable()
+    return [Timed(min(each), median(each)) for each in found]
+
+
+def less(timed: Timed, blank: Timed) -> Timed:
+    """The time without that of the blank call; never below the clock's resolution."""
+    least = 1e-9
+    return Timed(
+        max(least, timed.least - blank.least), max(least, timed.median - blank.median)
+    )
+
+
+def nothing() -> None:
+    """A call that does nothing: what timing itself takes."""
+
+
+def _count(call: Call) -> int:
+    """So many calls that one timing of them is long enough."""
+    call()
+    count = 1
+    while count < _MOST_CALLS:
+        taken = _seconds(call, count) * count
+        if taken >= _LEAST:
+            return count
+        # Not all at once: a first timing may be slow by chance.
+        count = min(_MOST_CALLS, max(2 * count, int(count * _LEAST / max(taken, 1e-7) / 2)))
+    return count
+
+
+def _seconds(call: Call, count: int) -> float:
+    now, _ = clock()
+    calls = repeat(None, count)
+    begun = now()
+    for _ in calls:
+        call()
+    return (now() - begun) / count / 1e9
