@@ -80,7 +80,7 @@ def _scheme(motion: Motion) -> Judgement:
     if step is None:
         told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
         return Judgement("undecided", told, motion.orbit)
-    told = f"the scheme leaves the bounds in {motion.digits} and in {digits} digits"
+    told = f"the scheme leaves the bounds at step {step}, in {motion.digits} and in {digits} digits"
     if not motion.float64.finished:
         told += f"; float64 is out of its range from step {motion.float64.done + 1} on"
     return Judgement("unstable: scheme", told, motion.orbit, step=step)
@@ -126,7 +126,7 @@ def _range_alone(motion: Motion) -> bool:
 
 def _out_of_range(motion: Motion, here: Trail) -> Judgement:
     if here.finished:
-        told = "numbers vanish in float64 that 53 bits with wider exponents keep"
+        told = _vanished(motion) or "numbers vanish in float64 that wider exponents keep"
         return Judgement("underflow", told, motion.orbit)
     told = (
         "a number is beyond float64's range; with 53 bits and wider exponents the run stays within "

@@ -14,7 +14,7 @@ from verify.errors import InputError
 from verify.execute import Done, Store, execute
 from verify.findings import Findings
 from verify.perform import Result
-from verify.plan import Plan
+from verify.planned import Plan
 from verify.results import ClaimResult
 
 

@@ -11,7 +11,8 @@ from verify.claims import Claim, CriteriaClaim, GrowthClaim
 from verify.growth_claims import growth_tasks
 from verify.hamiltonian import Hamiltonian
 from verify.perform import Result
-from verify.plan import Plan, grid_task, proof_task
+from verify.plan import grid_task, proof_task
+from verify.planned import Plan
 from verify.runs import known_run
 from verify.scene import Scene
 from verify.tasks import RunTask, key

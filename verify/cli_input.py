@@ -76,6 +76,21 @@ def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
     return title, scenes, load_claims(folder / "claims.toml")
 
 
+SUITES = ("stiff", "extreme")
+
+
+def scenes_of(scene: str) -> "list[Scene]":
+    """The scenes of `paper`, of a suite, or of a scene's file, without any claims."""
+    from importlib.resources import files
+
+    from verify.scene import load_scene
+
+    if scene in SUITES:
+        folder = Path(str(files("reports") / "suites" / scene))
+        return [load_scene(path) for path in sorted(folder.glob("*.toml"))]
+    return target(scene)[1]
+
+
 def writable(folder: Path) -> None:
     """Makes the folder; InputError where that cannot be."""
     try:

@@ -1,25 +1,106 @@
-"""The command `verify stability`: linear theory, exactly."""
+"""The command `verify stability`: the runs of a scene, judged, and linear theory, exactly."""
+
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from verify import show
+from verify.cli_input import scenes_of, writable
 from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+    from verify.stability_findings import StabilityFindings
+
+_PLAIN = ("stable", "drifts")  # verdicts that say all there is
+_WIDTH, _IN = 100, " " * 6
 
 
 @click.command()
+@click.argument("scene", required=False, metavar="[SCENE]")
 @click.option("--linear", is_flag=True, help="On the harmonic oscillator, by exact algebra.")
-@click.option("--scheme", help="lie1, lie2, …, stormer-verlet, rk4, …")
+@click.option("--scheme", help="With --linear: lie1, lie2, …, stormer-verlet, rk4, …")
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep what is finished there; the same command goes on from it.",
+)
+@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
-def stability(linear: bool, scheme: str | None, as_json: bool) -> None:
-    """The interval of hω in which the scheme is stable on the harmonic oscillator.
+def stability(
+    scene: str | None,
+    linear: bool,
+    scheme: str | None,
+    keep: Path | None,
+    workers: int | None,
+    as_json: bool,
+) -> None:
+    """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
+
+    stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow.
+    Nothing of the scene is done but its [[stability]], [[largest_step]] and [[stability_map]].
 
     \b
+    verify stability stiff
     verify stability --linear --scheme lie4
     """
-    if not linear:
-        raise InputError("--linear", "", "is missing; scenes are not looked at yet")
-    if scheme is None:
-        raise InputError("--scheme", "", "is missing")
+    if linear:
+        if scene is not None:
+            raise InputError("SCENE", scene, "does not go with --linear")
+        if scheme is None:
+            raise InputError("--scheme", "", "is missing")
+        _linear(scheme, as_json)
+        return
+    if scene is None:
+        raise InputError("SCENE", "", "is missing; or give --linear --scheme NAME")
+    if scheme is not None:
+        raise InputError("--scheme", scheme, "goes with --linear; a scene names its own schemes")
+    _of_scenes(scene, scenes_of(scene), keep, workers, as_json)
+
+
+def _of_scenes(
+    given: str, scenes: "list[Scene]", keep: Path | None, workers: int | None, as_json: bool
+) -> None:
+    from verify.execute import Store, execute
+    from verify.progress import progress_bar
+    from verify.stability_findings import findings_of
+    from verify.stability_plan import plan_stability
+
+    plan = plan_stability(scenes)
+    if not plan.tasks:
+        problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
+        raise InputError("SCENE", given, problem)
+    if keep is not None:
+        writable(keep)
+    with progress_bar(f"{len(plan.tasks)} tasks", len(plan.tasks), unit="") as advance:
+        results = execute(plan, Store(keep), workers=workers, done=lambda *_: advance(1))
+    found = findings_of(scenes, results)
+    if as_json:
+        show.print_json(found.as_json())
+    else:
+        _print(found)
+
+
+def _print(found: "StabilityFindings") -> None:
+    width = max((len(case.verdict) for case in found.cases), default=0)
+    for case in found.cases:
+        click.echo(f"{case.verdict:{width}}  {case.id}")
+        if case.kind not in _PLAIN:
+            told = textwrap.fill(case.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
+            click.echo(told)
+    for step in found.largest_steps:
+        measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"
+        linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"
+        click.echo(f"{step.scheme}: {measured} until t = {step.time}; {linear}  {step.detail}")
+    for over in found.maps:
+        counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
+        click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
+
+
+def _linear(scheme: str, as_json: bool) -> None:
     from verify.formula import to_text
     from verify.linear_stability import linear_stability
 

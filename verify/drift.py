@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from math import sqrt
 from statistics import fmean, pstdev
 
 from verify.followed import MOST_INTERPRETED, Case, Trail, follow_precisely
@@ -16,18 +17,29 @@ from verify.motion import Motion
 
 _STRETCHES = 8
 _LONGER = 4
+_PERIODS = 8  # of the exact orbit, that the longer run lasts at least
 _SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
 _SURE = 4.0  # standard errors of a mean
 _SLOWER = 16.0  # times less, at most, in the longer run
 
 
 def drift_of(motion: Motion) -> Fraction | None:
-    """The energy's change in a unit of time, in parts of its scale; None where none is seen."""
+    """The energy's change in a unit of time, in parts of its scale; None where none is seen.
+
+    Of a motion that has died away within the time, over all of it.
+    """
     case, (trail, _) = motion.case, motion.precise
+    if motion.orbit.period is None:
+        return None
+    longer = replace(case, steps=_LONGER * trail.asked)
+    if longer.time < _PERIODS * motion.orbit.period:
+        return None  # its energy has not swung often enough to be told from a drift
+    if _died(motion, trail):
+        lost = _errors(motion, trail)
+        return Fraction(lost[-1] / float(case.time)) if lost else None
     first = _rate(motion, case, trail)
     if first is None:
         return None
-    longer = replace(case, steps=_LONGER * trail.asked)
     if longer.steps <= MOST_INTERPRETED:
         again, _ = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
@@ -37,16 +49,29 @@ def drift_of(motion: Motion) -> Fraction | None:
     return Fraction(first)
 
 
-def _rate(motion: Motion, case: Case, trail: Trail) -> float | None:
-    if not motion.orbit.scale or len(trail.points) < 4 * _STRETCHES:
-        return None
+def _died(motion: Motion, trail: Trail) -> bool:
+    """Whether at its end the run moves by a hundredth of the exact orbit's reach at most."""
+    last = trail.points[-max(2, len(trail.points) // _STRETCHES) :]
+    ends = [[getattr(point, name) for point in last] for name in ("p", "q")]
+    swings = zip(ends, motion.orbit.reach, motion.orbit.turns, strict=True)
+    return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
+
+
+def _errors(motion: Motion, trail: Trail) -> list[float]:
+    """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
     found = [motion.energy(point) for point in trail.points]
     known = [x for x in found if x is not None]
-    if len(known) < len(found):
+    if not motion.orbit.scale or len(known) < len(found):
+        return []
+    return [float((x - known[0]) / motion.orbit.scale) for x in known]
+
+
+def _rate(motion: Motion, case: Case, trail: Trail) -> float | None:
+    errors = _errors(motion, trail)
+    if len(errors) < 4 * _STRETCHES:
         return None
-    errors = [float((x - known[0]) / motion.orbit.scale) for x in known]
     length = len(errors) // _STRETCHES
-    parts = [errors[k * length : (k + 1) * length] for k in range(_STRETCHES)]
+    parts: list[list[float]] = [errors[k * length : (k + 1) * length] for k in range(_STRETCHES)]
     means = [fmean(part) for part in parts]
     steps = [b - a for a, b in pairwise(means)]
     moved = means[-1] - means[0]
@@ -61,4 +86,4 @@ def _rate(motion: Motion, case: Case, trail: Trail) -> float | None:
 def _uncertain(errors: Sequence[float], count: int) -> float:
     """The standard error of a mean of so many; second differences show the noise and no trend."""
     bends = [a - 2 * b + c for a, b, c in zip(errors, errors[1:], errors[2:], strict=False)]
-    return pstdev(bends) / (6 * count) ** 0.5
+    return pstdev(bends) / sqrt(6 * count)

@@ -19,6 +19,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
 _MAX_EXPONENT = 1000
 _MAX_LENGTH = 1000
 _MAX_BITS = 8000
+_SHORT = 10  # characters
 
 
 def rational(value: Exact, name: str = "number") -> Fraction:
@@ -91,6 +92,12 @@ def text(value: Fraction) -> str:
     digits = f"{abs(value.numerator) * 10**places // value.denominator:0{places + 1}d}"
     sign = "-" if value < 0 else ""
     return sign + (f"{digits[:-places]}.{digits[-places:]}" if places else digits)
+
+
+def short(value: Fraction) -> str:
+    """Its exact text where that is short, else three significant digits of it."""
+    written = text(value)
+    return written if len(written) <= _SHORT else decimal(value, 3)
 
 
 def decimal(value: Fraction, digits: int) -> str:

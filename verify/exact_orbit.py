@@ -37,7 +37,8 @@ class ExactOrbit:
     leaves every bound (escapes), or not followed to its end (unknown); `told` says more. `centre`
     and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit runs
     through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest
-    ω² = det Hess H on the orbit, `left_at` the time of an escape, about.
+    ω² = det Hess H on the orbit; `period` of a closed one and `left_at`, the time of an escape, are
+    known about.
     """
 
     kind: Kind
@@ -48,6 +49,7 @@ class ExactOrbit:
     scale: Fraction
     stiffness: Fraction
     energy: Fraction
+    period: Fraction | None = None
     left_at: float | None = None
 
 
@@ -141,7 +143,7 @@ class _Follow:
             if shift is not None:
                 kind: Kind = "rotates" if any(shift) else "closed"
                 told = f"{kind}, with a period of about {float(time):.4g}"
-                return self.found(kind, told, shift)
+                return self.found(kind, told, shift, period=self.arithmetic.exact(time))
             z = after
             if time >= self.time:
                 return self.found("open", f"is still under way at t = {float(time):.6g}")
@@ -209,7 +211,12 @@ class _Follow:
         return (middle[0], middle[1]), (reach[0], reach[1])
 
     def found(
-        self, kind: Kind, told: str, shift: Sequence[Number] = (0, 0), left_at: float | None = None
+        self,
+        kind: Kind,
+        told: str,
+        shift: Sequence[Number] = (0, 0),
+        period: Fraction | None = None,
+        left_at: float | None = None,
     ) -> ExactOrbit:
         exact, zero = self.arithmetic.exact, self.number(Fraction(0))
         with self.arithmetic.context():
@@ -232,6 +239,7 @@ class _Follow:
             scale=scale,
             stiffness=exact(stiffest),
             energy=exact(self.energy),
+            period=period,
             left_at=left_at,
         )
 

@@ -18,7 +18,7 @@ from pydantic import ValidationError
 from verify.float_bounds import DIRECT_STEPS
 from verify.keeping import Keeper, fingerprint, write_atomically
 from verify.perform import Result, perform, result_model
-from verify.plan import Plan
+from verify.planned import Plan
 from verify.runs import AUTO
 from verify.tasks import RunTask, SeparationTask, Task, WorkPrecisionTask
 

@@ -1,50 +1,20 @@
 """What is asked → what is needed: tasks, each once, with reasons; and what is left out and why."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
 from verify.exact import text
 from verify.formula import to_text
+from verify.planned import Plan
 from verify.runs import CLOSED_FORM
 from verify.scene import Grid, Scene
 from verify.schemes import get
 from verify.section_plan import work_precision_task
-from verify.stability_plan import largest_step_tasks, stability_map_tasks, stability_tasks
-from verify.tasks import EveryTask, GrowthTask, ProofTask, RunTask, SeparationTask, Task, key
+from verify.stability_plan import need_stability
+from verify.tasks import EveryTask, GrowthTask, ProofTask, RunTask, SeparationTask
 
 SEPARATED_DIGITS = 6  # of each part
 AVERAGE_DIGITS = 30
-
-
-@dataclass
-class Plan:
-    """Tasks in the order they are asked for, each with every reason for it."""
-
-    tasks: dict[str, Task] = field(default_factory=dict)
-    reasons: dict[str, list[str]] = field(default_factory=dict)
-    left_out: list[tuple[str, str]] = field(default_factory=list)
-
-    def need(self, task: Task, reason: str) -> None:
-        name = key(task)
-        self.tasks.setdefault(name, task)
-        reasons = self.reasons.setdefault(name, [])
-        if reason not in reasons:
-            reasons.append(reason)
-
-    def leave_out(self, what: str, why: str) -> None:
-        if (what, why) not in self.left_out:
-            self.left_out.append((what, why))
-
-    def as_json(self) -> dict[str, Any]:
-        return {
-            "tasks": [
-                {**task.model_dump(mode="json"), "reasons": self.reasons[name]}
-                for name, task in self.tasks.items()
-            ],
-            "left_out": [{"what": what, "why": why} for what, why in self.left_out],
-        }
 
 
 def plan_scenes(scenes: list[Scene]) -> Plan:
@@ -135,12 +105,7 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
         plan.need(task, f"{name}: error against run time")
         for peer, why in task.peers_left_out:
             plan.leave_out(f"{name}: {peer} beside the schemes", why)
-    for case, judged in stability_tasks(scene):
-        plan.need(judged, f"{case}: is it stable, and whose fault is it if not")
-    for largest in largest_step_tasks(scene):
-        plan.need(largest, f"{name}: the largest step with bounded motion")
-    for over in stability_map_tasks(scene):
-        plan.need(over, f"{name}: stability over step size and {over.parameter}")
+    need_stability(plan, scene)
     for what, why, asked in _SECTIONS:
         if not asked(scene):
             plan.leave_out(f"{name}: {what}", why)

@@ -15,12 +15,14 @@ from verify.execute import Done, Store, execute
 from verify.findings import Findings
 from verify.formula import to_text
 from verify.keeping import versions
-from verify.plan import Plan, plan_scenes, series_task
+from verify.plan import plan_scenes, series_task
+from verify.planned import Plan
 from verify.results import EveryResult, GrowthLawResult, RunResult, SeparationGrid
 from verify.scene import Scene
 from verify.scene_results import Provenance, Report, SceneResult
 from verify.section_plan import work_precision_task
 from verify.separation import as_grid
+from verify.stability_findings import judged_cases, largest_steps, stability_maps
 from verify.tasks import EveryTask, key
 from verify.work_precision_results import WorkPrecisionResult
 
@@ -90,6 +92,9 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         growth_laws=_growth_laws(scene, findings),
         growth_explains=scene.grid.growth_explains if scene.grid else "",
         work_precision=_work_precision(scene, findings),
+        stability=judged_cases(scene, findings.results),
+        largest_steps=largest_steps(scene, findings.results),
+        stability_maps=stability_maps(scene, findings.results),
     )
 
 

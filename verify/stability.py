@@ -126,7 +126,7 @@ def stability_map(
     p: Fraction,
     q: Fraction,
 ) -> Iterator[tuple[Fraction | None, list[Judgement]]]:
-    """For each value of the parameter: the step size that linear theory allows, and the verdicts."""
+    """For each value of the parameter: the step size of linear theory, and the verdicts."""
     given = dict(hamiltonian.values)
     limit = linear_limit(scheme)
     for value in values:

@@ -3,10 +3,30 @@
 from collections.abc import Iterator
 from typing import Any
 
-from verify.exact import text
+from verify.exact import short
 from verify.formula import to_text
+from verify.planned import Plan
 from verify.scene import Scene
 from verify.tasks import LargestStepTask, StabilityMapTask, StabilityTask
+
+
+def plan_stability(scenes: list[Scene]) -> Plan:
+    """What the scenes ask for of stability, and nothing else of them."""
+    plan = Plan()
+    for scene in scenes:
+        need_stability(plan, scene)
+    return plan
+
+
+def need_stability(plan: Plan, scene: Scene) -> None:
+    """Adds what the scene asks for of stability."""
+    name = scene.name or scene.title or "scene"
+    for case, judged in stability_tasks(scene):
+        plan.need(judged, f"{case}: is it stable, and whose fault is it if not")
+    for largest in largest_step_tasks(scene):
+        plan.need(largest, f"{name}: the largest step with bounded motion")
+    for over in stability_map_tasks(scene):
+        plan.need(over, f"{name}: stability over step size and {over.parameter}")
 
 
 def _given(scene: Scene) -> dict[str, Any]:
@@ -21,7 +41,7 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
         for scheme in section.schemes or scene.schemes:
             for k, at in enumerate(section.initial_values, start=1):
                 for h in section.step_sizes:
-                    parts = [scene.name or "scene", section.name, scheme, f"h={text(h)}"]
+                    parts = [scene.name or "scene", section.name, scheme, f"h={short(h)}"]
                     if len(section.initial_values) > 1:
                         parts.append(f"z0 no. {k}")
                     steps = section.steps_for(h)

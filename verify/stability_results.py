@@ -1,5 +1,6 @@
 """What was found of a scheme's stability: frozen results."""
 
+from collections import Counter
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -95,3 +96,8 @@ class StabilityMapResult(Frozen):
     p: str
     cells: tuple[tuple[MapCell, ...], ...]
     linear: tuple[str | None, ...]
+
+    def counted(self) -> dict[Kind, int]:
+        """How many cells there are of each kind that occurs."""
+        seen = Counter(cell.kind for row in self.cells for cell in row)
+        return {kind: seen[kind] for kind in KINDS if seen[kind]}

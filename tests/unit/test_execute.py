@@ -20,7 +20,8 @@ from verify.errors import InputError
 from verify.execute import Store, execute
 from verify.keeping import fingerprint, write_atomically
 from verify.perform import Result
-from verify.plan import Plan, plan_scenes
+from verify.plan import plan_scenes
+from verify.planned import Plan
 from verify.tasks import ProofTask
 
 CONTENT = (
@@ -268,7 +269,7 @@ INTERRUPTED = """
 import sys, time
 from fractions import Fraction
 from verify.execute import Store, execute
-from verify.plan import Plan
+from verify.planned import Plan
 from verify.tasks import RunTask
 
 def stop(name, result):

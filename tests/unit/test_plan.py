@@ -8,7 +8,8 @@ import pytest
 
 from tests.unit.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
-from verify.plan import Plan, plan_scenes
+from verify.plan import plan_scenes
+from verify.planned import Plan
 from verify.runs import CLOSED_FORM
 from verify.scene import load_scene
 from verify.tasks import GrowthTask, RunTask, key
