@@ -59,11 +59,9 @@ def _died(motion: Motion, trail: Trail) -> bool:
 
 def _errors(motion: Motion, trail: Trail) -> list[float]:
     """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
-    found = [motion.energy(point) for point in trail.points]
-    known = [x for x in found if x is not None]
-    if not motion.orbit.scale or len(known) < len(found):
-        return []
-    return [float((x - known[0]) / motion.orbit.scale) for x in known]
+    found = motion.energy_errors(trail)
+    known = [float(x) for x in found if x is not None]
+    return known if motion.orbit.scale and len(known) == len(found) else []
 
 
 def _rate(motion: Motion, case: Case, trail: Trail) -> float | None:

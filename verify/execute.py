@@ -20,12 +20,22 @@ from verify.keeping import Keeper, fingerprint, write_atomically
 from verify.perform import Result, perform, result_model
 from verify.planned import Plan
 from verify.runs import AUTO
-from verify.tasks import RunTask, SeparationTask, Task, WorkPrecisionTask
+from verify.tasks import (
+    LargestStepTask,
+    RunTask,
+    SeparationTask,
+    StabilityMapTask,
+    StabilityTask,
+    Task,
+    WorkPrecisionTask,
+)
 
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
 _VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
+_CASE_COST = 2_000_000  # about what a case costs that is judged, however short
+_CASES_OF_BISECTION = 20
 _POINT_COST = 30_000_000  # of a point of error against run time: some tenths of a second
 # In float64 steps; an arithmetic that is not listed counts as one in between.
 _STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000}
@@ -100,6 +110,12 @@ def cost(task: Task) -> int:
     """About how many float64 steps the task is worth."""
     if isinstance(task, WorkPrecisionTask):
         return _POINT_COST * len(task.schemes) * len(task.step_sizes)
+    if isinstance(task, StabilityMapTask):
+        return _CASE_COST * len(task.values) * len(task.step_sizes)
+    if isinstance(task, LargestStepTask):
+        return _CASE_COST * _CASES_OF_BISECTION
+    if isinstance(task, StabilityTask):
+        return _CASE_COST + task.steps * _STEP_COST["fixed"]
     if isinstance(task, SeparationTask):
         return 3 * task.steps * _STEP_COST[AUTO]
     if isinstance(task, RunTask):

@@ -13,7 +13,8 @@ from verify.hamiltonian import Hamiltonian
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.stepping import Job
 
-_SECTIONS = 512
+_SECTIONS = 128, 512  # of a trail, at least and at most
+_BETWEEN = 64  # steps between two of them, where that makes so many
 _WORTH_COMPILING = 60_000  # steps, as in `verify.digits`
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
@@ -59,9 +60,11 @@ class Trail:
 def follow(case: Case, arithmetic: Arithmetic) -> Trail:
     """The case in this arithmetic. Raises UnsupportedError where that lacks a function."""
     start = {"p": case.p, "q": case.q, "h": case.step_size}
-    job = Job(case.hamiltonian, case.scheme, start, case.steps, frozenset(), 0, sections=_SECTIONS)
-    outcome = job.go(arithmetic)
-    section = -(-case.steps // _SECTIONS)
+    fewest, most = _SECTIONS
+    sections = min(most, max(fewest, case.steps // _BETWEEN))
+    asked = case.hamiltonian, case.scheme, start, case.steps, frozenset[str](), 0
+    outcome = Job(*asked, sections=sections).go(arithmetic)
+    section = -(-case.steps // sections)
     points = [Point(0, case.p, case.q)]
     for k, state in enumerate(outcome.trail, start=1):
         points.append(Point(min(k * section, case.steps), state["p"], state["q"]))

@@ -35,6 +35,7 @@ class Motion:
         self.orbit = exact_orbit(case.hamiltonian, case.p, case.q, case.time)
         # More where the initial value is written with more.
         self.digits = _DIGITS + written_digits((case.p, case.q))
+        self._errors: dict[int, tuple[Trail, list[Fraction | None]]] = {}
 
     @cached_property
     def float64(self) -> Trail:
@@ -73,29 +74,39 @@ class Motion:
         return self.energy(Point(0, self.case.p, self.case.q))
 
     def energy_error(self, point: Point) -> Fraction | None:
-        """|H − H(z₀)| in parts of the orbit's scale."""
+        """H − H(z₀) in parts of the orbit's scale."""
         first, here = self._first_energy, self.energy(point)
         if first is None or here is None:
             return None
-        return abs(here - first) / (self.orbit.scale or 1)
+        return (here - first) / (self.orbit.scale or 1)
+
+    def energy_errors(self, trail: Trail) -> list[Fraction | None]:
+        """Those of a run's points, computed once."""
+        if id(trail) not in self._errors:
+            errors = [self.energy_error(point) for point in trail.points]
+            self._errors[id(trail)] = trail, errors
+        return self._errors[id(trail)][1]
 
     def worst(self, trail: Trail) -> Fraction | None:
-        """The greatest energy error seen in a run."""
-        found = (self.energy_error(point) for point in trail.points)
-        return max((x for x in found if x is not None), default=None)
+        """The greatest energy error seen in a run, in size."""
+        errors = self.energy_errors(trail)
+        return max((abs(x) for x in errors if x is not None), default=None)
 
-    def beyond(self, point: Point) -> bool:
-        """Whether a point is out of the exact orbit's bounds."""
+    def outside(self, point: Point) -> bool:
+        """Whether p or q is out of the exact orbit's bounds."""
         orbit = self.orbit
         found = zip((point.p, point.q), orbit.centre, orbit.reach, orbit.turns, strict=True)
-        if any(abs(x - c) > _BEYOND * (r or 1) for x, c, r, turns in found if not turns):
-            return True
-        error = self.energy_error(point)
-        return error is None or error > _ENERGY
+        return any(abs(x - c) > _BEYOND * (r or 1) for x, c, r, turns in found if not turns)
+
+    def beyond(self, point: Point) -> bool:
+        """Whether a point is out of the exact orbit's bounds, its energy included."""
+        return self.outside(point) or _too_much(self.energy_error(point))
 
     def stays(self, trail: Trail) -> bool:
         """Whether a run keeps within the bounds, to its end."""
-        return trail.finished and not any(map(self.beyond, trail.points))
+        if not trail.finished or any(map(self.outside, trail.points)):
+            return False
+        return not any(map(_too_much, self.energy_errors(trail)))
 
     def apart(self, one: Point, other: Point) -> bool:
         pairs = zip((one.p, one.q), (other.p, other.q), self.orbit.reach, strict=True)
@@ -105,3 +116,7 @@ class Motion:
         """Whether two runs of as many steps both end, and are together all the way."""
         pairs = zip(one.points, other.points, strict=True)
         return one.finished and other.finished and not any(self.apart(*x) for x in pairs)
+
+
+def _too_much(error: Fraction | None) -> bool:
+    return error is None or abs(error) > _ENERGY
