@@ -60,9 +60,7 @@ def interleaved(calls: Sequence[Call], rounds: int) -> list[Timed]:
 def less(timed: Timed, blank: Timed) -> Timed:
     """The time without that of the blank call; never below the clock's resolution."""
     least = 1e-9
-    return Timed(
-        max(least, timed.least - blank.least), max(least, timed.median - blank.median)
-    )
+    return Timed(max(least, timed.least - blank.least), max(least, timed.median - blank.median))
 
 
 def nothing() -> None:

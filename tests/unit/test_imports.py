@@ -120,7 +120,7 @@ def test_numba_numpy_and_matplotlib_are_imported_only_where_they_are_used(path: 
 @every_module
 def test_only_what_is_declared_is_imported(path: Path) -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
-                "llvmlite", "matplotlib", "jinja2", "markupsafe", "verify", "reports",
-                "reference"}  # fmt: skip
+                "llvmlite", "heyoka", "scipy", "matplotlib", "jinja2", "markupsafe",
+                "verify", "reports", "reference"}  # fmt: skip
     names = roots(imported(path, everywhere=True))
     assert names - set(sys.stdlib_module_names) <= declared
