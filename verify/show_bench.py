@@ -72,8 +72,14 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
     from rich.table import Table
 
     title = f"{name}: error at T = {result.time} against run time"
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for head in ("scheme", "h or tol.", "N", "error", "Λ", "energy", "seconds", "limited by"):
+    table = Table(
+        title=title,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+        collapse_padding=True,
+    )
+    for head in ("scheme", "h or tol.", "N", "error", "Λ", "seconds", "limited by"):
         left = head in ("scheme", "limited by")
         table.add_column(head, justify="left" if left else "right", no_wrap=not left)
     for line in result.lines:
@@ -88,7 +94,7 @@ def _row(point: "WorkPoint") -> tuple[str, ...]:
     return (
         point.step_size or point.tolerance or "",
         "" if point.steps is None else str(point.steps),
-        *map(_few, (point.error, point.lam, point.energy)),
+        *map(_few, (point.error, point.lam)),
         _seconds(point.seconds_median),
         failed,
     )
