@@ -19,6 +19,7 @@ from verify.scene_results import SceneResult
 if TYPE_CHECKING:
     from reports.growth_view import GrowthView
     from reports.separation_view import SeparationView
+    from reports.work_precision_view import WorkPrecisionView
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class SceneView:
     floors: str  # a sentence on the step sizes that do not divide the time
     tables: tuple[TableView, ...]
     schemes: tuple[SchemeView, ...]
+    work_precision: "WorkPrecisionView | None"
 
 
 def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> SceneView:
@@ -69,6 +71,7 @@ def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> 
             _scheme_view(scene, proof, f"scheme-{index}-of-{anchor}")
             for index, proof in enumerate(scene.proofs)
         ),
+        work_precision=_work_precision(scene, anchor),
     )
 
 
@@ -118,6 +121,15 @@ def _growth(scene: SceneResult, scheme: str, anchor: str) -> "GrowthView | None"
     from reports.growth_view import growth_view
 
     return growth_view(own, name=anchor, explains=scene.growth_explains)
+
+
+def _work_precision(scene: SceneResult, anchor: str) -> "WorkPrecisionView | None":
+    """Error against run time, imported only where it was asked for."""
+    if scene.work_precision is None:
+        return None
+    from reports.work_precision_view import work_precision_view
+
+    return work_precision_view(scene.work_precision, name=anchor)
 
 
 def _floors(scene: SceneResult) -> str:

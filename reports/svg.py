@@ -6,7 +6,7 @@ series colours are custom properties with the light theme's colour as their fall
 
 import io
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
@@ -183,3 +183,23 @@ def _straight(x: str, y: str, to_x: str, to_y: str) -> str:
     if x == to_x:
         return "" if y == to_y else f"V{to_y}"
     return f"H{to_x}" if y == to_y else f"L{to_x} {to_y}"
+
+
+def document(figures: Sequence[Markup]) -> str:
+    """Inline figures below one another as one SVG document, on white."""
+    boxes = [ElementTree.fromstring(str(svg)) for svg in figures]  # noqa: S314 - our own
+    sizes = [[float(x) for x in box.get("viewBox", "0 0 0 0").split()[2:]] for box in boxes]
+    width, height = max((w for w, _ in sizes), default=1.0), sum(h for _, h in sizes)
+    root = ElementTree.Element(
+        "svg", xmlns=_SVG, viewBox=f"0 0 {width:g} {height:g}", width=f"{width:g}pt",
+        height=f"{height:g}pt", style='font-family: "DejaVu Sans", Verdana, sans-serif',
+    )  # fmt: skip
+    ElementTree.SubElement(root, "rect", width="100%", height="100%", fill="#fff")
+    top = 0.0
+    for box, (w, h) in zip(boxes, sizes, strict=True):
+        box.set("y", f"{top:g}")
+        box.set("width", f"{w:g}")
+        box.set("height", f"{h:g}")
+        root.append(box)
+        top += h
+    return ElementTree.tostring(root, encoding="unicode") + "\n"

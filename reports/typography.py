@@ -12,6 +12,7 @@ from markupsafe import Markup, escape
 
 from reports import mathml
 from verify.results import AverageResult, RunResult, SeparationResult, Value
+from verify.work_precision_results import WorkPrecisionResult
 
 NBSP = "\u00a0"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
@@ -88,7 +89,7 @@ def grouped(text: str) -> Markup:
     return Markup('<span class="digits">{}</span>').format(Markup("<br>").join(rows))
 
 
-def start(run: RunResult | SeparationResult | AverageResult) -> str:
+def start(run: RunResult | SeparationResult | AverageResult | WorkPrecisionResult) -> str:
     """A run's initial value."""
     q, p = number(run.q), number(run.p)
     return f"q₀{NBSP}={NBSP}{q}, p₀{NBSP}={NBSP}{p}"

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from verify import show
+from verify.cli_bench import bench
 from verify.cli_check import check
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
@@ -44,6 +45,7 @@ cli.add_command(prove)
 cli.add_command(certificate)
 cli.add_command(stability)
 cli.add_command(check)
+cli.add_command(bench)
 
 
 @cli.command()

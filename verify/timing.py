@@ -15,7 +15,7 @@ from itertools import repeat
 from statistics import median
 
 Call = Callable[[], object]
-_LEAST = 0.004  # seconds of one timing
+_LEAST = 0.01  # seconds of one timing
 _RESOLVED = 1e-6  # a clock this fine will do
 _MOST_CALLS = 1 << 20
 

@@ -62,7 +62,8 @@ ABOVE = {"reports", "reference", "tests"}
 
 @every_module
 def test_verify_imports_nothing_that_stands_above_it(path: Path) -> None:
-    allowed = {"reports", "reference"} if name_of(path) == "verify.cli" else set()
+    commands = ("verify.cli", "verify.cli_bench")
+    allowed = {"reports", "reference"} if name_of(path) in commands else set()
     assert not roots(imported(path)) & ABOVE
     assert roots(imported(path, everywhere=True)) & ABOVE <= allowed
 
@@ -120,7 +121,7 @@ def test_numba_numpy_and_matplotlib_are_imported_only_where_they_are_used(path: 
 @every_module
 def test_only_what_is_declared_is_imported(path: Path) -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
-                "llvmlite", "matplotlib", "jinja2", "markupsafe", "verify", "reports",
-                "reference"}  # fmt: skip
+                "llvmlite", "heyoka", "scipy", "matplotlib", "jinja2", "markupsafe",
+                "verify", "reports", "reference"}  # fmt: skip
     names = roots(imported(path, everywhere=True))
     assert names - set(sys.stdlib_module_names) <= declared

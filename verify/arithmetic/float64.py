@@ -7,6 +7,7 @@ overflow give infinities and NaN, which the run finds.
 import math
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -36,6 +37,11 @@ def make(digits: int) -> Arithmetic:
         pipelined=True,
         chunk=1 << 22,
     )
+
+
+def compiled_at_once() -> Arithmetic:
+    """The same number system, each kernel compiled at its first call: for timing it."""
+    return replace(make(17), compile=_compiled)
 
 
 def _number(value: Fraction) -> float:
