@@ -19,6 +19,7 @@ from verify.scene_results import SceneResult
 if TYPE_CHECKING:
     from reports.growth_view import GrowthView
     from reports.separation_view import SeparationView
+    from reports.stability_view import StabilityView
     from reports.work_precision_view import WorkPrecisionView
 
 
@@ -54,6 +55,7 @@ class SceneView:
     tables: tuple[TableView, ...]
     schemes: tuple[SchemeView, ...]
     work_precision: "WorkPrecisionView | None"
+    stability: "StabilityView | None"
 
 
 def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> SceneView:
@@ -72,6 +74,7 @@ def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> 
             for index, proof in enumerate(scene.proofs)
         ),
         work_precision=_work_precision(scene, anchor),
+        stability=_stability(scene, anchor),
     )
 
 
@@ -121,6 +124,15 @@ def _growth(scene: SceneResult, scheme: str, anchor: str) -> "GrowthView | None"
     from reports.growth_view import growth_view
 
     return growth_view(own, name=anchor, explains=scene.growth_explains)
+
+
+def _stability(scene: SceneResult, anchor: str) -> "StabilityView | None":
+    """How stable its schemes are, imported only where it was asked for."""
+    if not (scene.stability or scene.largest_steps or scene.stability_maps):
+        return None
+    from reports.stability_view import stability_view
+
+    return stability_view(scene, anchor)
 
 
 def _work_precision(scene: SceneResult, anchor: str) -> "WorkPrecisionView | None":

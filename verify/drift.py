@@ -9,16 +9,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from math import sqrt
+from math import ceil, sqrt
 from statistics import fmean, pstdev
 
-from verify.followed import MOST_INTERPRETED, Case, Trail, follow_precisely
+from verify.followed import MOST_INTERPRETED, Case, Trail, follow, follow_precisely
 from verify.motion import Motion
 
 _STRETCHES = 8
 _LONGER = 4
 _PERIODS = 8  # of the exact orbit, that the longer run lasts at least
 _SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
+_MOST_LOOKED_AT = 20_000  # steps of a last period
 _SURE = 4.0  # standard errors of a mean
 _SLOWER = 16.0  # times less, at most, in the longer run
 
@@ -50,9 +51,21 @@ def drift_of(motion: Motion) -> Fraction | None:
 
 
 def _died(motion: Motion, trail: Trail) -> bool:
-    """Whether at its end the run moves by a hundredth of the exact orbit's reach at most."""
-    last = trail.points[-max(2, len(trail.points) // _STRETCHES) :]
-    ends = [[getattr(point, name) for point in last] for name in ("p", "q")]
+    """Whether at its end the run moves by a hundredth of the exact orbit's reach at most.
+
+    Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
+    """
+    last = trail.points[-1]
+    if (
+        motion.orbit.period is None
+        or not trail.finished
+        or (_errors(motion, trail) or [0.0])[-1] == 0
+    ):
+        return False
+    steps = min(_MOST_LOOKED_AT, ceil(motion.orbit.period / motion.case.step_size))
+    onwards = replace(motion.case, p=last.p, q=last.q, steps=max(2, steps))
+    seen = follow(onwards, motion.precise[1]).points
+    ends = [[getattr(point, name) for point in seen] for name in ("p", "q")]
     swings = zip(ends, motion.orbit.reach, motion.orbit.turns, strict=True)
     return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
 
