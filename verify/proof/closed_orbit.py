@@ -83,7 +83,7 @@ class Orbit:
 def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> Orbit:
     """The orbit through z₀ = (p, q) at `count` times. Raises NoFlowError where it is not closed."""
     field, _ = hamiltonian.field()
-    if _at_rest(hamiltonian, field, start):
+    if at_rest(hamiltonian, field, start):
         flow = Flow(field, digits)
         zero = flow.number(Fraction(0))
         p, q = (flow.number(x) for x in start)
@@ -100,8 +100,8 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
     )
 
 
-def _at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool:
-    """Whether z₀ is an equilibrium, by algebra."""
+def at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool:
+    """Whether z₀ is an equilibrium, by algebra. Raises NoFlowError where H is not defined there."""
     ring = field.ring
     numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
     point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))

@@ -23,6 +23,8 @@ State = tuple[Number, Number]  # p, q
 _GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
 _LOST = 8
 _HALVINGS = 12
+_MOST_STEPS = 200_000  # of one orbit: minutes
+_SHORTEST = 200  # halvings of the first step, after which time stands still
 LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
 _STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
 
@@ -91,6 +93,41 @@ class Flow:
             half = time / 2
         middle = self.advance(z, half, halvings - 1)
         return self.advance(middle, half, halvings - 1)
+
+    def follow(self, z: State, time: Fraction, most_steps: int = _MOST_STEPS) -> State:
+        """φ_time(z) for any time, also a long or a negative one, by at most so many steps.
+
+        A step is as long as its accuracy allows. Raises NoFlowError, naming the time reached.
+        """
+        number = self.number
+        goal, done = number(abs(time)), number(Fraction(0))
+        sign = -1 if time < 0 else 1
+        step = shortest = goal
+        for k in range(most_steps):
+            if done >= goal:
+                return z
+            with self.arithmetic.context():
+                if k == 0:
+                    step = self._first_step(z, goal)
+                    shortest = step / 2**_SHORTEST
+                last = done + step >= goal
+                step = goal - done if last else step
+            after = self.step(z, sign * step)
+            with self.arithmetic.context():
+                if after is None:
+                    step = step / 2
+                    if step < shortest or done + step == done:
+                        raise NoFlowError(f"{LOST}, at about t = {float(sign * done):.6g}")
+                else:
+                    z, done = after, goal if last else done + step
+                    step = step * 3 / 2
+        raise NoFlowError(f"{most_steps} steps lead only to t = {float(sign * done):.6g}")
+
+    def _first_step(self, z: State, goal: Number) -> Number:
+        """A guess: the time in which the state would become different."""
+        p, q = self._slopes(*z)
+        speed = abs(p) + abs(q)
+        return min(goal, (1 + abs(z[0]) + abs(z[1])) / speed) if speed else goal
 
     def _extrapolated(self, z: State, time: Number) -> State | None:
         """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
