@@ -69,6 +69,8 @@ def _followed(hamiltonian: Hamiltonian, start: State, time: Fraction, digits: in
             bound = _SAFETY * max(abs(after[0] - before[0]), abs(after[1] - before[1]))
             scale = max(map(abs, (*start, *after)))
             if bound * 10**digits <= scale:
-                return Solution(*after, bound, "extrapolated numerical flow (Gragg, Bulirsch, Stoer)")
+                return Solution(
+                    *after, bound, "extrapolated numerical flow (Gragg, Bulirsch, Stoer)"
+                )
         before = after
     raise NoFlowError("the digits asked for are lost along the orbit")
