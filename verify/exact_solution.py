@@ -48,7 +48,7 @@ def exact_solution(
 
 
 def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction) -> str | None:
-    """Whether the exact solution leaves every bound: how, as a short statement; None if it does not.
+    """How the exact solution leaves every bound, as a short statement; None if it does not.
 
     It does where it blows up within the time, or goes to infinity as t grows. A statement that
     begins with "not known" says that neither was found out.

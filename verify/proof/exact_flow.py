@@ -112,7 +112,8 @@ class Flow:
                     shortest = step / 2**_SHORTEST
                 last = done + step >= goal
                 step = goal - done if last else step
-            after = self.step(z, sign * step)
+                signed = sign * step
+            after = self.step(z, signed)
             with self.arithmetic.context():
                 if after is None:
                     step = step / 2
