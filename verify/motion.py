@@ -1,0 +1,37 @@
+"""The exact solution through one initial value in closed form: what a named system knows of it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+Context = Any  # mpmath's MPContext, which has no type stubs: one of its own for each evaluation
+Number = Any  # a real number of that context
+Values = Mapping[str, Fraction]  # a system's parameters
+State = tuple[Number, Number]  # p, q
+
+
+@dataclass(frozen=True)
+class Motion:
+    """t ↦ (p, q) through one initial value, in closed form.
+
+    `state(mp, t)` evaluates it in the context's precision, of which it may lose a few digits, and
+    `lost` more. `blow_up(mp, sign)` is |t| where the solution ends, forwards (1) or backwards (−1)
+    in time, None where it does not. `goes`: how it goes to infinity as t grows, where it does so
+    without an end; None where it stays bounded or blows up.
+    """
+
+    state: Callable[[Context, Number], State]
+    method: str
+    lost: int = 0
+    blow_up: Callable[[Context, int], Number | None] = lambda _, __: None
+    goes: str | None = None
+
+
+Flow = Callable[[Values, Fraction, Fraction], Motion | None]
+"""(parameters, p, q) ↦ the motion; None where these parameters have no closed form."""
+
+
+def number(mp: Context, x: Fraction) -> Number:
+    """An exact rational, rounded once."""
+    return mp.mpf(x.numerator) / x.denominator
