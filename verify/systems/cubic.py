@@ -14,7 +14,7 @@ SYSTEM = System(
     regimes={
         "well": {"p": "1/10", "q": "1/2"},
         "separatrix": {"p": "0", "q": "-1/2"},
-        "separatrix-outside": {"p": "-4/3", "q": "5/2"},
+        "separatrix-outside": {"p": "-45/16", "q": "23/8"},
         "escape": {"p": "1", "q": "1/2"},
         "escape-after-turning": {"p": "-1", "q": "1/2"},
         "escape-from-beyond": {"p": "-1/3", "q": "2"},

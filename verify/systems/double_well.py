@@ -18,7 +18,7 @@ SYSTEM = System(
         "left-well": {"b": "1", "p": "1/10", "q": "-3/4"},
         "right-well": {"b": "3/2", "p": "1/10", "q": "1"},
         "over-the-barrier": {"b": "1", "p": "-4/5", "q": "1/3"},
-        "separatrix": {"b": "1", "p": "7/25", "q": "2/5"},
+        "separatrix": {"b": "1", "p": "4/9", "q": "4/3"},
         "near-separatrix": {"b": "1", "p": "1e-15", "q": "0"},
         "saddle": {"b": "1", "p": "0", "q": "0"},
     },

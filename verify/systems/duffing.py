@@ -20,6 +20,7 @@ SYSTEM = System(
         "soft-inside": {"delta": "-1", "p": "1/10", "q": "1/2"},
         "soft-separatrix": {"delta": "-2", "p": "1/2", "q": "0"},
         "soft-near-separatrix": {"delta": "-2", "p": "0.50000000000000000001", "q": "0"},
+        "soft-separatrix-outside": {"delta": "-2", "p": "-7/2", "q": "2"},
         "soft-outside": {"delta": "-1", "p": "-1/3", "q": "3/2"},
         "soft-over-the-barrier": {"delta": "-1", "p": "2", "q": "-3/2"},
         "soft-saddle": {"delta": "-4", "p": "0", "q": "1/2"},
