@@ -18,7 +18,7 @@ from verify.proof.exact_flow import NoFlowError
 
 _GUARD = 15
 _MORE = 10  # digits that the second evaluation has more than the first
-MOST_DIGITS = 40_000
+MOST_DIGITS = 10_000
 _MOST_BITS = 1 << 20  # of exponents: a state beyond it is of no use to anyone
 _SAFETY = 2  # the better of two values is nearer to the truth than they are to each other
 

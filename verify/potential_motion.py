@@ -19,7 +19,7 @@ from functools import cached_property
 import sympy
 
 from verify.motion import Context, Flow, Motion, Number, State, Values, number
-from verify.weierstrass import Weierstrass
+from verify.weierstrass import Weierstrass, waves
 
 _METHOD = "closed form: Weierstrass's ℘ by Jacobi's elliptic functions"
 _ELEMENTARY = "closed form: elementary functions"
@@ -106,6 +106,9 @@ class Curve:
         b0, b1, b2, b3, b4 = (number(mp, x) for x in self.b)
         v = number(mp, self.v)
         g2, _ = self.invariants
+        if self.degree <= 2:  # y'' = b₁/2 + b₂ y
+            (c, s), (_, half) = waves(mp, b2, t), waves(mp, b2, t / 2)
+            return v * s + b1 * half**2, v * c + b1 * s / 2
         found = self.function(mp).values(t)
         if found is None:
             return mp.mpf(0), v

@@ -15,6 +15,7 @@ import flint
 from verify.motion import Context, Motion, Number, State, Values, number
 from verify.precision import sign_of
 from verify.system import System
+from verify.weierstrass import waves
 
 
 def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
@@ -26,8 +27,8 @@ def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
         rate, start, g = number(mp, a), number(mp, p), mp.exp(number(mp, -a * q))
         pull = 2 * rate**2 * number(mp, depth) * g
         square = (rate * start) ** 2 + pull * (g - 2)
-        c, s = _waves(mp, square, t)
-        _, half = _waves(mp, square, t / 2)
+        c, s = waves(mp, square, t)
+        _, half = waves(mp, square, t / 2)
         xi = c + rate * start * s + 2 * pull * half**2
         slope = square * s + rate * start * c + pull * s
         if xi <= 0:
@@ -52,16 +53,6 @@ def _goes(depth: Fraction, a: Fraction, p: Fraction, q: Fraction) -> str | None:
     if (p**2 / 2 < depth) if q == 0 else (sign_of(above) < 0):
         return None
     return f"q goes to {'+' if a > 0 else '−'}∞ as t grows: the energy is not below D"
-
-
-def _waves(mp: Context, square: Number, t: Number) -> tuple[Number, Number]:
-    """cosh κt and sinh(κt)/κ for κ² of any sign."""
-    if square == 0:
-        return mp.mpf(1), t
-    k = mp.sqrt(abs(square))
-    if square < 0:
-        return mp.cos(k * t), mp.sin(k * t) / k
-    return mp.cosh(k * t), mp.sinh(k * t) / k
 
 
 SYSTEM = System(
