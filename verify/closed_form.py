@@ -79,14 +79,14 @@ def _state(motion: Motion, time: Fraction, digits: int) -> tuple[Any, Any] | Non
         return None
     if not all(isinstance(x, mp.mpf) and mp.isfinite(x) for x in (p, q)):
         return None
-    if any(mp.mag(x) > _MOST_BITS for x in (p, q) if x):
-        raise NoFlowError(f"the exact solution is beyond 2^{_MOST_BITS} by then")
     return p, q
 
 
 def _agreed(values: list[Any], least: Fraction, digits: int) -> Evaluation | None:
     """The second value on a grid of the digits asked for, where the first agrees with it."""
     finer = values[1][0].context
+    if not _moderate(finer, values):
+        return None
     before, after = ([finer.mpf(x) for x in z] for z in values)  # in one context
     scale = max(number(finer, least), *map(abs, after))
     if scale == 0:
@@ -100,6 +100,14 @@ def _agreed(values: list[Any], least: Fraction, digits: int) -> Evaluation | Non
     return (
         Evaluation(p, q, bound) if bound * 10**digits <= _down(finer, scale, unit) * grid else None
     )
+
+
+def _moderate(mp: Context, values: list[Any]) -> bool:
+    """Whether both are in range; NoFlowError where they agree that the solution is not."""
+    sizes = [max((mp.mag(x) for x in z if x), default=0) for z in values]
+    if min(sizes) > _MOST_BITS and abs(sizes[0] - sizes[1]) <= 1:
+        raise NoFlowError(f"the exact solution is beyond 2^{_MOST_BITS} by then")
+    return max(sizes) <= _MOST_BITS
 
 
 def _up(mp: Context, x: Any, unit: int) -> int:

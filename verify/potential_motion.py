@@ -106,13 +106,49 @@ class Curve:
         b0, b1, b2, b3, b4 = (number(mp, x) for x in self.b)
         v = number(mp, self.v)
         g2, _ = self.invariants
-        if self.degree <= 2:  # y'' = b₁/2 + b₂ y
-            (c, s), (_, half) = waves(mp, b2, t), waves(mp, b2, t / 2)
-            return v * s + b1 * half**2, v * c + b1 * s / 2
+        if self.degree <= 2:
+            return self.linear(mp, t)
+        double = self.between_saddles
+        if double is not None:
+            return self.heteroclinic(mp, t, double)
         found = self.function(mp).values(t)
         if found is None:
             return mp.mpf(0), v
         return biermann(v, (b0, b1, b2, b3, b4), number(mp, g2), found)
+
+    def linear(self, mp: Context, t: Number) -> tuple[Number, Number]:
+        """The solution of y'' = b₁/2 + b₂ y."""
+        v, b1, b2 = (number(mp, x) for x in (self.v, self.b[1], self.b[2]))
+        if self.b[2] > 0 and self.b[1] ** 2 == 4 * self.b[0] * self.b[2]:
+            # On a line through the saddle one exponential is all there is, and the other is noise.
+            rate = mp.sqrt(b2) if self.v * self.b[1] > 0 else -mp.sqrt(b2)
+            gone = mp.exp(rate * t)
+            return b1 / (2 * b2) * (gone - 1), v * gone
+        (c, s), (_, half) = waves(mp, b2, t), waves(mp, b2, t / 2)
+        return v * s + b1 * half**2, v * c + b1 * s / 2
+
+    @property
+    def between_saddles(self) -> Fraction | None:
+        """The double root d > 0 of 4w³ − g₂w − g₃, where A and B both vanish at ℘ = d."""
+        g2, g3 = self.invariants
+        if self.delta or g2 * g3 >= 0:
+            return None
+        b0, b1, b2, b3, b4 = self.b
+        apart = -3 * g3 / (2 * g2) - b2 / 12
+        vanish = b1 * apart / 2 + b0 * b3 / 4, 2 * apart**2 - b0 * b4 / 2
+        return None if any(vanish) else -3 * g3 / (2 * g2)
+
+    def heteroclinic(self, mp: Context, t: Number, double: Fraction) -> tuple[Number, Number]:
+        """A/B divided by ε = ℘ − d, which becomes exponentially small; ℘'/ε = −2κ coth κt."""
+        square, apart = number(mp, 3 * double), number(mp, double - self.b[2] / 12)
+        v, b1 = number(mp, self.v), number(mp, self.b[1])
+        c, s = waves(mp, square, t)
+        if s == 0:
+            return mp.mpf(0), v
+        small, ratio = 1 / s**2, -2 * c / s
+        above, below = b1 / 2 - v * ratio, 2 * small + 4 * apart
+        d_above, d_below = -2 * v * small, 2 * small * ratio
+        return above / below, (d_above * below - above * d_below) / below**2
 
     # -- where the motion goes --------------------------------------------------------------------
 
