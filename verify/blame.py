@@ -12,17 +12,17 @@ is to blame:
 - float64 alone does: `overflow` or `underflow`.
 
 High precision is believed where twice as many digits say the same. What is bounded is `stable`, or
-`drifts` (see `verify.drift`). What bounds are, and when runs are apart, is told in `verify.motion`.
+`drifts` (see `verify.drift`). What bounds are, and when runs are apart, is told in `verify.case_motion`.
 """
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.arithmetic import mpfr
+from verify.case_motion import CaseMotion, float64
 from verify.drift import drift_of
 from verify.exact_orbit import ExactOrbit
 from verify.followed import Case, Trail, first_apart, first_step, follow, follow_precisely
-from verify.motion import Motion, float64
 from verify.neighbours import told_of_rounded_start
 from verify.stability_results import Kind
 
@@ -47,7 +47,7 @@ class Judgement:
 
 def judge(case: Case, *, drifts: bool = True) -> Judgement:
     """The verdict on one case; without `drifts` what drifts counts as stable."""
-    motion = Motion(case)
+    motion = CaseMotion(case)
     if motion.orbit.kind == "escapes":
         return Judgement("escapes", f"the exact solution {motion.orbit.told}", motion.orbit)
     precise, _ = motion.precise
@@ -69,11 +69,11 @@ def judge(case: Case, *, drifts: bool = True) -> Judgement:
 
 def bounded(case: Case) -> bool:
     """Whether the float64 run stays within the exact orbit's bounds."""
-    motion = Motion(case)
+    motion = CaseMotion(case)
     return motion.stays(motion.float64)
 
 
-def _scheme(motion: Motion) -> Judgement:
+def _scheme(motion: CaseMotion) -> Judgement:
     digits = 2 * motion.digits
     again, arithmetic = follow_precisely(motion.case, digits)
     step = first_step(motion.case, again, arithmetic, motion.beyond)
@@ -86,7 +86,7 @@ def _scheme(motion: Motion) -> Judgement:
     return Judgement("unstable: scheme", told, motion.orbit, step=step)
 
 
-def _not_the_scheme(motion: Motion) -> Judgement:
+def _not_the_scheme(motion: CaseMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
     precise, arithmetic = motion.precise
     case, here = replace(motion.case, steps=precise.asked), motion.as_far
@@ -103,7 +103,7 @@ def _not_the_scheme(motion: Motion) -> Judgement:
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
 
-def _confirmed(motion: Motion, case: Case, precise: Trail) -> int | None:
+def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> int | None:
     """The digits with which the run in high precision comes out the same again."""
     digits, last = motion.digits, precise
     while digits <= _MOST_DIGITS:
@@ -115,7 +115,7 @@ def _confirmed(motion: Motion, case: Case, precise: Trail) -> int | None:
     return None
 
 
-def _range_alone(motion: Motion) -> bool:
+def _range_alone(motion: CaseMotion) -> bool:
     """Whether 53 bits with any exponent do as high precision does, where float64 does not."""
     steps = min(motion.precise[0].asked, _RANGE_STEPS)
     case = replace(motion.case, steps=steps)
@@ -124,7 +124,7 @@ def _range_alone(motion: Motion) -> bool:
     return motion.together(wide, precise) and not motion.together(own, precise)
 
 
-def _out_of_range(motion: Motion, here: Trail) -> Judgement:
+def _out_of_range(motion: CaseMotion, here: Trail) -> Judgement:
     if here.finished:
         told = _vanished(motion) or "numbers vanish in float64 that wider exponents keep"
         return Judgement("underflow", told, motion.orbit)
@@ -135,7 +135,7 @@ def _out_of_range(motion: Motion, here: Trail) -> Judgement:
     return Judgement("overflow", told, motion.orbit, step=here.done + 1)
 
 
-def _vanished(motion: Motion) -> str:
+def _vanished(motion: CaseMotion) -> str:
     """What underflow has taken of a bounded run; empty where that is nothing.
 
     p or q as a whole, either of which may be small beside the other one.
@@ -156,7 +156,7 @@ def _vanished(motion: Motion) -> str:
     return ""
 
 
-def _bounded(motion: Motion, drifts: bool) -> Judgement:
+def _bounded(motion: CaseMotion, drifts: bool) -> Judgement:
     precise, _ = motion.precise
     rate = drift_of(motion) if drifts else None
     told = f"bounded over all {motion.case.steps} steps"

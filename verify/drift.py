@@ -12,8 +12,8 @@ from itertools import pairwise
 from math import ceil, sqrt
 from statistics import fmean, pstdev
 
+from verify.case_motion import CaseMotion
 from verify.followed import MOST_INTERPRETED, Case, Trail, follow, follow_precisely
-from verify.motion import Motion
 
 _STRETCHES = 8
 _LONGER = 4
@@ -24,7 +24,7 @@ _SURE = 4.0  # standard errors of a mean
 _SLOWER = 16.0  # times less, at most, in the longer run
 
 
-def drift_of(motion: Motion) -> Fraction | None:
+def drift_of(motion: CaseMotion) -> Fraction | None:
     """The energy's change in a unit of time, in parts of its scale; None where none is seen.
 
     Of a motion that has died away within the time, over all of it.
@@ -50,7 +50,7 @@ def drift_of(motion: Motion) -> Fraction | None:
     return Fraction(first)
 
 
-def _died(motion: Motion, trail: Trail) -> bool:
+def _died(motion: CaseMotion, trail: Trail) -> bool:
     """Whether at its end the run moves by a hundredth of the exact orbit's reach at most.
 
     Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
@@ -70,14 +70,14 @@ def _died(motion: Motion, trail: Trail) -> bool:
     return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
 
 
-def _errors(motion: Motion, trail: Trail) -> list[float]:
+def _errors(motion: CaseMotion, trail: Trail) -> list[float]:
     """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
     found = motion.energy_errors(trail)
     known = [float(x) for x in found if x is not None]
     return known if motion.orbit.scale and len(known) == len(found) else []
 
 
-def _rate(motion: Motion, case: Case, trail: Trail) -> float | None:
+def _rate(motion: CaseMotion, case: Case, trail: Trail) -> float | None:
     errors = _errors(motion, trail)
     if len(errors) < 4 * _STRETCHES:
         return None

@@ -1,17 +1,31 @@
-"""The exact solution of p' = −H_q, q' = H_p at one time, with its error bound."""
+"""The exact solution of p' = −H_q, q' = H_p at one time, with its error bound.
+
+In closed form where one is known (the named systems, whoever wrote them down, and p²/2 + V(q) with
+a polynomial V of degree up to 4), else by the numerical flow, with more digits until two agree.
+The numerical flow is Gragg's method extrapolated, which for the orders that many digits need is
+faster than the Lie series: from (0, 3/2) to t = 100 with 30 and 60 digits it took 0.25 s and 0.9 s
+on the Duffing oscillator, and 0.3 s and 1.3 s on the pendulum; the Lie series of order 43 and 76
+by power series in ball arithmetic 1.1 s and 5.0 s, and 0.4 s and 2.2 s.
+"""
 
 from dataclasses import dataclass
 from fractions import Fraction
 
+from verify import closed_form
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
-from verify.proof.closed_orbit import at_rest
+from verify.known_flows import closed_form as known_motion
+from verify.known_flows import named
+from verify.proof.closed_orbit import at_rest, closed_orbit
 from verify.proof.exact_flow import Flow, NoFlowError
 
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
 _MORE = 10  # and how many more the next one has
 _TRIES = 6
 _SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
+_TOLD = 12  # digits of a time at which a solution ends
+_ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked for
+NOT_KNOWN = "not known"
 
 State = tuple[Fraction, Fraction]  # p, q
 
@@ -35,25 +49,64 @@ def exact_solution(
 ) -> Solution:
     """φ_time(p, q), whose bound is at most 10^−digits times the orbit's scale.
 
-    The orbit's scale is the largest of |p| and |q| at its two ends. Raises InputError for a
-    parameter without a value, and NoFlowError, saying why, where no solution reaches that time or
-    where it could not be followed so far.
+    The orbit's scale is the largest of |p| and |q| at its two ends. Time may be negative. Raises
+    InputError for a parameter without a value, and NoFlowError, saying why, where no solution
+    reaches that time or where it could not be followed so far.
     """
-    if hamiltonian.symbols:
-        raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
+    _check(hamiltonian, digits)
     field, _ = hamiltonian.field()
-    if time == 0 or at_rest(hamiltonian, field, (p, q)):
-        return Solution(p, q, Fraction(0), "the initial value stays where it is")
+    if at_rest(hamiltonian, field, (p, q)) or time == 0:
+        return Solution(p, q, Fraction(0), "the initial value itself")
+    known = known_motion(hamiltonian, p, q)
+    if known is not None:
+        motion, parameters = known
+        found = closed_form.evaluate(motion, (p, q), time, digits, parameters)
+        return Solution(found.p, found.q, found.bound, motion.method)
     return _followed(hamiltonian, (p, q), time, digits)
 
 
 def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction) -> str | None:
     """How the exact solution leaves every bound, as a short statement; None if it does not.
 
-    It does where it blows up within the time, or goes to infinity as t grows. A statement that
-    begins with "not known" says that neither was found out.
+    It does where it blows up until that time ≥ 0, or goes to infinity as t grows (a pendulum that
+    goes round does, by its angle). A statement that begins with `NOT_KNOWN` says that neither was
+    found out. For what is known in closed form the answer is by exact algebra; else None is by an
+    orbit that was seen to close. Raises InputError and NoFlowError as `exact_solution` does where
+    H is not defined at the initial value.
     """
-    return "not known"
+    _check(hamiltonian, _TOLD)
+    if time < 0:
+        raise InputError("time", str(time), "must not be negative")
+    field, _ = hamiltonian.field()
+    if at_rest(hamiltonian, field, (p, q)):
+        return None
+    known = known_motion(hamiltonian, p, q)
+    if known is not None:
+        end = closed_form.blow_up(known[0], 1, _TOLD)
+        if end is not None:
+            return f"it blows up at t = {float(end):.6g}" if end <= time else None
+        return known[0].goes
+    for match in named(hamiltonian):
+        if match.system.goes is not None:
+            return match.system.goes(match.values, p, q)
+    return _seen_to_leave(hamiltonian, (p, q))
+
+
+def _check(hamiltonian: Hamiltonian, digits: int) -> None:
+    if hamiltonian.symbols:
+        raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
+    if not 1 <= digits <= closed_form.MOST_DIGITS:
+        raise InputError("digits", digits, f"must be 1 … {closed_form.MOST_DIGITS}")
+
+
+def _seen_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
+    try:
+        orbit = closed_orbit(hamiltonian, start, _ROUGH, _POINTS)
+    except NoFlowError as error:
+        return f"{NOT_KNOWN}: {error}"
+    if orbit.kind == "rotation":
+        return "it goes to infinity as t grows: it goes round"
+    return None
 
 
 def _followed(hamiltonian: Hamiltonian, start: State, time: Fraction, digits: int) -> Solution:
@@ -69,8 +122,6 @@ def _followed(hamiltonian: Hamiltonian, start: State, time: Fraction, digits: in
             bound = _SAFETY * max(abs(after[0] - before[0]), abs(after[1] - before[1]))
             scale = max(map(abs, (*start, *after)))
             if bound * 10**digits <= scale:
-                return Solution(
-                    *after, bound, "extrapolated numerical flow (Gragg, Bulirsch, Stoer)"
-                )
+                return Solution(*after, bound, "numerical flow: Gragg's method, extrapolated")
         before = after
     raise NoFlowError("the digits asked for are lost along the orbit")

@@ -2,7 +2,7 @@
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
 `verify.linear_stability`), ω² being the greatest det Hess H on the exact orbit, where that is
-stiffest. What bounded motion is, is told in `verify.motion`.
+stiffest. What bounded motion is, is told in `verify.case_motion`.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -24,6 +24,7 @@ _GUARD = 12  # digits beyond those asked for, and what extrapolation and roundin
 _LOST = 8
 _HALVINGS = 12
 _MOST_STEPS = 200_000  # of one orbit: minutes
+_PATIENCE = 3  # steps after one that was too long before a longer one is tried
 _SHORTEST = 200  # halvings of the first step, after which time stands still
 LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
 _STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
@@ -103,6 +104,7 @@ class Flow:
         goal, done = number(abs(time)), number(Fraction(0))
         sign = -1 if time < 0 else 1
         step = shortest = goal
+        good = _PATIENCE
         for k in range(most_steps):
             if done >= goal:
                 return z
@@ -116,12 +118,12 @@ class Flow:
             after = self.step(z, signed)
             with self.arithmetic.context():
                 if after is None:
-                    step = step / 2
+                    good, step = 0, step * 2 / 3
                     if step < shortest or done + step == done:
                         raise NoFlowError(f"{LOST}, at about t = {float(sign * done):.6g}")
                 else:
-                    z, done = after, goal if last else done + step
-                    step = step * 3 / 2
+                    z, done, good = after, goal if last else done + step, good + 1
+                    step = step * 3 / 2 if good > _PATIENCE else step
         raise NoFlowError(f"{most_steps} steps lead only to t = {float(sign * done):.6g}")
 
     def _first_step(self, z: State, goal: Number) -> Number:
