@@ -12,7 +12,8 @@ is to blame:
 - float64 alone does: `overflow` or `underflow`.
 
 High precision is believed where twice as many digits say the same. What is bounded is `stable`, or
-`drifts` (see `verify.drift`). What bounds are, and when runs are apart, is told in `verify.case_motion`.
+`drifts` (see `verify.drift`). What bounds are, and when runs are apart, is told in
+`verify.case_motion`.
 """
 
 from dataclasses import dataclass, replace

@@ -7,12 +7,16 @@ neither the size of an orbit nor the units of p and q matter.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Literal
 
+from verify.errors import InputError
+from verify.exact_solution import NOT_KNOWN, leaves
 from verify.hamiltonian import Hamiltonian
+from verify.known_flows import closed_form as known_motion
+from verify.known_flows import named
 from verify.proof.closed_orbit import shifts
 from verify.proof.exact_flow import Flow, NoFlowError, Number, State, functions_at
 
@@ -56,7 +60,28 @@ class ExactOrbit:
 @lru_cache(maxsize=256)
 def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:
     """The orbit through (p, q) until `time`."""
-    return _Follow(hamiltonian, (p, q), time).orbit()
+    orbit = _Follow(hamiltonian, (p, q), time).orbit()
+    if orbit.kind not in ("escapes", "open"):
+        return orbit
+    exactly = _in_closed_form(hamiltonian, p, q, time)
+    if exactly is None:
+        return orbit
+    return replace(orbit, told=exactly if orbit.kind == "escapes" else f"{orbit.told}; {exactly}")
+
+
+def _in_closed_form(
+    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction
+) -> str | None:
+    """How it leaves, of an orbit for which that is known by algebra."""
+    if known_motion(hamiltonian, p, q) is None and not any(
+        match.system.goes for match in named(hamiltonian)
+    ):
+        return None
+    try:
+        told = leaves(hamiltonian, p=p, q=q, time=time)
+    except (InputError, NoFlowError):
+        return None
+    return None if told is None or told.startswith(NOT_KNOWN) else told.removeprefix("it ")
 
 
 class _Follow:
