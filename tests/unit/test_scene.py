@@ -176,6 +176,22 @@ step_size = 0.25
 steps = 40
 points = 8
 initial_value = { q = 1, p = 0 }
+[[stability]]
+steps = 100
+step_sizes = [0.1]
+initial_values = [{ q = 1, p = 0 }]
+schemes = ["lie2"]
+[[largest_step]]
+time = 2
+initial_value = { q = 1, p = 0 }
+schemes = ["lie2"]
+[[stability_map]]
+parameter = "delta"
+values = [1]
+step_sizes = [0.1]
+steps = 100
+initial_value = { q = 1, p = 0 }
+schemes = ["lie2"]
 """
 CLAIMS = """
 [[claim]]

@@ -1,0 +1,124 @@
+"""`verify stability`: its JSON keys, its text, a suite's small scenes, bad input."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.test_command_line import here, json_of
+from verify.cli_input import scenes_of
+
+SCENE = """
+system = "duffing"
+parameters = { delta = 1 }
+schemes = ["lie2", "stormer-verlet"]
+
+[[stability]]
+name = "small and large steps"
+steps = 400
+step_sizes = [0.1, 2]
+initial_values = [{ q = 1, p = 0 }]
+
+[[largest_step]]
+time = 40
+initial_value = { q = 1, p = 0 }
+
+[[stability_map]]
+parameter = "delta"
+values = [1, 100]
+step_sizes = [0.01, 1]
+steps = 200
+initial_value = { q = 1, p = 0 }
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def test_each_case_has_its_id_verdict_and_detail(
+    capsys: pytest.CaptureFixture[str], scene: Path
+) -> None:
+    status, out, err = here(capsys, "stability", str(scene), "--json")
+    assert (status, err) == (0, "")
+    found = json_of(out)
+    verdicts = {case["id"]: case["verdict"] for case in found["cases"]}
+    name = "mine/small and large steps"
+    assert verdicts[f"{name}/stormer-verlet/h=0.1"] == "stable"
+    assert verdicts[f"{name}/stormer-verlet/h=2"] == "unstable: scheme"
+    assert verdicts[f"{name}/lie2/h=2"] == "unstable: scheme"
+    assert all(case["detail"] for case in found["cases"])
+    assert [step["scheme"] for step in found["largest_steps"]] == ["lie2", "stormer-verlet"]
+    assert {over["scheme"] for over in found["maps"]} == {"lie2", "stormer-verlet"}
+
+
+def test_the_text_names_case_verdict_and_reason(
+    capsys: pytest.CaptureFixture[str], scene: Path
+) -> None:
+    status, out, _ = here(capsys, "stability", str(scene))
+    assert status == 0
+    assert "unstable: scheme" in out
+    assert "the scheme leaves the bounds at step" in out
+    assert "stormer-verlet: bounded up to h = " in out
+
+
+def test_what_is_kept_is_not_done_again(
+    capsys: pytest.CaptureFixture[str], scene: Path, tmp_path: Path
+) -> None:
+    keep = str(tmp_path / "kept")
+    first = here(capsys, "stability", str(scene), "--json", "--keep", keep)
+    again = here(capsys, "stability", str(scene), "--json", "--keep", keep)
+    assert first == again
+    assert list((tmp_path / "kept").glob("*.json"))
+
+
+SMALL = ("free", "pushed", "zero", "quartic_sizes")
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_the_extreme_scenes_end_in_the_verdicts_that_are_right(
+    capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    assert name in {scene.name for scene in scenes_of("extreme")}
+    path = Path(__file__).parents[2] / "reports" / "suites" / "extreme" / f"{name}.toml"
+    status, out, err = here(capsys, "stability", str(path), "--json")
+    assert (status, err) == (0, "")
+    verdicts = {case["id"]: case["verdict"] for case in json_of(out)["cases"]}
+    if name != "quartic_sizes":
+        assert set(verdicts.values()) == {"stable"}
+        return
+    assert {v for n, v in verdicts.items() if "vanishes" in n} == {"underflow"}
+    assert {v for n, v in verdicts.items() if "too large" in n} == {"overflow at step 1"}
+    assert {v for n, v in verdicts.items() if "ordinary" in n} == {"unstable: scheme"}
+
+
+@pytest.mark.parametrize(
+    ("given", "problem"),
+    [
+        ([], "SCENE=: is missing"),
+        (["--scheme", "lie2"], "SCENE=: is missing"),
+        (["stiff", "--scheme", "lie2"], "goes with --linear"),
+        (["stiff", "--linear", "--scheme", "lie2"], "does not go with --linear"),
+        (["--linear"], "--scheme=: is missing"),
+        (["nowhere.toml"], "No such file"),
+    ],
+)
+def test_bad_input_is_one_line(
+    capsys: pytest.CaptureFixture[str], given: list[str], problem: str
+) -> None:
+    status, out, err = here(capsys, "stability", *given)
+    assert (status, out) == (2, "")
+    assert problem in err
+    assert err.count("\n") == 1
+
+
+def test_a_scene_that_asks_for_nothing_of_it_is_refused(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "other.toml"
+    path.write_text('system = "harmonic"\nschemes = ["lie2"]\n')
+    status, _, err = here(capsys, "stability", str(path))
+    assert status == 2
+    assert "asks for no [[stability]]" in err
