@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from reports.logarithm import lg
 from reports.plots import Plot
-from reports.svg import document
 from reports.typography import listed, superscript
 from verify.results import Value
 from verify.work_precision_results import WorkLine, WorkPoint, WorkPrecisionResult
@@ -221,4 +220,6 @@ def _short(text: str) -> str:
 
 def standalone(found: WorkPrecisionResult) -> str:
     """All figures below one another, as one SVG document."""
+    from reports.svg import document
+
     return document([plot.svg for plot in plots(found, name="bench")])

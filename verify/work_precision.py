@@ -26,7 +26,14 @@ from verify.tasks import WorkPrecisionTask
 from verify.timing import Timed, clock, interleaved, less, nothing
 from verify.work_precision_lines import comparisons, line, median_of
 from verify.work_precision_results import SystemPoint, WorkLine, WorkPoint, WorkPrecisionResult
-from verify.work_precision_runs import Ladder, Problem, failed, finished, printed
+from verify.work_precision_runs import (
+    ROUNDING_SHARE,
+    Ladder,
+    Problem,
+    failed,
+    finished,
+    printed,
+)
 
 _REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
 Advance = Callable[[int], None]  # called with a number of points just done
@@ -69,6 +76,7 @@ def work_precision(
         repeats=task.repeats,
         clock=clock()[1],
         overhead=overhead,
+        rounding_share=text(ROUNDING_SHARE),
         reference=problem.solution.method,
         reference_bound=upper(problem.solution.bound),
         lines=(*lines, *drawn),

@@ -58,10 +58,9 @@ def line(
 # -- orders ---------------------------------------------------------------------------------------
 
 
-def error_slope(points: Sequence[WorkPoint], *, limited: bool = True) -> SlopeResult:
-    """The order of the error in h; `limited=False` takes rounding-limited points along."""
-    usable = [x for x in points if x.error and (x.limited_by == "truncation" or not limited)]
-    return fitted([(x, x.error) for x in usable])
+def error_slope(points: Sequence[WorkPoint]) -> SlopeResult:
+    """The order of the error in h."""
+    return fitted([(x, x.error) for x in points if x.limited_by == "truncation"])
 
 
 def lambda_slope(points: Sequence[WorkPoint], preserves_area: bool) -> SlopeResult:
