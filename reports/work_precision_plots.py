@@ -100,9 +100,7 @@ def _digits(found: WorkPrecisionResult, name: str) -> Plot:
         for place, arithmetic in enumerate(names)
     )
     lead = f"Certified digits of the end state against run time, {_systems_of(found)}"
-    panel = figure.Panel(
-        "(d) certified digits", "run time in seconds", lines, ordinate_is_logarithm=False
-    )
+    panel = figure.Panel("(d) certified digits", "run time in seconds", lines, logarithmic=False)
     svg = figure.panels([panel], name=f"digits-of-{name}", label=f"{lead}.")
     return Plot(svg, f"{lead}.", "Run time is the stepping, with all that certifies it.")
 

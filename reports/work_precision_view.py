@@ -115,7 +115,8 @@ def _computed(found: WorkPrecisionResult) -> str:
         f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
         "takes is subtracted, compilation is apart. The loops are compiled and step the state "
         f"alone. A point is limited by rounding where that may be more than "
-        f"{100 * float(found.rounding_share):g}{NBSP}% of its error."
+        f"{100 * float(found.rounding_share):g}{NBSP}% of its error. At equal run time only runs "
+        f"are compared whose error is not larger than the orbit itself, {number(found.scale)}."
     )
 
 

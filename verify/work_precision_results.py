@@ -124,6 +124,7 @@ class ComparisonResult(Frozen):
 class WorkPrecisionResult(Frozen):
     """Error against run time over [0, `time`] from (q, p); see `verify.work_precision`.
 
+    `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
     that may be a greater share of an error limits it. `reference_bound`: of p and of q. `left_out`:
     peers with the reason. `systems` are of one scheme at one step size.
@@ -138,6 +139,7 @@ class WorkPrecisionResult(Frozen):
     clock: str
     overhead: Seconds
     rounding_share: str
+    scale: str
     reference: str
     reference_bound: str
     lines: tuple[WorkLine, ...]

@@ -57,7 +57,7 @@ def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
 
 def test_orders_comparisons_and_costs_stand_on_the_page() -> None:
     lines = ladder("lie2"), ladder("stormer-verlet", area_preserving=True)
-    text = text_of(page_of(*lines, comparisons=comparisons(lines)))
+    text = text_of(page_of(*lines, comparisons=comparisons(lines, "1")))
     assert "2.00 ± 0.00" in text
     assert "At equal run time" in text
     assert "0, proved" in text
@@ -84,6 +84,16 @@ def test_the_figure_has_hollow_marks_crosses_and_the_floor_only_where_they_occur
     bare = "".join(figures(page_of(ladder()))[0].itertext())
     assert "hollow" not in bare
     assert "failed" not in bare
+
+
+def test_an_error_without_meaning_is_at_the_edge_and_hides_no_other() -> None:
+    lost = point(error="1e200", step_size="0.2", steps=5, seconds=5e-6)
+    page = page_of(with_points("lie2", lost), systems=(system(certified="99.0"),))
+    errors, _, digits = ("".join(svg.itertext()) for svg in figures(page))
+    assert "beyond the edge" in errors
+    assert "10²⁰⁰" not in errors
+    assert "beyond" not in digits, "digits are no logarithms"
+    assert "beyond" not in "".join(figures(page_of(ladder()))[0].itertext())
 
 
 def test_a_scheme_without_a_slope_shows_none_and_the_caption_says_why() -> None:
@@ -159,7 +169,7 @@ def test_the_figures_are_one_file_too() -> None:
 def test_what_others_wrote_stays_text() -> None:
     lines = with_points(EVIL, FAILED), ladder("lie2")
     page = page_of(
-        *lines, comparisons=comparisons(lines), clock=EVIL, reference=EVIL, systems_scheme=EVIL,
-        left_out=((EVIL, EVIL),), systems=(system(arithmetic=EVIL, reason=EVIL),),
+        *lines, comparisons=comparisons(lines, "1"), clock=EVIL, reference=EVIL,
+        systems_scheme=EVIL, left_out=((EVIL, EVIL),), systems=(system(arithmetic=EVIL, reason=EVIL),),
     )  # fmt: skip
     assert EVIL not in page

@@ -6,8 +6,15 @@ from typing import Any
 import pytest
 
 from tests.unit.made_work import line, point
-from verify.work_precision_lines import compare, comparisons
-from verify.work_precision_results import WorkLine
+from verify.work_precision_lines import compare as compare_within
+from verify.work_precision_lines import comparisons
+from verify.work_precision_results import ComparisonResult, WorkLine
+
+ALL = "1e40"  # an orbit so large that no error is left out
+
+
+def compare(one: WorkLine, other: WorkLine, scale: str = ALL) -> ComparisonResult:
+    return compare_within(one, other, scale)
 
 
 def power(
@@ -91,6 +98,20 @@ def test_schemes_of_one_order_are_compared_and_peers_never(
 ) -> None:
     lines = [power(f"s{k}", k + 1, order=-2, claimed=n) for k, n in enumerate(orders)]
     peer = power("peer", 1, claimed=None, peer=True)
-    found = comparisons([*lines, peer, peer])
+    found = comparisons([*lines, peer, peer], ALL)
     assert len(found) == count
     assert "peer" not in {name for each in found for name in (each.one, each.other)}
+
+
+def test_runs_whose_error_is_larger_than_the_orbit_take_no_part() -> None:
+    one, other = power("one", 1), power("other", 3.2)
+    assert compare(one, other, "1e9").first == "0.0001"
+    assert compare(one, other).first == "1e-05"
+    assert compare(one, other, "1e-9").error is None
+
+
+def test_two_that_are_alike_are_not_ranked() -> None:
+    assert (
+        "error of one is that of other (both within 10% of each other"
+        in compare(power("one", 1), power("other", 1.02)).sentence
+    )

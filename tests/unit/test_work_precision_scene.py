@@ -123,6 +123,13 @@ def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
+def test_the_plan_tells_what_is_timed(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD)
+    done = CliRunner().invoke(cli.cli, ["plan", str(path)])
+    assert "error against run time of 1 schemes at 2 step sizes over [0, 1]" in done.stdout
+
+
 # -- what runs when -------------------------------------------------------------------------------
 
 
