@@ -36,6 +36,7 @@ class PageView:
     ran: bool  # whether anything was run
     separated: bool
     grown: bool  # whether Λ was held against its growth law
+    timed: bool  # whether error stands against run time
 
 
 def page_view(report: Report) -> PageView:
@@ -53,9 +54,13 @@ def page_view(report: Report) -> PageView:
     counted = Counter(c.verdict for c in report.claims)
     return PageView(
         report=report,
-        ran=any(s.runs or s.series or s.separations or s.crossovers for s in report.scenes),
+        ran=any(
+            s.runs or s.series or s.separations or s.crossovers or s.work_precision
+            for s in report.scenes
+        ),
         separated=any(s.separations or s.crossovers for s in report.scenes),
         grown=any(s.growth_laws for s in report.scenes),
+        timed=any(s.work_precision for s in report.scenes),
         finding=finding(report),
         counts=tuple((v, counted[v]) for v in Verdict if counted[v]),
         claims=claims,

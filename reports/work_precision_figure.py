@@ -15,6 +15,7 @@ from markupsafe import Markup
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.markers import CARETUPBASE
 from matplotlib.transforms import Bbox
 
 from reports.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
@@ -30,6 +31,7 @@ _OFFSETS = (
     (6, 3), (6, -11), (-6, 3), (-6, -11), (0, 8), (0, -16), (8, -4), (-8, -4), (10, 12), (-10, 12),
     (10, -20), (-10, -20),
 )  # fmt: skip
+_TOP = 4  # decades: an error or a Λ beyond that is no longer about the orbit, and hides the others
 _APART = 5  # pixels between places of a line that a label must not cover
 
 
@@ -65,7 +67,11 @@ class Panel:
     axis: str
     lines: tuple[Drawn, ...]
     floor: tuple[tuple[float, float], ...] = ()
-    ordinate_is_logarithm: bool = True
+    logarithmic: bool = True
+
+    def beyond(self, mark: Mark) -> bool:
+        """Whether the value lies above what is shown."""
+        return self.logarithmic and mark.y is not None and mark.y > _TOP
 
 
 def panels(shown: Sequence[Panel], *, name: str, label: str) -> Markup:
@@ -113,12 +119,14 @@ def _panel(axes: Any, panel: Panel) -> None:
         x, y = zip(*panel.floor, strict=True)
         axes.plot(x, y, linestyle="none", marker=".", markersize=3.5, color=INK, alpha=0.4)
     for line in panel.lines:
-        _line(axes, line, style(line))
+        _line(axes, panel, line)
     axes.margins(x=0.09, y=0.07)
-    _failures(axes, panel)
+    if any(panel.beyond(m) for line in panel.lines for m in line.marks):
+        axes.set_ylim(_bottom(panel) - 1, _TOP)
+    _at_the_edge(axes, panel)
     grid_lines(axes, "both")
     decades(axes.xaxis)
-    if panel.ordinate_is_logarithm:
+    if panel.logarithmic:
         decades(axes.yaxis, most=8)
     else:
         whole_numbers(axes.yaxis)
@@ -126,12 +134,13 @@ def _panel(axes: Any, panel: Panel) -> None:
     axes.set_xlabel(panel.axis)
 
 
-def _line(axes: Any, line: Drawn, look: dict[str, Any]) -> None:
+def _line(axes: Any, panel: Panel, line: Drawn) -> None:
+    look = style(line)
     known = [m for m in line.marks if m.y is not None and isfinite(m.y)]
     bare = {k: v for k, v in look.items() if k not in ("marker", "markersize")}
     axes.plot([m.x for m in known], [m.y for m in known], **bare)
     for full in (True, False):
-        marks = [m for m in known if m.full is full]
+        marks = [m for m in known if m.full is full and not panel.beyond(m)]
         face = look["color"] if full else "none"
         axes.plot(
             [m.x for m in marks], [m.y for m in marks], linestyle="none", color=look["color"],
@@ -140,19 +149,26 @@ def _line(axes: Any, line: Drawn, look: dict[str, Any]) -> None:
         )  # fmt: skip
 
 
-def _failures(axes: Any, panel: Panel) -> None:
-    """A cross at the upper edge where a run failed."""
+def _bottom(panel: Panel) -> float:
+    placed = [m.y for line in panel.lines for m in line.marks if m.y is not None and isfinite(m.y)]
+    return min((*placed, *(y for _, y in panel.floor)))
+
+
+def _at_the_edge(axes: Any, panel: Panel) -> None:
+    """At the upper edge a cross where a run failed, a caret where a value lies beyond it."""
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.05 * (high - low))
     for line in panel.lines:
-        places = [m.x for m in line.marks if m.y is None]
-        if not places:
-            continue  # an unclipped line without points would still ask for room
-        axes.plot(
-            places, [0.985] * len(places), transform=axes.get_xaxis_transform(), linestyle="none",
-            marker="x", markersize=7, markeredgewidth=1.6, clip_on=False,
-            color=style(line)["color"],
-        )  # fmt: skip
+        failed = [m.x for m in line.marks if m.y is None]
+        beyond = [m.x for m in line.marks if panel.beyond(m)]
+        for places, marker in ((failed, "x"), (beyond, CARETUPBASE)):
+            if not places:
+                continue  # an unclipped line without points would still ask for room
+            axes.plot(
+                places, [0.985] * len(places), transform=axes.get_xaxis_transform(),
+                linestyle="none", marker=marker, markersize=7, markeredgewidth=1.6, clip_on=False,
+                color=style(line)["color"],
+            )  # fmt: skip
 
 
 # -- legend ---------------------------------------------------------------------------------------
@@ -180,6 +196,8 @@ def _explained(shown: Sequence[Panel]) -> list[Line2D]:
         )
     if any(m.y is None for m in marks):
         found.append(Line2D([], [], marker="x", label="× at the edge: failed", **grey))
+    if any(panel.beyond(m) for panel in shown for line in panel.lines for m in line.marks):
+        found.append(Line2D([], [], marker=CARETUPBASE, label="beyond the edge", **grey))
     if any(panel.floor for panel in shown):
         found.append(Line2D([], [], marker=".", alpha=0.4, label="floor: rounding part", **grey))
     return found
@@ -203,7 +221,7 @@ def _place_labels(axes: Any, panel: Panel) -> None:
     inside = axes.get_window_extent(renderer)
     for line in panel.lines:
         for mark in line.marks:
-            if not mark.label or mark.y is None or not isfinite(mark.y):
+            if not mark.label or mark.y is None or not isfinite(mark.y) or panel.beyond(mark):
                 continue
             text = axes.annotate(
                 mark.label, (mark.x, mark.y), xytext=(0, 0), textcoords="offset points",

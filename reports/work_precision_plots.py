@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from reports.logarithm import lg
 from reports.plots import Plot
-from reports.svg import document
 from reports.typography import listed, superscript
 from verify.results import Value
 from verify.work_precision_results import WorkLine, WorkPoint, WorkPrecisionResult
@@ -101,9 +100,7 @@ def _digits(found: WorkPrecisionResult, name: str) -> Plot:
         for place, arithmetic in enumerate(names)
     )
     lead = f"Certified digits of the end state against run time, {_systems_of(found)}"
-    panel = figure.Panel(
-        "(d) certified digits", "run time in seconds", lines, ordinate_is_logarithm=False
-    )
+    panel = figure.Panel("(d) certified digits", "run time in seconds", lines, logarithmic=False)
     svg = figure.panels([panel], name=f"digits-of-{name}", label=f"{lead}.")
     return Plot(svg, f"{lead}.", "Run time is the stepping, with all that certifies it.")
 
@@ -221,4 +218,6 @@ def _short(text: str) -> str:
 
 def standalone(found: WorkPrecisionResult) -> str:
     """All figures below one another, as one SVG document."""
+    from reports.svg import document
+
     return document([plot.svg for plot in plots(found, name="bench")])

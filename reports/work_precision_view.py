@@ -114,7 +114,9 @@ def _computed(found: WorkPrecisionResult) -> str:
         f"Reference: {found.reference}. Run times: {found.clock}, the least and the median of "
         f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
         "takes is subtracted, compilation is apart. The loops are compiled and step the state "
-        "alone."
+        f"alone. A point is limited by rounding where that may be more than "
+        f"{100 * float(found.rounding_share):g}{NBSP}% of its error. At equal run time only runs "
+        f"are compared whose error is not larger than the orbit itself, {number(found.scale)}."
     )
 
 

@@ -18,6 +18,7 @@ Call = Callable[[], object]
 _LEAST = 0.01  # seconds of one timing
 _RESOLVED = 1e-6  # a clock this fine will do
 _MOST_CALLS = 1 << 20
+_FINEST = 1e-9  # seconds
 
 
 @dataclass(frozen=True)
@@ -58,9 +59,8 @@ def interleaved(calls: Sequence[Call], rounds: int) -> list[Timed]:
 
 
 def less(timed: Timed, blank: Timed) -> Timed:
-    """The time without that of the blank call; never below the clock's resolution."""
-    least = 1e-9
-    return Timed(max(least, timed.least - blank.least), max(least, timed.median - blank.median))
+    """The time without the least of the blank call; never below the clock's resolution."""
+    return Timed(*(max(_FINEST, x - blank.least) for x in (timed.least, timed.median)))
 
 
 def nothing() -> None:

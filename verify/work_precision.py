@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import hypot, log10
 
 from verify import peers
+from verify.arithmetic import float64
 from verify.errors import InputError
 from verify.exact import text, upper
 from verify.exact_solution import exact_solution
@@ -26,7 +27,14 @@ from verify.tasks import WorkPrecisionTask
 from verify.timing import Timed, clock, interleaved, less, nothing
 from verify.work_precision_lines import comparisons, line, median_of
 from verify.work_precision_results import SystemPoint, WorkLine, WorkPoint, WorkPrecisionResult
-from verify.work_precision_runs import Ladder, Problem, failed, finished, printed
+from verify.work_precision_runs import (
+    ROUNDING_SHARE,
+    Ladder,
+    Problem,
+    failed,
+    finished,
+    printed,
+)
 
 _REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
 Advance = Callable[[int], None]  # called with a number of points just done
@@ -47,6 +55,7 @@ def work_precision(
     """What the task asks for. InputError where the exact solution does not reach the time."""
     begun = time.perf_counter()
     problem = _problem(hamiltonian, task)
+    _wake_compiler()
     ladders = [Ladder(problem, name) for name in task.schemes]
     own = [[_scheme_point(ladder, h, advance) for h in task.step_sizes] for ladder in ladders]
     others = [_peer(problem, name, advance) for name in task.peers]
@@ -69,10 +78,12 @@ def work_precision(
         repeats=task.repeats,
         clock=clock()[1],
         overhead=overhead,
+        rounding_share=text(ROUNDING_SHARE),
+        scale=problem.scale,
         reference=problem.solution.method,
         reference_bound=upper(problem.solution.bound),
         lines=(*lines, *drawn),
-        comparisons=comparisons(lines),
+        comparisons=comparisons(lines, problem.scale),
         systems=tuple(_systems(problem, task)),
         systems_scheme=task.number_systems_scheme,
         systems_step_size=text(task.number_systems_step_size),
@@ -88,6 +99,12 @@ def _problem(hamiltonian: Hamiltonian, task: WorkPrecisionTask) -> Problem:
     except NoFlowError as error:
         raise InputError("work_precision.time", text(task.time), str(error)) from None
     return Problem(hamiltonian, (p, q), task.time, exact)
+
+
+def _wake_compiler() -> None:
+    """The first compilation of a process takes longer than the next; no scheme shall pay that."""
+    same = float64.compiled_at_once().compile("def same(x):\n    return x\n", "same", {})
+    same(1.0)
 
 
 def _scheme_point(ladder: Ladder, h: Fraction, advance: Advance) -> _Timing:

@@ -5,7 +5,8 @@ the smallest step up to where the slopes between neighbours leave that of the tw
 than `SETTLED`: beyond, the leading term is not yet the error.
 
 Equal run time: between two of its points a scheme is followed along the straight line on
-logarithmic axes, over the run times that both schemes cover.
+logarithmic axes, over the run times that both schemes cover. A run whose error is larger than the
+orbit itself takes no part: it says nothing of how good the scheme is.
 """
 
 from collections.abc import Iterable, Sequence
@@ -26,6 +27,7 @@ from verify.work_precision_results import (
 )
 
 SETTLED = 0.1
+ALIKE = 1.1  # a ratio within this both ways is within what run times are known to
 FEWEST = 3  # points of a slope
 _NOTHING = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
 Place = tuple[float, float]  # lg of one quantity and of another
@@ -58,10 +60,9 @@ def line(
 # -- orders ---------------------------------------------------------------------------------------
 
 
-def error_slope(points: Sequence[WorkPoint], *, limited: bool = True) -> SlopeResult:
-    """The order of the error in h; `limited=False` takes rounding-limited points along."""
-    usable = [x for x in points if x.error and (x.limited_by == "truncation" or not limited)]
-    return fitted([(x, x.error) for x in usable])
+def error_slope(points: Sequence[WorkPoint]) -> SlopeResult:
+    """The order of the error in h."""
+    return fitted([(x, x.error) for x in points if x.limited_by == "truncation"])
 
 
 def lambda_slope(points: Sequence[WorkPoint], preserves_area: bool) -> SlopeResult:
@@ -110,15 +111,15 @@ def lg(text: str) -> float:
 # -- at equal run time ----------------------------------------------------------------------------
 
 
-def comparisons(lines: Sequence[WorkLine]) -> tuple[ComparisonResult, ...]:
-    """Every two schemes that claim the same order."""
+def comparisons(lines: Sequence[WorkLine], scale: str) -> tuple[ComparisonResult, ...]:
+    """Every two schemes that claim the same order; `scale` is the orbit's size."""
     pairs = combinations([line for line in lines if not line.peer], 2)
-    return tuple(compare(a, b) for a, b in pairs if a.order == b.order)
+    return tuple(compare(a, b, scale) for a, b in pairs if a.order == b.order)
 
 
-def compare(one: WorkLine, other: WorkLine) -> ComparisonResult:
+def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
     """The two at equal run time; see the module's text."""
-    errors = _places(one, "error"), _places(other, "error")
+    errors = _places(one, "error", scale), _places(other, "error", scale)
     span = _overlap(errors)
     if span is None:
         why = f"{one.name} and {other.name} have no run time in common: nothing is compared."
@@ -130,10 +131,11 @@ def compare(one: WorkLine, other: WorkLine) -> ComparisonResult:
     middle = sum(span) / 2
     area = None
     if not (one.area_preserving or other.area_preserving):
-        areas = _places(one, "lam"), _places(other, "lam")
+        areas = _places(one, "lam", scale), _places(other, "lam", scale)
         shared = _overlap(areas)
         area = _ratio(*areas, shared) if shared else None
-    parts = [_error_sentence(one, other, middle, span, error), _area_sentence(one, other, area)]
+    parts = [_error_sentence(one, other, middle, span, error)]
+    parts.append(_area_sentence(one, other, area, scale))
     return ComparisonResult(
         one=one.name,
         other=other.name,
@@ -146,10 +148,15 @@ def compare(one: WorkLine, other: WorkLine) -> ComparisonResult:
     )
 
 
-def _places(line: WorkLine, quantity: str) -> list[Place]:
+def _usable(line: WorkLine, scale: str) -> list[WorkPoint]:
+    """The runs whose error is not larger than the orbit."""
+    return [x for x in line.points if x.error and Decimal(x.error.value) <= Decimal(scale)]
+
+
+def _places(line: WorkLine, quantity: str, scale: str) -> list[Place]:
     """(lg run time, lg quantity) by run time."""
     found = []
-    for point in line.points:
+    for point in _usable(line, scale):
         value: Value | None = getattr(point, quantity)
         if value and Decimal(value.value) and point.seconds_median:
             found.append((lg(repr(point.seconds_median)), lg(value.value)))
@@ -190,15 +197,15 @@ def _error_sentence(
     )
 
 
-def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None) -> str:
+def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:
     exact = [line.name for line in (one, other) if line.area_preserving]
     if len(exact) == 2:
         return f"Both preserve area exactly: {exact[0]} and {exact[1]} have ΔJ ≡ 0 by proof."
     if exact:
         rest = one if other.area_preserving else other
         keeps = other if other.area_preserving else one
-        errors = _sizes(x.lam for x in rest.points)
-        rounded = _sizes(x.lam_plain for x in keeps.points)
+        errors = _sizes(x.lam for x in _usable(rest, scale))
+        rounded = _sizes(x.lam_plain for x in _usable(keeps, scale))
         seen = f", where {rest.name} has |Λ| of {_span(errors)}" if errors else ""
         shown = f"; what float64’s rounding shows of it is {_span(rounded)}" if rounded else ""
         return f"In area {exact[0]} makes no error (ΔJ ≡ 0 is proved){seen}{shown}."
@@ -223,6 +230,8 @@ def _smaller(one: str, other: str, ratio: RatioResult, times: str) -> str:
         one, other = other, one
         at, least, most = 1 / at, 1 / most, 1 / least
     over = f" over {times}" if times else ""
+    if most <= ALIKE and least >= 1 / ALIKE:
+        return f"{one} is that of {other} (both within {ALIKE - 1:.0%} of each other{over})"
     said = f"{one} is {_few(at)} times smaller than that of {other}"
     if least >= 1:
         return f"{said} ({_few(least)} to {_few(most)} times{over})"

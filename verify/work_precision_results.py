@@ -122,7 +122,13 @@ class ComparisonResult(Frozen):
 
 
 class WorkPrecisionResult(Frozen):
-    """Error against run time over [0, `time`] from (q, p); see `verify.work_precision`."""
+    """Error against run time over [0, `time`] from (q, p); see `verify.work_precision`.
+
+    `scale`: the size of the orbit, the greater |z| of its ends.
+    `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
+    that may be a greater share of an error limits it. `reference_bound`: of p and of q. `left_out`:
+    peers with the reason. `systems` are of one scheme at one step size.
+    """
 
     hamiltonian: str
     parameters: dict[str, str]
@@ -132,6 +138,8 @@ class WorkPrecisionResult(Frozen):
     repeats: int
     clock: str
     overhead: Seconds
+    rounding_share: str
+    scale: str
     reference: str
     reference_bound: str
     lines: tuple[WorkLine, ...]

@@ -20,7 +20,7 @@ from verify.balls import in_reach, middle_and_radius
 from verify.bounds import Bounds
 from verify.digits import choose, measure
 from verify.enclosure import enclose
-from verify.exact import known_digits, text
+from verify.exact import decimal, known_digits, text
 from verify.exact_solution import Solution
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import Kernel, Writer
@@ -55,6 +55,12 @@ class Problem:
         field, (energy,) = self.hamiltonian.field(self.hamiltonian.exact)
         return field.ring, energy
 
+    @property
+    def scale(self) -> str:
+        """The greater |z| of the orbit's two ends."""
+        ends = self.start, (self.solution.p, self.solution.q)
+        return decimal(max(distance(z, (Fraction(0), Fraction(0)))[0] for z in ends), 3)
+
     def error(self, state: State) -> tuple[Fraction, Fraction]:
         """|state − z(T)| with its bound."""
         size, own = distance(state, (self.solution.p, self.solution.q))
@@ -82,11 +88,10 @@ class Ladder:
         step_map = self.scheme.step_map(problem.hamiltonian)
         self.preserves_area = step_map.preserves_area
         self.arithmetic: Arithmetic = float64.compiled_at_once()
-        own = Job(problem.hamiltonian, scheme, self._inputs(problem.time), 1, frozenset(), 0)
+        generic = self.scheme.step_map(self._job(problem.time, frozenset()).generic)
         begun = time.perf_counter()
-        generic = get(scheme).step_map(own.generic)
         self.kernel: Kernel = Writer(generic, self.arithmetic, frozenset(), False).kernel()
-        Walk(own, self.kernel, self.arithmetic, (), 0)._advance(0)
+        self.call(problem.time, blank=True)()
         self.compile_seconds = time.perf_counter() - begun
 
     @property
@@ -168,7 +173,7 @@ class Ladder:
         job = self._job(h, frozenset(asked))
         run = job.go(float64.make(17))
         if run.done < job.steps:
-            return None, None, None
+            return None, None, "failed"
         plain = printed(run.values["lambda_plain"], Fraction(0))
         if self.preserves_area:  # proved; what the product shows is rounding
             return plain, Value(value="0", bound="0"), "rounding"
