@@ -37,6 +37,8 @@ def closed_form(
     hamiltonian: Hamiltonian, p: Fraction, q: Fraction
 ) -> tuple[Motion, tuple[Fraction, ...]] | None:
     """The motion from (p, q) in closed form and the parameters in it; None where none is known."""
+    if hamiltonian.symbols:
+        return None
     found = potential(hamiltonian)
     if found is not None:
         alpha, coefficients = found

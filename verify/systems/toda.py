@@ -41,7 +41,7 @@ SYSTEM = System(
     flow=_motion,
     regimes={
         "oscillation": {"p": "1/3", "q": "-3/2"},
-        "wide": {"p": "0", "q": "12"},
+        "wide": {"p": "0", "q": "8"},
         "small": {"p": "0", "q": "1e-9"},
         "rest": {"p": "0", "q": "0"},
     },
