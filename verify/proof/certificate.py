@@ -43,7 +43,9 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
     if isinstance(generic, StageEquations) and proof.area_preserving:
         rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in generic.stages)
         return data | {"stages": [[text(x) for x in row] for row in rows]}
-    assert proof.order is not None  # noqa: S101 - PROVED, and not area-preserving
+    if proof.order is None or not isinstance(generic, Generic):
+        problem = "is proved by its coefficients, which the checker does not know"
+        raise InputError("scheme", proof.scheme, problem)
     jets = Jets(proof.order + 2, separable=proof.separable)
     series = generic.taylor(jets, proof.order)
     leading = list(jets.delta_j(*series))[-1]
