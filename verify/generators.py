@@ -15,6 +15,7 @@ from verify.lattice import lattice
 from verify.ring import Poly, Ring, RingFullError
 
 MAX_TERMS = 20000
+_MOST_BITS = 12  # of a number under a root, before it is scaled
 _TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
 _EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
 _OTHER = (sympy.log, sympy.atan)
@@ -81,6 +82,18 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
     if _is_exponential_power(function):
         return function.exp * sympy.log(function.base)
     return function.args[0] if function.args else sympy.S.One  # e is exp(1)
+
+
+def _scale(u: Poly, degree: int) -> flint.fmpq:
+    """2^k such that u/2^(k·degree) is close to 1, for a number u that is not; else 1.
+
+    Arithmetics with an absolute precision have numbers of some bits before the point only.
+    """
+    if not u.is_constant() or u.leading_coefficient() <= 0:
+        return flint.fmpq(1)
+    number = u.leading_coefficient()
+    bits = int(number.p).bit_length() - int(number.q).bit_length()
+    return flint.fmpq(2) ** (bits // degree) if abs(bits) > _MOST_BITS else flint.fmpq(1)
 
 
 class _Builder:
@@ -233,7 +246,8 @@ class _Builder:
         if degree == 1:
             return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
         finest = self.root_degrees[node.base]
-        root = self.root(base, finest, node)
+        scale = _scale(base, finest)
+        root = self.root(base / scale**finest, finest, node) * scale
         n *= finest // degree
         if n < 0:
             # 1/R = R^(finest−1) / u keeps the one inverse that the derivative needs anyway.
