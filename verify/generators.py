@@ -6,6 +6,7 @@ sines (and of all exponentials) decide together over which basis they are expand
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import flint
 import sympy
@@ -30,7 +31,7 @@ def embed(
     Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
     levels = _levels(expressions)
-    powers = {power for e in expressions for power in e.atoms(sympy.Pow)}
+    powers = {node for node in _nodes(expressions) if isinstance(node, sympy.Pow)}
     room = 6 * sum(len(level) for level in levels) + 4 * len(powers) + 2 * len(variables)
     builder = _Builder(Ring(variables, room), _root_degrees(powers), most_terms)
     try:
@@ -39,6 +40,18 @@ def embed(
         return builder.ring, [builder.element(e) for e in expressions]
     except RingFullError as error:
         raise InputError("formula", str(expressions[0]), f"is too involved: {error}") from None
+
+
+def _nodes(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
+    """All subexpressions, each once: a composition has the same ones in many places."""
+    seen: set[sympy.Expr] = set()
+    stack = list(expressions)
+    while stack:
+        node = stack.pop()
+        if node not in seen:
+            seen.add(node)
+            stack += node.args
+    return seen
 
 
 def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
@@ -54,6 +67,7 @@ def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
     """The function applications in the expressions by depth of nesting, innermost first."""
     depth: dict[sympy.Expr, int] = {}
 
+    @cache
     def visit(node: sympy.Expr) -> int:
         inner = max((visit(a) for a in node.args), default=0)
         if _is_exponential_power(node):
@@ -85,15 +99,11 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
 
 
 def _scale(u: Poly, degree: int) -> flint.fmpq:
-    """2^k such that u/2^(k·degree) is close to 1, for a number u that is not; else 1.
-
-    Arithmetics with an absolute precision have numbers of some bits before the point only.
-    """
-    if not u.is_constant() or u.leading_coefficient() <= 0:
-        return flint.fmpq(1)
-    number = u.leading_coefficient()
-    bits = int(number.p).bit_length() - int(number.q).bit_length()
-    return flint.fmpq(2) ** (bits // degree) if abs(bits) > _MOST_BITS else flint.fmpq(1)
+    """2^k such that u/2^(k·degree) is close to 1, for a number u that is not, and fits no fixed
+    point; else 1."""
+    number = u.leading_coefficient() if u.is_constant() else 0
+    bits = int(number.p).bit_length() - int(number.q).bit_length() if number > 0 else 0
+    return flint.fmpq(2) ** (bits // degree if abs(bits) > _MOST_BITS else 0)
 
 
 class _Builder:
