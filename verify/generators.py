@@ -101,7 +101,7 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
 def _scale(u: Poly, degree: int) -> flint.fmpq:
     """2^k such that u/2^(k·degree) is close to 1, for a number u that is not, and fits no fixed
     point; else 1."""
-    number = u.leading_coefficient() if u.is_constant() else 0
+    number = u.leading_coefficient() if u.is_constant() else flint.fmpq(0)
     bits = int(number.p).bit_length() - int(number.q).bit_length() if number > 0 else 0
     return flint.fmpq(2) ** (bits // degree if abs(bits) > _MOST_BITS else 0)
 

@@ -43,10 +43,10 @@ def _agreed(generic: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
     """The order of the map, as far as it is looked at, and what ends it."""
     for order in range(1, claimed + _MORE + 1):
         here = [c for c in generic.order_conditions(order) if c.order == order]
-        wrong = _first_wrong(here)
+        wrong = first_wrong(here)
         if wrong is not None:
             word = "does not hold" if wrong.holds is False else "is not decided"
-            end = f"no further: of h^{order}, {_shown(wrong)} {word}"
+            end = f"no further: of h^{order}, {shown(wrong)} {word}"
             return order - 1, (end,)
     return claimed + _MORE, ()
 
@@ -59,18 +59,18 @@ def _count(generic: ByConditions, order: int) -> str:
 def _judged(
     scheme: Scheme, asked: Sequence[Condition], area: Sequence[Condition]
 ) -> tuple[Verdict, str]:
-    wrong = _first_wrong(asked)
+    wrong = first_wrong(asked)
     if wrong is not None and wrong.holds is False:
         return Verdict.REFUTED, (
-            f"{scheme.name} claims order {scheme.order}; of h^{wrong.order}, {_shown(wrong)} does "
+            f"{scheme.name} claims order {scheme.order}; of h^{wrong.order}, {shown(wrong)} does "
             "not hold"
         )
     if wrong is not None:
-        return Verdict.UNDECIDED, f"whether {_shown(wrong)} holds is not decided"
-    of_area = _first_wrong(area)
+        return Verdict.UNDECIDED, f"whether {shown(wrong)} holds is not decided"
+    of_area = first_wrong(area)
     if of_area is not None:
         return Verdict.UNDECIDED, (
-            f"order {scheme.order} is proved; of what suffices for det J ≡ 1, {_shown(of_area)} "
+            f"order {scheme.order} is proved; of what suffices for det J ≡ 1, {shown(of_area)} "
             "does not hold, and by that alone det J is not decided"
         )
     return Verdict.PROVED, (
@@ -78,12 +78,12 @@ def _judged(
     )
 
 
-def _first_wrong(conditions: Sequence[Condition]) -> Condition | None:
+def first_wrong(conditions: Sequence[Condition]) -> Condition | None:
     """The failing one of the lowest order; else, of those not decided, the one of the lowest."""
     ordered = sorted(conditions, key=lambda c: c.order)
     failing = (c for c in ordered if c.holds is False)
     return next(failing, next((c for c in ordered if c.holds is None), None))
 
 
-def _shown(condition: Condition) -> str:
+def shown(condition: Condition) -> str:
     return f"{condition.name} (residue {condition.residue})"
