@@ -4,6 +4,7 @@ import pytest
 import sympy
 
 from tests.property.strategies import P, Q, plain
+from tests.unit.planted import SPLITTINGS
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
@@ -13,10 +14,8 @@ from verify.verdict import Verdict
 
 NONLINEAR = "p**2/2 - cos(q)"
 
-SEPARABLE = ["stormer-verlet", "yoshida4", "symplectic-euler"]
 
-
-@pytest.mark.parametrize("name", SEPARABLE)
+@pytest.mark.parametrize("name", SPLITTINGS)
 def test_a_composition_of_shears_refuses_what_is_not_separable_by_its_name(name: str) -> None:
     with pytest.raises(InputError, match=rf"^hamiltonian=.*{name} is explicit only"):
         schemes.get(name).step_map(Hamiltonian.parse("p**2/2 + p*q"))

@@ -64,13 +64,20 @@ class Splitting:
         """One for each Lyndon word of at most `order` letters; InputError beyond order 8."""
         if order > MOST_ORDER:
             raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
-        ring, parts = self._exact
-        conditions = []
-        for word in sorted(lyndon_words("DK", order), key=len):
+        words = sorted(lyndon_words("DK", order), key=len)
+        return tuple(self._of_word(word) for word in words)
+
+    def _of_word(self, word: str) -> Condition:
+        if word not in self._known:
+            ring, parts = self._exact
             flow = Fraction(1, factorial(len(word)))
             residue = coefficient(ring, parts, word) - ring.constant(flow)
-            conditions.append(_condition(_equation(word, flow), len(word), ring, residue))
-        return tuple(conditions)
+            self._known[word] = _condition(_equation(word, flow), len(word), ring, residue)
+        return self._known[word]
+
+    @cached_property
+    def _known(self) -> dict[str, Condition]:
+        return {}
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """That every kick and every drift has determinant 1, whatever its size, T and V."""

@@ -1,8 +1,8 @@
 """Order 6 by the triple jump: steps θh, (1 − 2θ)h, θh of `yoshida4`, for H = T(p) + V(q).
 
 θ = 1/(2 − 2^(1/5)) solves 2θ⁵ + (1 − 2θ)⁵ = 0, which removes the error of order h⁵ of a symmetric
-scheme of order 4. With F⁵ = 2 it is (16 + 8F + 4F² + 2F³ + F⁴)/30, since that times 2 − F is 32 − F⁵.
-Nine Störmer–Verlet steps, or 19 shears, with exact coefficients in Q(2^(1/15)).
+scheme of order 4. With F⁵ = 2 it is (16 + 8F + 4F² + 2F³ + F⁴)/30, since (2 − F) times that sum is
+32 − F⁵. Nine Störmer–Verlet steps, or 19 shears, with exact coefficients in Q(2^(1/15)).
 """
 
 import sympy
