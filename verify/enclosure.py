@@ -75,11 +75,15 @@ BALLS: dict[str, Callable[[Any, int], Any]] = {
 
 def _at(x: Any, values: dict[int, Any]) -> Any:
     total = flint.arb(0)
+    present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
+    powers = {}
     for monomial, coefficient in x.to_dict().items():
         term = flint.arb(coefficient)
-        for index, power in enumerate(monomial):
-            if power:
-                term *= _power(values[index], int(power))
+        for index in present:
+            if power := int(monomial[index]):
+                if (index, power) not in powers:
+                    powers[index, power] = _power(values[index], power)
+                term *= powers[index, power]
         total += term
     return total
 
