@@ -17,7 +17,7 @@ from verify.rounding import rounding_of
 from verify.runs import run
 from verify.step_map import StepMap
 
-SYSTEMS = ("p**2/2 + q**2/2 + 3*q**4/4", "p**2/2 - cos(q)", "p**2/2 + p**3/9 + exp(q) - q")
+SYSTEMS = ("p**2/2 - cos(q)", "p**2/2 + p**3/9 + exp(q) - q")
 STEPS, H = 30, Fraction(1, 70)
 COMPILED_DIGITS = 25
 
@@ -48,7 +48,7 @@ def test_runs_in_every_arithmetic_hold_the_true_values(name: str, text: str) -> 
 
 @pytest.mark.parametrize("name", ["yoshida4", "blanes-moan4", "triple-jump6"])
 def test_fixed_point_numbers_have_the_irrational_coefficients(name: str) -> None:
-    hamiltonian = Hamiltonian.parse(SYSTEMS[1])
+    hamiltonian = Hamiltonian.parse(SYSTEMS[0])
     p, q = true_values(schemes.get(name).step_map(hamiltonian))
     made = run(
         hamiltonian, name, q="1/2", p="1/3", step_size=H, steps=STEPS, arithmetic="fixed",

@@ -157,7 +157,7 @@ def coefficient(ring: Ring, parts: Sequence[tuple[str, Poly]], word: str) -> Pol
 
 def _equation(word: str, flow: Fraction) -> str:
     name = f"coefficient of {word} = {flow}"
-    return {"K": f"Σ k_i = 1, {name}", "D": f"Σ d_i = 1, {name}"}.get(word, name)
+    return {"K": f"Σ kicks = 1, {name}", "D": f"Σ drifts = 1, {name}"}.get(word, name)
 
 
 def _condition(name: str, order: int, ring: Ring, residue: Poly) -> Condition:
