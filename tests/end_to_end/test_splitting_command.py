@@ -11,7 +11,7 @@ EVERY = ("prove", "--every-hamiltonian", "--scheme")
 def test_order_area_and_every_condition_are_told(
     capsys: pytest.CaptureFixture[str], name: str, order: int, count: int
 ) -> None:
-    found = json_of(capsys, *EVERY, name)
+    found = json_of(here(capsys, *EVERY, name, "--json")[1])
     assert (found["verdict"], found["convergence_order"]) == ("PROVED", order)
     assert (found["area_preserving"], found["delta_j"], found["order"]) == (True, "0", None)
     assert found["hamiltonian"] == "every smooth H = T(p) + V(q)"
