@@ -1,7 +1,7 @@
 """Conditions on a scheme's coefficients, evaluated exactly, each with its residue."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,7 @@ class Condition:
     holds: bool | None
 
 
+@runtime_checkable
 class ByConditions(Protocol):
     """A scheme for every H (`separable`: every H = T(p) + V(q)) that is given by coefficients."""
 
@@ -26,9 +27,22 @@ class ByConditions(Protocol):
     def separable(self) -> bool: ...
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """All that make the map agree with the exact flow up to h^order, for every H."""
+        """All that make the map agree with the exact flow up to h^order, for every H.
+
+        Where those of lower orders hold and one of h^r does not, there is an H for which the map
+        does not agree with the flow up to h^r.
+        """
         ...
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """All that make det J ≡ 1 for every H; they suffice."""
+        ...
+
+
+@runtime_checkable
+class WithSymmetry(Protocol):
+    """A scheme for every H whose coefficients tell whether it is symmetric."""
+
+    def symmetry_conditions(self) -> tuple[Condition, ...]:
+        """All that make the step of −h undo that of h, for every H; they suffice."""
         ...

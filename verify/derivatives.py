@@ -71,9 +71,9 @@ def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
 
 
 def _norm(ring: Ring, entries: Sequence[Poly], point: Mapping[str, Ball]) -> Ball:
-    total = flint.arb(0)
+    total, known = flint.arb(0), dict[int, Ball]()
     for x in entries:
-        value = enclose_over(ring, x, point)
+        value = enclose_over(ring, x, point, known)
         if value is None:
             return flint.arb.nan()
         size = value.abs_upper()

@@ -27,14 +27,18 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
         return enclose_over(ring, x, exact)
 
 
-def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
+def enclose_over(
+    ring: "Ring", x: Any, box: Mapping[str, Any], known: dict[int, Any] | None = None
+) -> Any:
     """A ball that contains x at every point of a box of balls, or None where x may be undefined.
 
-    In flint's present precision.
+    In flint's present precision. `known` keeps the generators' balls, for other x over one box.
     """
-    values: dict[int, Any] = {}
+    values: dict[int, Any] = {} if known is None else known
     for g in ring.used(x):
-        if g.kind == "variable":
+        if g.index in values:
+            pass
+        elif g.kind == "variable":
             values[g.index] = box[str(g.expression)]
         elif g.kind == "pi":
             values[g.index] = flint.arb.pi()
@@ -75,11 +79,15 @@ BALLS: dict[str, Callable[[Any, int], Any]] = {
 
 def _at(x: Any, values: dict[int, Any]) -> Any:
     total = flint.arb(0)
+    present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
+    powers = {}
     for monomial, coefficient in x.to_dict().items():
         term = flint.arb(coefficient)
-        for index, power in enumerate(monomial):
-            if power:
-                term *= _power(values[index], int(power))
+        for index in present:
+            if power := int(monomial[index]):
+                if (index, power) not in powers:
+                    powers[index, power] = _power(values[index], power)
+                term *= powers[index, power]
         total += term
     return total
 

@@ -6,6 +6,7 @@ sines (and of all exponentials) decide together over which basis they are expand
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import flint
 import sympy
@@ -15,6 +16,7 @@ from verify.lattice import lattice
 from verify.ring import Poly, Ring, RingFullError
 
 MAX_TERMS = 20000
+_MOST_BITS = 12  # of a number under a root, before it is scaled
 _TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
 _EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
 _OTHER = (sympy.log, sympy.atan)
@@ -29,7 +31,7 @@ def embed(
     Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
     levels = _levels(expressions)
-    powers = {power for e in expressions for power in e.atoms(sympy.Pow)}
+    powers = {node for node in _nodes(expressions) if isinstance(node, sympy.Pow)}
     room = 6 * sum(len(level) for level in levels) + 4 * len(powers) + 2 * len(variables)
     builder = _Builder(Ring(variables, room), _root_degrees(powers), most_terms)
     try:
@@ -38,6 +40,18 @@ def embed(
         return builder.ring, [builder.element(e) for e in expressions]
     except RingFullError as error:
         raise InputError("formula", str(expressions[0]), f"is too involved: {error}") from None
+
+
+def _nodes(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
+    """All subexpressions, each once: a composition has the same ones in many places."""
+    seen: set[sympy.Expr] = set()
+    stack = list(expressions)
+    while stack:
+        node = stack.pop()
+        if node not in seen:
+            seen.add(node)
+            stack += node.args
+    return seen
 
 
 def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
@@ -53,6 +67,7 @@ def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
     """The function applications in the expressions by depth of nesting, innermost first."""
     depth: dict[sympy.Expr, int] = {}
 
+    @cache
     def visit(node: sympy.Expr) -> int:
         inner = max((visit(a) for a in node.args), default=0)
         if _is_exponential_power(node):
@@ -81,6 +96,14 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
     if _is_exponential_power(function):
         return function.exp * sympy.log(function.base)
     return function.args[0] if function.args else sympy.S.One  # e is exp(1)
+
+
+def _scale(u: Poly, degree: int) -> flint.fmpq:
+    """2^k such that u/2^(k·degree) is close to 1, for a number u that is not, and fits no fixed
+    point; else 1."""
+    number = u.leading_coefficient() if u.is_constant() else flint.fmpq(0)
+    bits = int(number.p).bit_length() - int(number.q).bit_length() if number > 0 else 0
+    return flint.fmpq(2) ** (bits // degree if abs(bits) > _MOST_BITS else 0)
 
 
 class _Builder:
@@ -233,7 +256,8 @@ class _Builder:
         if degree == 1:
             return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
         finest = self.root_degrees[node.base]
-        root = self.root(base, finest, node)
+        scale = _scale(base, finest)
+        root = self.root(base / scale**finest, finest, node) * scale
         n *= finest // degree
         if n < 0:
             # 1/R = R^(finest−1) / u keeps the one inverse that the derivative needs anyway.

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import flint
 import sympy
@@ -18,6 +18,7 @@ from verify.proof.jets import Jets, Poly, Series
 Matrix = tuple[tuple[Poly, Poly], tuple[Poly, Poly]]
 
 
+@runtime_checkable
 class Generic(Protocol):
     """`separable`: the scheme is for H = T(p) + V(q) only."""
 

@@ -100,7 +100,7 @@ class Writer:
         self.map, self.arithmetic = step_map, arithmetic
         self.observables, self.compensated = observables, compensated
         self.program = Program()
-        self.lowering = Lowering(self.program, arithmetic.functions)
+        self.lowering = Lowering(self.program, arithmetic.functions, bits=arithmetic.bits)
         self.tangent = tangent.Tangent(self.program) if "tangent" in observables else None
         self.parameters = step_map.hamiltonian.symbols
         self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]

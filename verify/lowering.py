@@ -5,9 +5,12 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+import gmpy2
+
 from verify.program import Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
+_GUARD = 64  # bits of a given root beyond those of the arithmetic
 _OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi")
 
 
@@ -16,12 +19,14 @@ class Lowering:
     """Writes a program's values as variables `prefix` + index.
 
     `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
-    where it has `cos_sin` or `sin_cos`.
+    where it has `cos_sin` or `sin_cos`. Where it has no `root` that of a number is a number too,
+    given to its `bits`.
     """
 
     program: Program
     functions: Collection[str]
     prefix: str = "v"
+    bits: int = 0
     _written: set[int] = field(default_factory=set)
 
     def name(self, index: int) -> str:
@@ -68,6 +73,8 @@ class Lowering:
     def function(self, index: int) -> str | None:
         """The name of the function that an operation calls, where it calls one."""
         op = self.program.ops[index]
+        if self._given(index):
+            return None
         if op.kind == "root":
             return "sqrt" if op.degree == 2 else "root"
         return None if op.kind in _OPERATORS else op.kind
@@ -84,15 +91,36 @@ class Lowering:
                 return f"-{args[0]}"
             case "inverse":
                 return f"1 / {args[0]}"
+            case "root" if self._given(index):
+                return f"number{index}"
             case "root" if op.degree != 2:
                 return f"root({args[0]}, {op.degree})"
             case "pi":
                 return "pi"
         return f"{self.function(index)}({args[0]})"
 
+    def _given(self, index: int) -> bool:
+        """Whether it is a root of a number, not a square root, and there is no function for it."""
+        op = self.program.ops[index]
+        if op.kind != "root" or op.degree == 2 or "root" in self.functions:
+            return False
+        radicand = self.program.ops[op.args[0]]
+        return radicand.kind == "const" and radicand.value > 0
+
     def constants(self) -> Mapping[int, Fraction]:
         return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
 
     def named_constants(self, number: Any) -> dict[str, Any]:
-        """The constants as numbers, by their variables' names."""
-        return {self.name(i): number(value) for i, value in self.constants().items()}
+        """The constants, and roots that are given, as numbers by their names in the source."""
+        found = {self.name(i): number(value) for i, value in self.constants().items()}
+        for index, op in enumerate(self.program.ops):
+            if self._given(index):
+                radicand = self.program.ops[op.args[0]].value
+                found[f"number{index}"] = number(_root(radicand, op.degree, self.bits + _GUARD))
+        return found
+
+
+def _root(x: Fraction, degree: int, bits: int) -> Fraction:
+    """x^(1/degree), less than 2^(1 − bits) below it, for x > 0."""
+    scaled = (x.numerator << degree * bits) // x.denominator
+    return Fraction(int(gmpy2.iroot(gmpy2.mpz(scaled), degree)[0]), 1 << bits)

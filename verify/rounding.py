@@ -54,7 +54,8 @@ def rounding_of(arithmetic: Arithmetic) -> Rounding:
         if op.kind == "const":
             return rational_ball(abs(arithmetic.exact(arithmetic.number(op.value)) - op.value))
         if arithmetic.absolute:
-            return unit * _FIXED[op.kind](size)
+            given = op.kind == "root" and op.degree != 2  # a number; there is no function for it
+            return unit * (_FIXED["pi" if given else op.kind](size))
         return size * unit * (1 if op.kind in _CORRECT else _FUNCTIONS[arithmetic.name])
 
     return own

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from verify.conditions import ByConditions
 from verify.generic import Generic
 from verify.hamiltonian import Hamiltonian
 from verify.step_map import StepMap
@@ -26,7 +27,7 @@ class Scheme:
     symmetric: bool
     source: str
     build: Callable[[Hamiltonian], StepMap]
-    generic: Generic | None = None
+    generic: Generic | ByConditions | None = None
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
         return self.build(hamiltonian)

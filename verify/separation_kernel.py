@@ -129,7 +129,7 @@ def _lines(
 ) -> tuple[list[str], list[str]]:
     """The kernel's lines before the loop and in it that make these outputs, names prefixed."""
     bare = set() if prefix == "f_" else set(arithmetic.functions)
-    fresh = Lowering(kernel.lowering.program, arithmetic.functions)
+    fresh = Lowering(kernel.lowering.program, arithmetic.functions, bits=arithmetic.bits)
     before, inside = fresh.lines([kernel.outputs[name] for name in outputs])
 
     def prefixed(line: str) -> str:

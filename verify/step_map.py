@@ -13,6 +13,7 @@ from functools import cached_property
 
 import sympy
 
+from verify.composing import composed_polynomials, polynomial, written_out
 from verify.errors import InputError
 from verify.formula import parse, symbol, to_text
 from verify.hamiltonian import Hamiltonian, VectorField
@@ -27,6 +28,7 @@ P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 _MOST_IN_PARTS = 150
 _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
+_MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
 
 
 @dataclass(frozen=True)
@@ -227,12 +229,19 @@ class StepMap:
             return self.substeps[0]
         if sum(step.length for step in self.substeps) > _MOST_IN_PARTS:
             return None
-        try:
-            whole, (p1, q1) = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
-        except InputError:
+        parts = [(step.p_next, step.q_next) for step in self.substeps]
+        whole = self.substeps[0].field
+        if polynomial(whole.ring, parts) and all(step.field is whole for step in self.substeps):
+            found = composed_polynomials(whole.ring, parts, _MOST_COMPOSED)
+        elif written_out(whole.ring, parts) > _MOST_WRITTEN:
             return None
-        step = Substep(whole, p1, q1)
-        return step if step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
+        else:
+            try:
+                whole, found = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
+            except InputError:
+                return None
+        step = Substep(whole, *found) if found else None
+        return step if step and step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
 
     @cached_property
     def whole(self) -> Substep:

@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+from fractions import Fraction
 
 import pytest
 import sympy
@@ -9,8 +10,10 @@ import sympy
 from tests.property.strategies import P, Q, lie_step, plain
 from verify import schemes, systems
 from verify.errors import InputError
+from verify.generic import Stage, StageEquations
 from verify.hamiltonian import Hamiltonian
 from verify.proof.order import Proof, prove
+from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.verdict import Verdict
 
 FILES = sorted(m.name for m in pkgutil.iter_modules(schemes.__path__))
@@ -105,6 +108,28 @@ def test_a_scheme_claims_no_less_than_it_has_on_a_nonlinear_problem(name: str) -
     scheme, proof = schemes.get(name), proof_of(name, hardest_taken(name))
     assert proof.convergence_order == scheme.order
     assert proof.area_preserving is scheme.area_preserving
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scheme_is_symmetric_exactly_where_it_claims_to_be(name: str) -> None:
+    """By its coefficients for every H; or, for one H, the step of −h undoes that of h not quite."""
+    scheme = schemes.get(name)
+    found = prove_symmetry(scheme)
+    assert found.verdict is (Verdict.PROVED if scheme.symmetric else Verdict.REFUTED), found.reason
+    if scheme.symmetric and scheme.explicit:
+        series = by_series(scheme.step_map(Hamiltonian.parse("p**3/3 + p**2/2 + q**3 - q**2")), 5)
+        assert (series.verdict, series.power) == (Verdict.UNDECIDED, None)
+    if not scheme.symmetric:
+        assert found.power is not None
+        assert found.power > scheme.order
+
+
+def test_a_stage_in_the_middle_is_undone_by_itself_and_others_are_not() -> None:
+    one, third = Fraction(1), Fraction(1, 3)
+    assert palindromic(StageEquations((Stage(one, one, one / 2, one / 2),)))
+    assert palindromic(StageEquations((Stage(one, one, third), Stage(one, one, 1 - third, one))))
+    assert not palindromic(StageEquations((Stage(one, one, one / 2, third),)))
+    assert not palindromic(StageEquations((Stage(one, one, third), Stage(one, one, third, one))))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,9 +1,13 @@
 """Compositions of shears, Störmer–Verlet and Yoshida's, against what they are defined as."""
 
+from fractions import Fraction
+
 import pytest
 import sympy
 
 from tests.property.strategies import P, Q, plain
+from tests.unit.planted import SPLITTINGS
+from tests.unit.stepper import Stepper
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
@@ -13,10 +17,8 @@ from verify.verdict import Verdict
 
 NONLINEAR = "p**2/2 - cos(q)"
 
-SEPARABLE = ["stormer-verlet", "yoshida4", "symplectic-euler"]
 
-
-@pytest.mark.parametrize("name", SEPARABLE)
+@pytest.mark.parametrize("name", SPLITTINGS)
 def test_a_composition_of_shears_refuses_what_is_not_separable_by_its_name(name: str) -> None:
     with pytest.raises(InputError, match=rf"^hamiltonian=.*{name} is explicit only"):
         schemes.get(name).step_map(Hamiltonian.parse("p**2/2 + p*q"))
@@ -30,17 +32,32 @@ def test_verlet_kicks_drifts_and_kicks() -> None:
     assert sympy.expand(step_map.p_next - half + plain("h") / 2 * sympy.sin(q_next)) == 0
 
 
-def test_yoshida_composes_three_steps_of_verlet_and_its_coefficients_are_exact() -> None:
-    gamma = 1 / (2 - sympy.cbrt(2))
-    at = {P: sympy.Rational(3, 7), Q: sympy.Rational(5, 11), plain("h"): sympy.Rational(1, 9)}
-    verlet = schemes.get("stormer-verlet").step_map(Hamiltonian.parse(NONLINEAR))
-    p, q = at[P], at[Q]
-    for part in (gamma, 1 - 2 * gamma, gamma):
-        put = {P: p, Q: q, plain("h"): part * at[plain("h")]}
-        p, q = (x.subs(put).evalf(60) for x in (verlet.p_next, verlet.q_next))
-    ours = schemes.get("yoshida4").step_map(Hamiltonian.parse(NONLINEAR))
-    for one, other in zip((ours.p_next, ours.q_next), (p, q), strict=True):
-        assert abs(one.subs(at).evalf(60) - other) < sympy.Rational(1, 10**50)
+_THIRD, _FIFTH = 1 / (2 - sympy.cbrt(2)), 1 / (2 - sympy.root(2, 5))
+_TRIPLE = (_THIRD, 1 - 2 * _THIRD, _THIRD)
+_SUZUKI = 1 / (4 - sympy.cbrt(4))
+OF_VERLET = {
+    "yoshida4": _TRIPLE,
+    "suzuki4": (_SUZUKI, _SUZUKI, 1 - 4 * _SUZUKI, _SUZUKI, _SUZUKI),
+    "triple-jump6": [a * b for a in (_FIFTH, 1 - 2 * _FIFTH, _FIFTH) for b in _TRIPLE],
+}
+
+
+@pytest.mark.parametrize("name", OF_VERLET)
+def test_a_composition_makes_the_steps_of_verlet_one_after_the_other(name: str) -> None:
+    verlet = schemes.get("stormer-verlet")
+    hamiltonian = Hamiltonian.parse(NONLINEAR)
+    parts = [(kind, step * x) for step in OF_VERLET[name] for kind, x in verlet.generic.parts]
+    at = {"p": Fraction(3, 7), "q": Fraction(5, 11), "h": Fraction(1, 9), "steps": 3}
+    one, other, wrong = (
+        Stepper(step_map).run(**at)
+        for step_map in (
+            schemes.get(name).step_map(hamiltonian),
+            shears(hamiltonian, name, parts),
+            shears(hamiltonian, name, parts[6:9] + parts[:6] + parts[9:]),
+        )
+    )
+    assert all(abs(x - y) < 1e-55 for x, y in zip(one, other, strict=True))
+    assert any(abs(x - y) > 1e-6 for x, y in zip(one, wrong, strict=True))
 
 
 @pytest.mark.parametrize("gamma", ["27/20", "1/3"])

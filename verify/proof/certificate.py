@@ -26,6 +26,7 @@ from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.checking import FORMAT
 from verify.proof.every import EveryProof
 from verify.proof.jets import Jets
+from verify.proof.splitting_conditions import Splitting
 from verify.proof.telescoping import telescopes, telescopes_of_lie
 from verify.ring import Poly
 from verify.schemes import get
@@ -40,10 +41,13 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
     data: dict[str, Any] = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
     data["separable"] = proof.separable
-    if isinstance(generic, StageEquations) and proof.area_preserving:
-        rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in generic.stages)
+    stages = generic.stages if isinstance(generic, Splitting) else generic
+    if isinstance(stages, StageEquations) and proof.area_preserving:
+        rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in stages.stages)
         return data | {"stages": [[text(x) for x in row] for row in rows]}
-    assert proof.order is not None  # noqa: S101 - PROVED, and not area-preserving
+    if proof.order is None or not isinstance(generic, Generic):
+        problem = "is proved by its coefficients; the checker knows rational ones, of stages"
+        raise InputError("scheme", proof.scheme, problem)
     jets = Jets(proof.order + 2, separable=proof.separable)
     series = generic.taylor(jets, proof.order)
     leading = list(jets.delta_j(*series))[-1]

@@ -16,72 +16,26 @@ for H = p²/2 + V(q), V with two maxima of one height and different V'', then G 
 along the orbit that joins them, and yet has different values at its ends. ∎
 
 Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determinants`.
+
+Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 
-from verify.conditions import Condition
+from verify.conditions import ByConditions
 from verify.errors import InputError
 from verify.generic import Generic, StageEquations, TaylorSeries
+from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.jets import Jets, Poly, shown
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
 from verify.scheme import Scheme
 from verify.schemes import get
 from verify.verdict import Verdict
 
-ARGUMENT = (
-    "For any η: the exact flow has det 1, so that all coefficients of h, h², … in its determinant "
-    "vanish. The scheme shares its terms up to h^η, so the coefficients of h … h^η vanish for it "
-    "too. In that of h^(η+1) the flow has one term more, which is linear: div(X^η f)/(η+1)!, f = "
-    "(−H_q, H_p); the scheme's coefficient is L = −div(X^η f)/(η+1)!. For even η it is X·G, G = "
-    "−1/(η+1)! Σ_k (−1)^k P_(η−k, k), k = 0 … η, P_(a, b) = ∂(Xᵃp, X^b q)/∂(p, q): the two-forms "
-    "[a, b] = d(Xᵃp)∧d(X^b q) + d(X^b p)∧d(Xᵃq) are symmetric, the Lie derivative takes [a, b] to "
-    "[a+1, b] + [a, b+1], so that in its alternating sum over a + b = η all but 2 [η+1, 0] cancel, "
-    "and [η+1, 0] is div(X^η f) dp∧dq. Along an orbit the leading term therefore sums to a "
-    "boundary term, and Λ gains one order in h. For odd η it does not: X·G vanishes at an "
-    "equilibrium for every smooth G, and L is −2 (−D)^((η+1)/2)/(η+1)! there, D = det Hess H. ∎"
-)
 _MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s
 _MORE = 4  # orders beyond the claimed one that are looked at
-
-
-@dataclass(frozen=True)
-class EveryProof:
-    """What is proved of one scheme for every H (`separable`: every H = T(p) + V(q)).
-
-    `order`, `area_preserving`, `convergence_order` as in `verify.proof.order.Proof`, for a generic
-    H; `leading` is the coefficient of h^order, a polynomial in H_p, H_q, H_pp, …, and `formula`
-    what it is in closed form, where that is known. `telescopes`: whether it is X·`potential` for
-    every H, `why` says how that is known. `checked` names the identities that were checked,
-    `conditions` those on the coefficients, of a scheme that is given by them.
-    """
-
-    scheme: str
-    separable: bool
-    verdict: Verdict
-    reason: str
-    order: int | None
-    area_preserving: bool | None
-    convergence_order: int | None
-    leading: str = "0"
-    formula: str = ""
-    telescopes: bool | None = None
-    potential: str | None = None
-    why: str = ""
-    checked: tuple[str, ...] = ()
-    conditions: tuple[Condition, ...] = ()
-
-    @property
-    def argument(self) -> str:
-        """What is proved on paper beside what the machine checked; see the module's text."""
-        if isinstance(get(self.scheme).generic, TaylorSeries):
-            return ARGUMENT
-        return ""
-
-    @property
-    def quantifier(self) -> str:
-        return "every smooth H = T(p) + V(q)" if self.separable else "every smooth H"
 
 
 def prove_every(name: str, separable: bool = False) -> EveryProof:
@@ -97,9 +51,24 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
         problem = f"of order {_MOST_ORDER} at most: its polynomials have too many terms"
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
     separable = separable or scheme.generic.separable
+    if isinstance(scheme.generic, ByConditions):
+        return _of_conditions(scheme, scheme.generic, separable)
     if isinstance(scheme.generic, StageEquations):
         return _of_stages(scheme, scheme.generic, separable)
     return _of_series(scheme, scheme.generic, separable)
+
+
+def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> EveryProof:
+    """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
+    proof = prove_by_conditions(scheme, generic)
+    if separable and not generic.separable:
+        if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
+            reason = f"of every smooth H: {proof.reason}; of H = T(p) + V(q) alone nothing is said"
+            return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
+        proof = replace(proof, separable=True)
+    if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, Generic):
+        return proof
+    return replace(_of_series(scheme, generic, separable), conditions=proof.conditions)
 
 
 def _convergence(jets: Jets, generic: Generic, most: int) -> int:

@@ -172,7 +172,7 @@ class _BySeries:
     def reach(self, n: int) -> bool:
         """Makes the coefficients up to hⁿ, and a few more; False where the map has none."""
         if self.made is None or self.made[1].most < n:
-            most = _FIRST_ORDERS if n <= _FIRST_ORDERS else MOST_ORDERS
+            most = max(_FIRST_ORDERS, min(n + 1, MOST_ORDERS))  # terms multiply with every order
             self.made = self.map.taylor(most)
         return self.made is not None
 

@@ -6,24 +6,20 @@ implicit; this file holds the explicit one and says so.
 
 import sympy
 
-from verify.generic import StageEquations
 from verify.scheme import Scheme
-from verify.splitting import shears
+from verify.splitting import alternating, splitting
 
 EXAMPLES = ("symplectic-euler",)
-PARTS = (("kick", sympy.S.One), ("drift", sympy.S.One))
+PARTS = alternating("kick", (sympy.S.One, sympy.S.One))
 
 
 def make(name: str) -> Scheme | None:
     if name != EXAMPLES[0]:
         return None
-    return Scheme(
-        name=name,
+    return splitting(
+        name,
+        PARTS,
         order=1,
-        area_preserving=True,
-        explicit=True,
         symmetric=False,
         source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-        build=lambda hamiltonian: shears(hamiltonian, name, PARTS),
-        generic=StageEquations.of_shears(PARTS),
     )

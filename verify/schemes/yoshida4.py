@@ -8,33 +8,22 @@ element of the ring with R³ = 2. Neighbouring half kicks are one; seven shears,
 import sympy
 
 from verify.scheme import Scheme
-from verify.splitting import shears
+from verify.splitting import composed, splitting
 
 EXAMPLES = ("yoshida4",)
 _R = sympy.cbrt(2)
 _OUTER = (4 + 2 * _R + _R**2) / 6
-_INNER = 1 - 2 * _OUTER
-_PARTS = (
-    ("kick", _OUTER / 2),
-    ("drift", _OUTER),
-    ("kick", (_OUTER + _INNER) / 2),
-    ("drift", _INNER),
-    ("kick", (_OUTER + _INNER) / 2),
-    ("drift", _OUTER),
-    ("kick", _OUTER / 2),
-)
+STEPS = (_OUTER, 1 - 2 * _OUTER, _OUTER)
 
 
 def make(name: str) -> Scheme | None:
     if name != EXAMPLES[0]:
         return None
-    return Scheme(
-        name=name,
+    return splitting(
+        name,
+        composed("kick", STEPS),
         order=4,
-        area_preserving=True,
-        explicit=True,
         symmetric=True,
         source="Yoshida, Phys. Lett. A 150 (1990) 262–268; Hairer, Lubich, Wanner, "
         "Geometric Numerical Integration, II.4",
-        build=lambda hamiltonian: shears(hamiltonian, name, _PARTS),
     )

@@ -1,0 +1,89 @@
+"""Proofs for every H by conditions on a scheme's coefficients, evaluated exactly.
+
+The order is the largest r for which all conditions up to h^r hold. Where the conditions on area
+hold, det J ≡ 1. They suffice; so where one does not, nothing follows for det J.
+"""
+
+from collections.abc import Sequence
+
+from verify.conditions import ByConditions, Condition
+from verify.proof.every_proof import EveryProof
+from verify.scheme import Scheme
+from verify.verdict import Verdict
+
+_MORE = 2  # orders beyond the claimed one that are looked at
+
+
+def prove_by_conditions(scheme: Scheme, generic: ByConditions) -> EveryProof:
+    """The order of the map and whether det J ≡ 1, for every H that the scheme takes.
+
+    `conditions` of the result has those up to the claimed order, and those on area. REFUTED where
+    one of the former fails, with the first that does; UNDECIDED where one is not decided, or where
+    det J is not; `order` (of ΔJ) is always None.
+    """
+    agreed, end = _agreed(generic, scheme.order)
+    asked = tuple(c for c in generic.order_conditions(scheme.order) if c.order)
+    area = generic.area_conditions()
+    preserved = bool(area) and all(condition.holds for condition in area)
+    verdict, reason = _judged(scheme, asked, area)
+    return EveryProof(
+        scheme.name,
+        generic.separable,
+        verdict,
+        reason,
+        order=None,
+        area_preserving=True if preserved else None,
+        convergence_order=agreed,
+        checked=(f"order {agreed}, {_count(generic, agreed)}", *end),
+        conditions=(*asked, *area),
+    )
+
+
+def _agreed(generic: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
+    """The order of the map, as far as it is looked at, and what ends it."""
+    for order in range(1, claimed + _MORE + 1):
+        here = [c for c in generic.order_conditions(order) if c.order == order]
+        wrong = first_wrong(here)
+        if wrong is not None:
+            word = "does not hold" if wrong.holds is False else "is not decided"
+            end = f"no further: of h^{order}, {shown(wrong)} {word}"
+            return order - 1, (end,)
+    return claimed + _MORE, ()
+
+
+def _count(generic: ByConditions, order: int) -> str:
+    count = len(generic.order_conditions(order)) if order else 0
+    return f"{count} condition{'' if count == 1 else 's'} on the coefficients"
+
+
+def _judged(
+    scheme: Scheme, asked: Sequence[Condition], area: Sequence[Condition]
+) -> tuple[Verdict, str]:
+    wrong = first_wrong(asked)
+    if wrong is not None and wrong.holds is False:
+        return Verdict.REFUTED, (
+            f"{scheme.name} claims order {scheme.order}; of h^{wrong.order}, {shown(wrong)} does "
+            "not hold"
+        )
+    if wrong is not None:
+        return Verdict.UNDECIDED, f"whether {shown(wrong)} holds is not decided"
+    of_area = first_wrong(area)
+    if of_area is not None:
+        return Verdict.UNDECIDED, (
+            f"order {scheme.order} is proved; of what suffices for det J ≡ 1, {shown(of_area)} "
+            "does not hold, and by that alone det J is not decided"
+        )
+    return Verdict.PROVED, (
+        f"det J ≡ 1, and order {scheme.order}: every condition on the coefficients holds exactly"
+    )
+
+
+def first_wrong(conditions: Sequence[Condition]) -> Condition | None:
+    """The failing one of the lowest order; else, of those not decided, the one of the lowest."""
+    ordered = sorted(conditions, key=lambda c: c.order)
+    failing = (c for c in ordered if c.holds is False)
+    return next(failing, next((c for c in ordered if c.holds is None), None))
+
+
+def shown(condition: Condition) -> str:
+    return f"{condition.name} (residue {condition.residue})"
