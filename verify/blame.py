@@ -53,6 +53,9 @@ def judge(case: Case, *, drifts: bool = True) -> Judgement:
         return Judgement("escapes", f"the exact solution {motion.orbit.told}", motion.orbit)
     precise, _ = motion.precise
     if not motion.stays(precise):
+        if motion.orbit.kind == "unknown":
+            told = f"the exact solution, to be held against, is not known: {motion.orbit.told}"
+            return Judgement("undecided", told, motion.orbit)
         return _scheme(motion)
     if not motion.together(motion.as_far, precise):
         return _not_the_scheme(motion)

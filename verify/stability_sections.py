@@ -30,9 +30,9 @@ from verify.arithmetic import mpfr
 from verify.errors import InputError
 from verify.exact import decimal, positive, text
 from verify.results import Frozen
-from verify.runs import MAX_STEPS
 from verify.scene_values import InitialValue, Number, Steps, StepSize, Time
 
+_MOST_STEPS = 10**9  # of a run that is judged: minutes
 _MOST_MAP_STEPS = 100_000
 _MOST_CELLS = 10_000
 _SHOWN = 3  # digits of a value in a range
@@ -100,8 +100,8 @@ class Stability(OfSchemes):
         if (self.time is None) == (self.steps is None):
             raise InputError("stability", "time, steps", "give one of the two")
         for h in self.step_sizes:
-            if not 1 <= self.steps_for(h) <= MAX_STEPS:
-                problem = f"makes {self.steps_for(h)} steps; allowed: 1 … {MAX_STEPS}"
+            if not 1 <= self.steps_for(h) <= _MOST_STEPS:
+                problem = f"makes {self.steps_for(h)} steps; allowed: 1 … {_MOST_STEPS}"
                 raise InputError("step_size", text(h), problem)
         return self
 
