@@ -49,7 +49,7 @@ class LineGroup:
 @dataclass(frozen=True)
 class SchemeRow:
     name: str
-    cells: tuple[str, ...]  # claimed order, measured orders, operations, gradients, compile time
+    cells: tuple[str | Markup, ...]  # order claimed, measured, of Λ, operations, gradients, time
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,10 @@ def work_precision_view(found: WorkPrecisionResult, *, name: str) -> WorkPrecisi
 
 
 def _finding(found: WorkPrecisionResult) -> Iterator[str]:
-    span = f"over [0, {number(found.time)}] from {start(found)}"
     yield (
-        f"The error is that of the float64 state at T {span}, against the exact solution, which is "
-        f"known to within {number(found.reference_bound)}."
+        f"The error is that of the float64 state at T = {number(found.time)} from {start(found)}, "
+        "against the exact solution, which is known to within "
+        f"{number(found.reference_bound)}."
     )
     points = [point for line in found.lines if not line.peer for point in line.points]
     rounded = sum(point.limited_by == "rounding" for point in points)
@@ -140,14 +140,17 @@ def _slope(found: SlopeResult) -> str:
     return f"{float(found.value):.2f}{NBSP}±{NBSP}{float(found.standard_error or 0):.2f}"
 
 
-def _operations(cost: CostResult | None) -> tuple[str, str]:
+def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     if cost is None:
         return "–", "–"
     counts = {"+": cost.additions, "×": cost.multiplications, "÷": cost.divisions, **cost.functions}
     shown = ", ".join(f"{n}{NBSP}{name}" for name, n in counts.items() if n)
     if cost.gradient is None:
         return shown, "–"
-    return shown, ", ".join(f"{n}{NBSP}{name}" for name, n in cost.gradient.items())
+    counted = (
+        Markup("{}{}H<sub>{}</sub>").format(n, NBSP, name[-1]) for name, n in cost.gradient.items()
+    )
+    return shown, Markup(", ").join(counted)
 
 
 def _group(line: WorkLine) -> LineGroup:
