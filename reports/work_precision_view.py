@@ -111,7 +111,9 @@ def _finding(found: WorkPrecisionResult) -> Iterator[str]:
 
 def _computed(found: WorkPrecisionResult) -> str:
     return (
-        f"Reference: {found.reference}. Run times: {found.clock}, the least and the median of "
+        f"Reference: {found.reference}, its bound estimated by a second evaluation with more "
+        "digits. "
+        f"Run times: {found.clock}, the least and the median of "
         f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
         "takes is subtracted, compilation is apart. The loops are compiled and step the state "
         f"alone. A point is limited by rounding where that may be more than "
@@ -194,7 +196,7 @@ def _system(point: SystemPoint) -> SystemRow:
         point.certified or f"– ({point.reason})",
         _seconds(point.seconds_min),
         _seconds(point.seconds_median),
-        point.error_kind,
+        f"{point.error_kind} ({point.reason})" if point.reason else point.error_kind,
     )
     return SystemRow(point.arithmetic, cells)
 
