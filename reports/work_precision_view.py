@@ -49,7 +49,7 @@ class LineGroup:
 @dataclass(frozen=True)
 class SchemeRow:
     name: str
-    cells: tuple[str, ...]  # claimed order, measured orders, operations, gradients, compile time
+    cells: tuple[str | Markup, ...]  # order claimed, measured, of Λ, operations, gradients, time
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,10 @@ def work_precision_view(found: WorkPrecisionResult, *, name: str) -> WorkPrecisi
 
 
 def _finding(found: WorkPrecisionResult) -> Iterator[str]:
-    span = f"over [0, {number(found.time)}] from {start(found)}"
     yield (
-        f"The error is that of the float64 state at T {span}, against the exact solution, which is "
-        f"known to within {number(found.reference_bound)}."
+        f"The error is that of the float64 state at T = {number(found.time)} from {start(found)}, "
+        "against the exact solution, which is known to within "
+        f"{number(found.reference_bound)}."
     )
     points = [point for line in found.lines if not line.peer for point in line.points]
     rounded = sum(point.limited_by == "rounding" for point in points)
@@ -111,7 +111,9 @@ def _finding(found: WorkPrecisionResult) -> Iterator[str]:
 
 def _computed(found: WorkPrecisionResult) -> str:
     return (
-        f"Reference: {found.reference}. Run times: {found.clock}, the least and the median of "
+        f"Reference: {found.reference}, its bound estimated by a second evaluation with more "
+        "digits. "
+        f"Run times: {found.clock}, the least and the median of "
         f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
         "takes is subtracted, compilation is apart. The loops are compiled and step the state "
         f"alone. A point is limited by rounding where that may be more than "
@@ -140,14 +142,17 @@ def _slope(found: SlopeResult) -> str:
     return f"{float(found.value):.2f}{NBSP}±{NBSP}{float(found.standard_error or 0):.2f}"
 
 
-def _operations(cost: CostResult | None) -> tuple[str, str]:
+def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     if cost is None:
         return "–", "–"
     counts = {"+": cost.additions, "×": cost.multiplications, "÷": cost.divisions, **cost.functions}
     shown = ", ".join(f"{n}{NBSP}{name}" for name, n in counts.items() if n)
     if cost.gradient is None:
         return shown, "–"
-    return shown, ", ".join(f"{n}{NBSP}{name}" for name, n in cost.gradient.items())
+    counted = (
+        Markup("{}{}H<sub>{}</sub>").format(n, NBSP, name[-1]) for name, n in cost.gradient.items()
+    )
+    return shown, Markup(", ").join(counted)
 
 
 def _group(line: WorkLine) -> LineGroup:
@@ -191,7 +196,7 @@ def _system(point: SystemPoint) -> SystemRow:
         point.certified or f"– ({point.reason})",
         _seconds(point.seconds_min),
         _seconds(point.seconds_median),
-        point.error_kind,
+        f"{point.error_kind} ({point.reason})" if point.reason else point.error_kind,
     )
     return SystemRow(point.arithmetic, cells)
 

@@ -99,8 +99,10 @@ def execute(
     for name, result in _performed(together, _workers(together, workers), store):
         store.put(name, result)
         finish(name, result)
-    for name in waiting.keys() - together.keys():  # here, when no other task is under way
-        result = perform(waiting[name], store.keeper(name))
+    for name, task in waiting.items():
+        if name in together:
+            continue
+        result = perform(task, store.keeper(name))  # here, when no other is under way
         store.put(name, result)
         finish(name, result)
     return results

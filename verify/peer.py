@@ -12,7 +12,7 @@ class PeerError(Exception):
 
 
 @dataclass(frozen=True)
-class Task:
+class InitialValueProblem:
     """p' = −H_q, q' = H_p from (p, q) at t = 0 to `time`."""
 
     hamiltonian: Hamiltonian

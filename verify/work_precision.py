@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import hypot, log10
+from statistics import median
 
 from verify import peers
 from verify.arithmetic import float64
@@ -18,14 +19,13 @@ from verify.exact import text, upper
 from verify.exact_solution import exact_solution
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
-from verify.peer import Answer, PeerError, Solver
-from verify.peer import Task as PeerTask
+from verify.peer import Answer, InitialValueProblem, PeerError, Solver
 from verify.proof.exact_flow import NoFlowError
 from verify.results import RunResult
 from verify.runs import run
 from verify.tasks import WorkPrecisionTask
 from verify.timing import Timed, clock, interleaved, less, nothing
-from verify.work_precision_lines import comparisons, line, median_of
+from verify.work_precision_lines import comparisons, line
 from verify.work_precision_results import SystemPoint, WorkLine, WorkPoint, WorkPrecisionResult
 from verify.work_precision_runs import (
     ROUNDING_SHARE,
@@ -140,11 +140,11 @@ def _of(blank: Callable[[], object]) -> int:
 def _peer(problem: Problem, name: str, advance: Advance) -> tuple[list[_Timing], float]:
     """Its points over its tolerances, and what making it ready took the first time."""
     p, q = problem.start
-    task = PeerTask(problem.hamiltonian, p, q, problem.time)
+    given = InitialValueProblem(problem.hamiltonian, p, q, problem.time)
     module, timings, compiled = peers.get(name), [], 0.0
     for tolerance in module.TOLERANCES:
         try:
-            solver: Solver = module.make(task, tolerance)
+            solver: Solver = module.make(given, tolerance)
             answer = solver.solve()
         except PeerError as error:
             point = failed(name, tolerance=text(tolerance), reason=str(error))
@@ -200,7 +200,7 @@ def _systems(problem: Problem, task: WorkPrecisionTask) -> list[SystemPoint]:
     points = []
     for k, ((name, digits), result) in enumerate(zip(asked, first, strict=True)):
         taken = [each[k].seconds for each in rounds]
-        timed = Timed(min(taken), median_of(taken))
+        timed = Timed(min(taken), median(taken))
         if name == "float64":  # compiled, as it is in the other figures
             timed = _compiled_float(problem, task)
         points.append(_system_point(name, digits, result, timed))

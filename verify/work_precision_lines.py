@@ -12,7 +12,6 @@ orbit itself takes no part: it says nothing of how good the scheme is.
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from itertools import combinations, pairwise
-from statistics import median
 
 from verify.balls import slope
 from verify.results import Value
@@ -31,8 +30,6 @@ ALIKE = 1.1  # a ratio within this both ways is within what run times are known 
 FEWEST = 3  # points of a slope
 _NOTHING = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
 Place = tuple[float, float]  # lg of one quantity and of another
-
-median_of = median
 
 
 def line(

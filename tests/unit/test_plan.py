@@ -3,16 +3,18 @@
 import time
 from fractions import Fraction
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from tests.unit.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
+from verify.perform import KINDS
 from verify.plan import plan_scenes
 from verify.planned import Plan
 from verify.runs import CLOSED_FORM
 from verify.scene import load_scene
-from verify.tasks import GrowthTask, RunTask, key
+from verify.tasks import GrowthTask, RunTask, Task, key
 
 
 def runs_of(plan: Plan) -> list[RunTask]:
@@ -93,6 +95,11 @@ def test_the_plan_of_the_paper_has_the_grids_and_says_why_of_each_task() -> None
 def test_a_grid_over_parameter_values_needs_one_task_for_each(tmp_path: Path) -> None:
     scenes = [load(tmp_path, DUFFING + f"parameters = {{ delta = {d} }}\n" + GRID) for d in (1, 2)]
     assert len(runs_of(plan_scenes(scenes))) == 2
+
+
+def test_every_kind_of_task_has_its_way_to_be_done() -> None:
+    kinds = {model.model_fields["kind"].default for model in get_args(Task)}
+    assert kinds == set(KINDS)
 
 
 def test_a_plan_of_many_tasks_is_made_quickly(tmp_path: Path) -> None:

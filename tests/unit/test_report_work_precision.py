@@ -62,6 +62,7 @@ def test_orders_comparisons_and_costs_stand_on_the_page() -> None:
     assert "At equal run time" in text
     assert "0, proved" in text
     assert "3 +, 4 ×" in text
+    assert "known to within 1 × 10⁻⁴⁰" in text
 
 
 def test_rounded_and_failed_runs_are_named_and_not_dropped() -> None:
@@ -170,6 +171,7 @@ def test_what_others_wrote_stays_text() -> None:
     lines = with_points(EVIL, FAILED), ladder("lie2")
     page = page_of(
         *lines, comparisons=comparisons(lines, "1"), clock=EVIL, reference=EVIL,
-        systems_scheme=EVIL, left_out=((EVIL, EVIL),), systems=(system(arithmetic=EVIL, reason=EVIL),),
+        systems_scheme=EVIL, left_out=((EVIL, EVIL),),
+        systems=(system(arithmetic=EVIL, reason=EVIL),),
     )  # fmt: skip
     assert EVIL not in page

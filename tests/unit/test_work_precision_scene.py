@@ -163,9 +163,9 @@ def scene_file(tmp_path: Path) -> Path:
     path.write_text(
         DUFFING
         + "parameters = { delta = 1 }\n"
-        + SECTION.replace("q = 1", "q = 30").replace("0.01,", "0.25, 0.01,")
+        + SECTION.replace("q = 1", "q = 30").replace("0.01, 0.005", "0.125, 0.01, 0.001, 0.0005")
         + 'schemes = ["lie1", "stormer-verlet", "lie2"]\nrepeats = 1\npeers = false\n'
-        + 'number_systems = ["mpfr"]\ndigits = [20]\nnumber_systems_step_size = 0.005\n'
+        + 'number_systems = ["mpfr"]\ndigits = [20]\nnumber_systems_step_size = 0.0005\n'
         + 'number_systems_scheme = "stormer-verlet"\n'
     )
     return path
@@ -179,7 +179,7 @@ def test_json_has_the_keys_that_scripts_rely_on_and_failed_runs_too(scene_file: 
         "scheme", "step_size", "error", "lambda", "seconds_min", "seconds_median", "limited_by",
         "lambda_limited_by", "rounding", "truncation", "energy_error", "lambda_plain", "tolerance",
     }  # fmt: skip
-    assert len(data["points"]) == 9
+    assert len(data["points"]) == 12
     for point in data["points"]:
         assert keys <= set(point)
         for name in ("step_size", "error", "lambda", "seconds_min", "seconds_median"):

@@ -8,7 +8,7 @@ import time
 from fractions import Fraction
 
 from verify.arithmetic import float64
-from verify.peer import Answer, PeerError, Solver, Task
+from verify.peer import Answer, InitialValueProblem, PeerError, Solver
 from verify.proof.exact_flow import functions_at
 
 NAME = "DOP853"
@@ -16,16 +16,16 @@ LIBRARY = "scipy"
 TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 14))  # scipy takes none below 100 · 2⁻⁵²
 
 
-def make(task: Task, tolerance: Fraction) -> Solver:
+def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     """With rtol = atol = tolerance."""
     from scipy.integrate import solve_ivp
 
     begun = time.perf_counter()
-    field, _ = task.hamiltonian.field()
+    field, _ = problem.hamiltonian.field()
     slopes = functions_at(
         float64.compiled_at_once(), [(field.ring, -field.h_q), (field.ring, field.h_p)]
     )
-    start, end = (float(task.p), float(task.q)), float(task.time)
+    start, end = (float(problem.p), float(problem.q)), float(problem.time)
     slopes(*start)
     compiled = time.perf_counter() - begun
 

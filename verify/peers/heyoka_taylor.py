@@ -12,21 +12,21 @@ from typing import Any
 
 import sympy
 
-from verify.peer import Answer, PeerError, Solver, Task
+from verify.peer import Answer, InitialValueProblem, PeerError, Solver
 
 NAME = "Taylor (heyoka)"
 LIBRARY = "heyoka"
 TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 16))
 
 
-def make(task: Task, tolerance: Fraction) -> Solver:
+def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     """Raises PeerError for an H that heyoka does not take."""
     import heyoka as hy
 
     begun = time.perf_counter()
     p, q = hy.make_vars("p", "q")
-    h = _translated(task.hamiltonian.exact)
-    start, end = (float(task.p), float(task.q)), float(task.time)
+    h = _translated(problem.hamiltonian.exact)
+    start, end = (float(problem.p), float(problem.q)), float(problem.time)
     taylor = hy.taylor_adaptive(
         [(p, -hy.diff(h, q)), (q, hy.diff(h, p))], list(start), tol=float(tolerance)
     )
