@@ -15,7 +15,7 @@ from markupsafe import Markup
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.markers import CARETUPBASE
+from matplotlib.markers import CARETUPBASE, MarkerStyle
 from matplotlib.transforms import Bbox
 
 from reports.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
@@ -82,15 +82,16 @@ def panels(shown: Sequence[Panel], *, name: str, label: str) -> Markup:
         height = _PANEL * len(shown) + _LEGEND_ROW * (count + 1) // 2 + 12
         figure = Figure(figsize=(_WIDTH * _POINT, height * _POINT), dpi=72, layout="constrained")
         FigureCanvasAgg(figure)
-        figure.get_layout_engine().set(hspace=0.04)
-        all_axes = figure.subplots(len(shown), 1, squeeze=False)[:, 0]
-        for axes, panel in zip(all_axes, shown, strict=True):
+        engine: Any = figure.get_layout_engine()
+        engine.set(hspace=0.04)
+        all_axes: Any = figure.subplots(len(shown), 1, squeeze=False)
+        for axes, panel in zip(all_axes[:, 0], shown, strict=True):
             _panel(axes, panel)
         _legend(figure, shown)
         # The layout is made once, so that labels can be placed where nothing else is.
         figure.canvas.draw()
         figure.set_layout_engine("none")
-        for axes, panel in zip(all_axes, shown, strict=True):
+        for axes, panel in zip(all_axes[:, 0], shown, strict=True):
             _place_labels(axes, panel)
         return figure
 
@@ -181,7 +182,7 @@ def _keys(shown: Sequence[Panel]) -> int:
 def _explained(shown: Sequence[Panel]) -> list[Line2D]:
     """What the marks mean, as far as they occur."""
     marks = [m for panel in shown for line in panel.lines for m in line.marks]
-    grey = {"color": INK, "linestyle": "none", "markersize": _SIZE}
+    grey: dict[str, Any] = {"color": INK, "linestyle": "none", "markersize": _SIZE}
     found = []
     if any(not m.full and m.y is not None for m in marks):
         found.append(
@@ -197,7 +198,7 @@ def _explained(shown: Sequence[Panel]) -> list[Line2D]:
     if any(m.y is None for m in marks):
         found.append(Line2D([], [], marker="x", label="× at the edge: failed", **grey))
     if any(panel.beyond(m) for panel in shown for line in panel.lines for m in line.marks):
-        found.append(Line2D([], [], marker=CARETUPBASE, label="beyond the edge", **grey))
+        found.append(Line2D([], [], marker=MarkerStyle(CARETUPBASE), label="beyond the edge", **grey))
     if any(panel.floor for panel in shown):
         found.append(Line2D([], [], marker=".", alpha=0.4, label="floor: rounding part", **grey))
     return found

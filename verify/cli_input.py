@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from verify.scene import Scene
 
 _SYSTEM_OPTIONS = (
-    click.option("--system", help="A named system: duffing, pendulum, harmonic."),
+    click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
     click.option(
         "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
