@@ -19,8 +19,8 @@ sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import islice
 from typing import Any
@@ -71,6 +71,8 @@ class Ring:
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
+        self._rules: dict[int, Callable[[str], Poly]] = {}
+        self.systems: dict[int, Any] = {}  # of equations, by their unknowns; see `verify.solved`
         self._written: dict[int, sympy.Expr] = {}
 
     # -- elements -----------------------------------------------------------------------------
@@ -110,6 +112,8 @@ class Ring:
     def _partial(self, index: int, name: str) -> Poly:
         """The partial derivative of a generator; that of a stage has a name of its own, too."""
         known = self._gradients.setdefault(index, {})
+        if name not in known and index in self._rules:
+            known[name] = self._rules[index](name)
         if name not in known and index in self._chains:
             terms = (outer * self.diff(inner, name) for outer, inner in self._chains[index])
             total = self.reduce(sum(terms, self.zero))
@@ -228,6 +232,14 @@ class Ring:
     def set_chain(self, generator: Poly, chain: Sequence[tuple[Poly, Poly]]) -> None:
         """d generator = Σ outer · d inner over the pairs, worked out when it is asked for."""
         self._chains[self._gens.index(generator)] = chain
+
+    def define(self, unknown: Poly, residual: Poly, rule: Callable[[str], Poly]) -> None:
+        """The unknown is where the residual is 0; `rule` gives its partial derivatives by name."""
+        index = self._gens.index(unknown)
+        at = next(k for k, g in enumerate(self.generators) if g.index == index)
+        self.generators[at] = replace(self.generators[at], argument=residual)
+        self._by_index[index] = self.generators[at]
+        self._rules[index] = rule
 
     def named(self, x: Poly) -> Poly:
         """x as a generator of its own; x itself where that is as short, or there is no room.

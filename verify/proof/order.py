@@ -145,6 +145,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     convergence = convergence_of(step_map)
     leading = leading_of(step_map)
     verdict, reason = _verdict(convergence, leading, scheme)
+    if leading.decision.zero is True and step_map.conditions:
+        reason = f"{reason}, as {', '.join(c.name for c in step_map.conditions)}"
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -217,6 +219,8 @@ def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
     whole = step_map.whole
     if whole.preserves_area:
         return _VANISHES
+    if step_map.solved:
+        return Leading(MOST_ORDERS + 1, Decision(None))
     decision = whole.ring.decide(whole.delta_j)
     return Leading(MOST_ORDERS + 1 if decision.zero is None else None, decision)
 
