@@ -1,14 +1,24 @@
-"""A program's operations → lines of source, those before the loop apart from those in it."""
+"""A program's operations → lines of source, those before the loop apart from those in it.
+
+Newton's method for unknowns that are given by equations is a loop in the loop. It goes on until an
+update is as small as the arithmetic's last places, or is followed by one that would be: of Newton's
+updates each is a multiple of the square of the one before, which the last two of them give, so that
+the one after would be size (size/last)². Where updates stop to shrink, having reached the half of
+the digits, rounding is all that is left, and it ends as well. An update that grows out of all
+proportion, or 50 of them that do not settle, end it without a solution: the unknowns are then 0/0,
+by which the run ends at that step.
+"""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from verify.program import Program
+from verify.program import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
-_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi")
+_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi", "loop", "solved")
+_MOST_UPDATES = 50  # full precision takes 4 … 6 where h is small, whatever the precision
 
 
 @dataclass
@@ -16,12 +26,14 @@ class Lowering:
     """Writes a program's values as variables `prefix` + index.
 
     `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
-    where it has `cos_sin` or `sin_cos`.
+    where it has `cos_sin` or `sin_cos`. `guard`: a condition on `{x}` that a number in range
+    satisfies (see `verify.number_system`).
     """
 
     program: Program
     functions: Collection[str]
     prefix: str = "v"
+    guard: str | None = None
     _written: set[int] = field(default_factory=set)
 
     def name(self, index: int) -> str:
@@ -44,6 +56,11 @@ class Lowering:
         for index in live:
             if index in self._written or program.ops[index].kind == "const":
                 continue
+            if program.ops[index].kind == "loop":
+                before, inside = self._newton(program.loops[program.ops[index].degree])
+                static += before
+                dynamic += inside
+                continue
             line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
             (static if program.static[index] else dynamic).append(line)
         return static, dynamic
@@ -65,12 +82,59 @@ class Lowering:
         first, second = (self.name(found[kind]) for kind in both.split("_"))
         return f"{first}, {second} = {both}({self.name(op.args[0])})"
 
+    def _inner(self, loop: Loop) -> "Lowering":
+        return Lowering(loop.inner, self.functions, f"n{loop.number}_")
+
+    def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
+        """The lines before the outer loop, and the inner loop."""
+        inner = self._inner(loop)
+        static, turn = inner.lines(loop.updates)
+        unknowns = [f"u{loop.number}_{k}" for k in range(len(loop.updates))]
+        updates = [inner.name(index) for index in loop.updates]
+        size, last, first, width = (f"u{loop.number}_{n}" for n in ("size", "last", "first", "all"))
+        fail = "; ".join(f"{u} = ({u} - {u}) / ({u} - {u})" for u in unknowns)
+        turn += [
+            f"{size} = {' + '.join(f'abs({x})' for x in updates)}",
+            *(f"{u} = {u} - {x}" for u, x in zip(unknowns, updates, strict=True)),
+            f"{width} = {' + '.join(f'abs({u})' for u in unknowns)}",
+            f"if turn == 0: {first} = {size} + {width}",
+            f"if {size} <= newton_last * {width}: break",
+            f"if turn > 0 and {size} <= newton_half * {width}:",
+            f"    if {size} >= {last}: break",
+            f"    if {size} * ({size} / {last}) * ({size} / {last}) <= newton_last * {width}: break",
+            f"if turn == {_MOST_UPDATES} or not {size} <= newton_most * {first}:",
+            f"    {fail}",
+            "    break",
+            f"{last} = {size}",
+        ]
+        starts = [f"{u} = {self.name(x)}" for u, x in zip(unknowns, loop.starts, strict=True)]
+        # Here they are given types and no more.
+        names = [f"{size} = {last} = {first} = {width} = abs({unknowns[0]})"]
+        head = f"for turn in range({_MOST_UPDATES + 1}):"
+        return static, [*starts, *names, head, *(f"    {line}" for line in turn)]
+
     def function(self, index: int) -> str | None:
         """The name of the function that an operation calls, where it calls one."""
         op = self.program.ops[index]
         if op.kind == "root":
             return "sqrt" if op.degree == 2 else "root"
         return None if op.kind in _OPERATORS else op.kind
+
+    def called(self, roots: Sequence[int]) -> set[str]:
+        """The names of all functions that the roots need, those in inner loops included."""
+        live = self.live(roots)
+        names = {self.function(index) for index in live} - {None}
+        for loop in self._loops(live):
+            names |= self._inner(loop).called(loop.updates)
+        return {name for name in names if name is not None}
+
+    def solves(self, roots: Sequence[int]) -> bool:
+        """Whether equations are solved for the roots."""
+        return bool(self._loops(self.live(roots)))
+
+    def _loops(self, live: Sequence[int]) -> list[Loop]:
+        ops = (self.program.ops[index] for index in live)
+        return [self.program.loops[op.degree] for op in ops if op.kind == "loop"]
 
     def _operation(self, index: int) -> str:
         op = self.program.ops[index]
@@ -88,6 +152,8 @@ class Lowering:
                 return f"root({args[0]}, {op.degree})"
             case "pi":
                 return "pi"
+            case "solved":
+                return f"u{self.program.ops[op.args[0]].degree}_{op.degree}"
         return f"{self.function(index)}({args[0]})"
 
     def constants(self) -> Mapping[int, Fraction]:
@@ -95,4 +161,13 @@ class Lowering:
 
     def named_constants(self, number: Any) -> dict[str, Any]:
         """The constants as numbers, by their variables' names."""
-        return {self.name(i): number(value) for i, value in self.constants().items()}
+        named = {self.name(i): number(value) for i, value in self.constants().items()}
+        for loop in self.program.loops:
+            named |= self._inner(loop).named_constants(number)
+        return named
+
+
+def newton_constants(bits: int, number: Any) -> dict[str, Any]:
+    """What the inner loops compare with, for numbers of so many bits; see the module's text."""
+    sizes = {"last": Fraction(1, 2 ** (bits - 2)), "half": Fraction(1, 2 ** (bits // 2))}
+    return {f"newton_{name}": number(x) for name, x in (sizes | {"most": Fraction(2**16)}).items()}

@@ -13,6 +13,7 @@ from itertools import pairwise, permutations
 
 from verify.generator import Generator
 from verify.ring import Poly, Ring
+from verify.solved import System
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
@@ -25,7 +26,11 @@ Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index
 
 @dataclass(frozen=True)
 class Op:
-    """`kind`: input, const, add, sub, mul, neg, inverse, root, or a function's name."""
+    """`kind`: input, const, add, sub, mul, neg, inverse, root, loop, solved, or a function's name.
+
+    `loop` is the program's loop number `degree`, and depends on `args`; `solved` is the unknown of
+    number `degree` that a loop, its one argument, has found.
+    """
 
     kind: str
     args: tuple[int, ...] = ()
@@ -34,10 +39,25 @@ class Op:
     degree: int = 1
 
 
+@dataclass(frozen=True)
+class Loop:
+    """Newton's method: x_k ← x_k − `updates`[k] in `inner`, from the outer program's `starts`[k].
+
+    In `inner` the inputs `u<number>_<k>` are the unknowns x_k, and `v<index>` are values of the
+    outer program.
+    """
+
+    number: int
+    inner: "Program"
+    updates: tuple[int, ...]
+    starts: tuple[int, ...]
+
+
 class Program:
     """A growing list of operations; each method returns the index of its result."""
 
     def __init__(self) -> None:
+        self.loops: list[Loop] = []
         self.ops: list[Op] = []
         self.static: list[bool] = []
         self.depth: list[int] = []
@@ -57,6 +77,7 @@ class Program:
         """One that grows on its own from here."""
         other = Program()
         other.ops, other.static, other.depth = self.ops[:], self.static[:], self.depth[:]
+        other.loops = self.loops[:]
         other._known = dict(self._known)
         return other
 
@@ -78,6 +99,12 @@ class Program:
     def apply(self, kind: str, *args: int, degree: int = 1) -> int:
         """A function, `neg`, `inverse` or `root` of earlier results."""
         return self._add(Op(kind, args, degree=degree), all(self.static[a] for a in args))
+
+    def solve(self, loop: Loop, given: Sequence[int]) -> list[int]:
+        """The values that a loop finds; `given`: what it reads of this program."""
+        self.loops.append(loop)
+        made = self._add(Op("loop", (*loop.starts, *given), degree=loop.number), False)
+        return [self._add(Op("solved", (made,), degree=k), False) for k in range(len(loop.starts))]
 
     def is_constant(self, x: int, value: int) -> bool:
         return self.ops[x].kind == "const" and self.ops[x].value == value
@@ -147,7 +174,7 @@ class Evaluator:
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
         """The index of x's value, or of its product with a static value (the index `factor`)."""
-        used = self.ring.used(x)
+        used = self.ring.used(x, solved=False)
         for generator in used:
             self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
@@ -179,7 +206,30 @@ class Evaluator:
             return self.program._add(Op("pi"), True)
         if g.kind == "stage":
             return self.evaluate(g.argument)
+        if g.kind == "solved":
+            self._solve(self.ring.systems[g.index])
+            return self._at[g.index]
         return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
+
+    def _solve(self, system: System) -> None:
+        """Writes the loop that finds a system's unknowns, with what moves in it inside."""
+        ring, program, number = self.ring, self.program, len(self.program.loops)
+        inner, given = Program(), set()
+        own = Evaluator(inner, ring, {}, self.pipelined)
+        unknown = system.unknowns
+        for k, g in enumerate(unknown):
+            own.set(g, inner.input(f"u{number}_{k}", static=False))
+        for g in ring.used(*system.updates, solved=False):
+            inside = () if g.argument is None else ring.used(g.argument, solved=False)
+            if g not in unknown and not any(x in unknown for x in inside):
+                at = self.at(g)
+                given.add(at)
+                own.set(g, inner.input(f"v{at}", static=program.static[at]))
+        updates = tuple(own.evaluate(x) for x in system.updates)
+        starts = tuple(self.evaluate(x) for x in system.starts)
+        found = program.solve(Loop(number, inner, updates, starts), sorted(given))
+        for g, at in zip(unknown, found, strict=True):
+            self.set(g, at)
 
     def _collect(self, x: Poly, dynamic: Sequence[int]) -> list[Term]:
         """x by monomials in the dynamic generators, the static coefficients evaluated."""

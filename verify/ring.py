@@ -128,17 +128,20 @@ class Ring:
                 total += len(x.derivative(index)) * len(self._partial(index, name))
         return total
 
-    def used(self, *elements: Poly) -> list[Generator]:
-        """The generators that the elements depend on, arguments included, oldest first."""
+    def used(self, *elements: Poly, solved: bool = True) -> list[Generator]:
+        """The generators that the elements depend on, arguments included, oldest first.
+
+        `solved`: those in the equations of unknowns, too.
+        """
         seen: set[int] = set()
         stack = list(elements)
         while stack:
             for index, power in enumerate(stack.pop().degrees()):
                 if power > 0 and index not in seen:
                     seen.add(index)
-                    argument = self._by_index[index].argument
-                    if argument is not None:
-                        stack.append(argument)
+                    g = self._by_index[index]
+                    if g.argument is not None and (solved or g.kind != "solved"):
+                        stack.append(g.argument)
         return [g for g in self.generators if g.index in seen]
 
     def depends(self, x: Poly, name: str) -> bool:
@@ -233,13 +236,14 @@ class Ring:
         """d generator = Σ outer · d inner over the pairs, worked out when it is asked for."""
         self._chains[self._gens.index(generator)] = chain
 
-    def define(self, unknown: Poly, residual: Poly, rule: Callable[[str], Poly]) -> None:
+    def define(self, unknown: Poly, residual: Poly, rule: Callable[[str], Poly]) -> Generator:
         """The unknown is where the residual is 0; `rule` gives its partial derivatives by name."""
         index = self._gens.index(unknown)
         at = next(k for k, g in enumerate(self.generators) if g.index == index)
         self.generators[at] = replace(self.generators[at], argument=residual)
         self._by_index[index] = self.generators[at]
         self._rules[index] = rule
+        return self.generators[at]
 
     def named(self, x: Poly) -> Poly:
         """x as a generator of its own; x itself where that is as short, or there is no room.

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import sympy
 
 from verify.errors import InputError
+from verify.generator import Generator
 from verify.ring import Poly, Ring
 
 Column = list[Poly]
@@ -25,7 +26,7 @@ Matrix = Sequence[Sequence[Poly]]
 class System:
     """`updates`: (∂F/∂Z)⁻¹ F; `starts`: where Newton's method begins, free of the unknowns."""
 
-    unknowns: tuple[Poly, ...]
+    unknowns: tuple[Generator, ...]
     starts: tuple[Poly, ...]
     residuals: tuple[Poly, ...]
     updates: tuple[Poly, ...]
@@ -63,11 +64,12 @@ def define(
 
         return partial
 
-    for k, (unknown, residual) in enumerate(zip(own, residuals, strict=True)):
+    made = [
         ring.define(unknown, residual, rule(k))
-    system = System(tuple(own), tuple(starts), tuple(residuals), tuple(solve(residuals)))
-    gens = ring.context.gens()
-    ring.systems |= {gens.index(unknown): system for unknown in own}
+        for k, (unknown, residual) in enumerate(zip(own, residuals, strict=True))
+    ]
+    system = System(tuple(made), tuple(starts), tuple(residuals), tuple(solve(residuals)))
+    ring.systems |= {generator.index: system for generator in made}
 
 
 class Elimination:
