@@ -73,7 +73,7 @@ class _Equations:
                 "h": lambda: [-y for y in means],
             },
             starts=[h * sum(self.a[i], ring.zero) * force[part] for i, part in pairs],
-            block=2,
+            added_to=list(stages.start) * count,
         )
         p_next, q_next = (x + h * mean(self.b, part) for part, x in enumerate(stages.start))
         step = Substep(stages.field, p_next, q_next, self.tableau.area_conditions())

@@ -24,10 +24,10 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from verify import tangent
+from verify import newton, tangent
 from verify.hamiltonian import Hamiltonian
 from verify.increments import increments
-from verify.lowering import Lowering, newton_constants
+from verify.lowering import Lowering
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.program import Evaluator, Program
 from verify.scaling import divided, lowest_power
@@ -126,7 +126,7 @@ class Writer:
         scope = {
             **self.arithmetic.functions,
             **self.lowering.named_constants(self.arithmetic.number),
-            **newton_constants(self.arithmetic.bits, self.arithmetic.number),
+            **newton.constants(self.arithmetic.bits, self.arithmetic.number),
             **(self.tangent.lowering.named_constants(tangent.number) if self.tangent else {}),
         }
         names, kinds, start = zip(*self.carried, strict=True)

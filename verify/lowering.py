@@ -1,24 +1,15 @@
-"""A program's operations → lines of source, those before the loop apart from those in it.
-
-Newton's method for unknowns that are given by equations is a loop in the loop. It goes on until an
-update is as small as the arithmetic's last places, or is followed by one that would be: of Newton's
-updates each is a multiple of the square of the one before, which the last two of them give, so that
-the one after would be size (size/last)². Where updates stop to shrink, having reached the half of
-the digits, rounding is all that is left, and it ends as well. An update that grows out of all
-proportion, or 50 of them that do not settle, end it without a solution: the unknowns are then 0/0,
-by which the run ends at that step.
-"""
+"""A program's operations → lines of source, those before the loop apart from those in it."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+from verify import newton
 from verify.program import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi", "loop", "solved")
-_MOST_UPDATES = 50  # full precision takes 4 … 6 where h is small, whatever the precision
 
 
 @dataclass
@@ -89,29 +80,15 @@ class Lowering:
         """The lines before the outer loop, and the inner loop."""
         inner = self._inner(loop)
         static, turn = inner.lines(loop.updates)
-        unknowns = [f"u{loop.number}_{k}" for k in range(len(loop.updates))]
-        updates = [inner.name(index) for index in loop.updates]
-        size, last, first, width = (f"u{loop.number}_{n}" for n in ("size", "last", "first", "all"))
-        fail = "; ".join(f"{u} = ({u} - {u}) / ({u} - {u})" for u in unknowns)
-        turn += [
-            f"{size} = {' + '.join(f'abs({x})' for x in updates)}",
-            *(f"{u} = {u} - {x}" for u, x in zip(unknowns, updates, strict=True)),
-            f"{width} = {' + '.join(f'abs({u})' for u in unknowns)}",
-            f"if turn == 0: {first} = {size} + {width}",
-            f"if {size} <= newton_last * {width}: break",
-            f"if turn > 0 and {size} <= newton_half * {width}:",
-            f"    if {size} >= {last}: break",
-            f"    if {size} * ({size} / {last}) * ({size} / {last}) <= newton_last * {width}: break",
-            f"if turn == {_MOST_UPDATES} or not {size} <= newton_most * {first}:",
-            f"    {fail}",
-            "    break",
-            f"{last} = {size}",
-        ]
-        starts = [f"{u} = {self.name(x)}" for u, x in zip(unknowns, loop.starts, strict=True)]
-        # Here they are given types and no more.
-        names = [f"{size} = {last} = {first} = {width} = abs({unknowns[0]})"]
-        head = f"for turn in range({_MOST_UPDATES + 1}):"
-        return static, [*starts, *names, head, *(f"    {line}" for line in turn)]
+        made = newton.Source(
+            prefix=f"u{loop.number}_",
+            starts=[self.name(index) for index in loop.starts],
+            updates=[inner.name(index) for index in loop.updates],
+            added_to=[self.name(index) for index in loop.added_to],
+            turn=turn,
+            guard=self.guard,
+        )
+        return static, made.lines()
 
     def function(self, index: int) -> str | None:
         """The name of the function that an operation calls, where it calls one."""
@@ -166,8 +143,3 @@ class Lowering:
             named |= self._inner(loop).named_constants(number)
         return named
 
-
-def newton_constants(bits: int, number: Any) -> dict[str, Any]:
-    """What the inner loops compare with, for numbers of so many bits; see the module's text."""
-    sizes = {"last": Fraction(1, 2 ** (bits - 2)), "half": Fraction(1, 2 ** (bits // 2))}
-    return {f"newton_{name}": number(x) for name, x in (sizes | {"most": Fraction(2**16)}).items()}

@@ -43,7 +43,7 @@ class Op:
 class Loop:
     """Newton's method: x_k ← x_k − `updates`[k] in `inner`, from the outer program's `starts`[k].
 
-    In `inner` the inputs `u<number>_<k>` are the unknowns x_k, and `v<index>` are values of the
+    `added_to`[k] is what x_k is a change of, which gives it its scale. In `inner` the inputs `u<number>_<k>` are the unknowns x_k, and `v<index>` are values of the
     outer program.
     """
 
@@ -51,6 +51,7 @@ class Loop:
     inner: "Program"
     updates: tuple[int, ...]
     starts: tuple[int, ...]
+    added_to: tuple[int, ...]
 
 
 class Program:
@@ -103,7 +104,7 @@ class Program:
     def solve(self, loop: Loop, given: Sequence[int]) -> list[int]:
         """The values that a loop finds; `given`: what it reads of this program."""
         self.loops.append(loop)
-        made = self._add(Op("loop", (*loop.starts, *given), degree=loop.number), False)
+        made = self._add(Op("loop", (*loop.starts, *loop.added_to, *given), degree=loop.number), False)
         return [self._add(Op("solved", (made,), degree=k), False) for k in range(len(loop.starts))]
 
     def is_constant(self, x: int, value: int) -> bool:
@@ -227,7 +228,9 @@ class Evaluator:
                 own.set(g, inner.input(f"v{at}", static=program.static[at]))
         updates = tuple(own.evaluate(x) for x in system.updates)
         starts = tuple(self.evaluate(x) for x in system.starts)
-        found = program.solve(Loop(number, inner, updates, starts), sorted(given))
+        added_to = tuple(self.evaluate(x) for x in system.added_to)
+        loop = Loop(number, inner, updates, starts, added_to)
+        found = program.solve(loop, sorted(given))
         for g, at in zip(unknown, found, strict=True):
             self.set(g, at)
 

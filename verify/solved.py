@@ -24,11 +24,12 @@ Matrix = Sequence[Sequence[Poly]]
 
 @dataclass(frozen=True)
 class System:
-    """`updates`: (∂F/∂Z)⁻¹ F; `starts`: where Newton's method begins, free of the unknowns."""
+    """`updates`: (∂F/∂Z)⁻¹ F; `starts`: where Newton's method begins; `added_to`: p or q, of which
+    each unknown is a change."""
 
     unknowns: tuple[Generator, ...]
     starts: tuple[Poly, ...]
-    residuals: tuple[Poly, ...]
+    added_to: tuple[Poly, ...]
     updates: tuple[Poly, ...]
 
 
@@ -44,13 +45,14 @@ def define(
     matrix: Matrix,
     partials: Mapping[str, Callable[[], Column]],
     starts: Sequence[Poly],
-    block: int,
+    added_to: Sequence[Poly],
 ) -> None:
-    """Makes the unknowns `own` the solution of residuals = 0.
+    """Makes the unknowns `own` the solution of residuals = 0; see `System`.
 
-    `matrix`: ∂F/∂Z, row by row. `partials`: ∂F/∂name with Z held, for p, q and h. `block`: rows of
-    a block, 1 or 2.
+    `matrix`: ∂F/∂Z, row by row. `partials`: ∂F/∂name with Z held, for p, q and h. Of more unknowns
+    than one, every two make a block.
     """
+    block = min(2, len(own))
     solve = Elimination(ring, matrix, block).solve
     columns: dict[str, Column] = {}
 
@@ -68,7 +70,7 @@ def define(
         ring.define(unknown, residual, rule(k))
         for k, (unknown, residual) in enumerate(zip(own, residuals, strict=True))
     ]
-    system = System(tuple(made), tuple(starts), tuple(residuals), tuple(solve(residuals)))
+    system = System(tuple(made), tuple(starts), tuple(added_to), tuple(solve(residuals)))
     ring.systems |= {generator.index: system for generator in made}
 
 
