@@ -27,6 +27,7 @@ from verify.conditions import ByConditions
 from verify.errors import InputError
 from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.counterexample import counterexample
 from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.jets import Jets, Poly, shown
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
@@ -66,6 +67,12 @@ def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> Ev
             reason = f"of every smooth H: {proof.reason}; of H = T(p) + V(q) alone nothing is said"
             return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
         proof = replace(proof, separable=True)
+    if proof.verdict is Verdict.UNDECIDED and proof.convergence_order == scheme.order:
+        found = counterexample(scheme, separable)
+        if found is not None:
+            hamiltonian, order = found
+            reason = f"of order {scheme.order}, but not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
+            return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
     if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, Generic):
         return proof
     return replace(_of_series(scheme, generic, separable), conditions=proof.conditions)

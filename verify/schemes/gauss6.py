@@ -4,6 +4,7 @@ import sympy
 
 from verify.implicit_runge_kutta import implicit_map
 from verify.implicit_tableau import ImplicitTableau
+from verify.proof.tree_conditions import TreeConditions
 from verify.scheme import Scheme
 
 EXAMPLES = ("gauss6",)
@@ -29,4 +30,5 @@ def make(name: str) -> Scheme | None:
         symmetric=True,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
         build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
+        generic=TreeConditions(TABLEAU),
     )
