@@ -49,6 +49,10 @@ class Decision:
     enclosure: str = ""
 
 
+def _occurring(x: Poly) -> list[int]:
+    return [index for index, power in enumerate(x.degrees()) if power > 0]
+
+
 class RingFullError(Exception):
     """More generators are needed than the ring was made for."""
 
@@ -71,6 +75,7 @@ class Ring:
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
+        self._inside: dict[int, list[int]] = {}
         self._rules: dict[int, Callable[[str], Poly]] = {}
         self.systems: dict[int, Any] = {}  # of equations, by their unknowns; see `verify.solved`
         self._written: dict[int, sympy.Expr] = {}
@@ -134,15 +139,21 @@ class Ring:
         `solved`: those in the equations of unknowns, too.
         """
         seen: set[int] = set()
-        stack = list(elements)
+        stack = [index for x in elements for index in _occurring(x)]
         while stack:
-            for index, power in enumerate(stack.pop().degrees()):
-                if power > 0 and index not in seen:
-                    seen.add(index)
-                    g = self._by_index[index]
-                    if g.argument is not None and (solved or g.kind != "solved"):
-                        stack.append(g.argument)
+            index = stack.pop()
+            if index not in seen:
+                seen.add(index)
+                if solved or self._by_index[index].kind != "solved":
+                    stack += self._inside_of(index)
         return [g for g in self.generators if g.index in seen]
+
+    def _inside_of(self, index: int) -> list[int]:
+        """The generators in a generator's argument."""
+        if index not in self._inside:
+            argument = self._by_index[index].argument
+            self._inside[index] = [] if argument is None else _occurring(argument)
+        return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
         return any(g.kind == "variable" and str(g.expression) == name for g in self.used(x))
@@ -242,6 +253,7 @@ class Ring:
         at = next(k for k, g in enumerate(self.generators) if g.index == index)
         self.generators[at] = replace(self.generators[at], argument=residual)
         self._by_index[index] = self.generators[at]
+        self._inside.pop(index, None)
         self._rules[index] = rule
         return self.generators[at]
 

@@ -27,12 +27,14 @@ from itertools import product
 from typing import Any
 
 from verify.conditions import Condition
+from verify.errors import InputError
 from verify.implicit_tableau import ImplicitTableau, Numbers
 from verify.proof.jets import Jets
 from verify.ring import Poly, Ring
 
 Tree = tuple["Tree", ...]  # the trees that are left without the root, in descending order
 Vector = tuple[Poly, ...]
+MOST_ORDER = 10
 _FIRST_DEPENDENT = 5  # vertices of trees whose differentials depend on each other in the plane
 
 
@@ -99,11 +101,19 @@ class TreeConditions:
     separable: bool = False
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """Those that the trees of 1 … `order` vertices give; see the module's text."""
+        """Those that the trees of 1 … `order` vertices give; see the module's text.
+
+        InputError beyond order 10, of which there are 1205.
+        """
+        if order > MOST_ORDER:
+            raise InputError("order", order, f"of a Runge–Kutta method is proved up to {MOST_ORDER}")
         return tuple(c for n in range(1, order + 1) for c in _of_order(self.tableau, n))
 
     def area_conditions(self) -> tuple[Condition, ...]:
         return self.tableau.area_conditions()
+
+    def symmetry_conditions(self) -> tuple[Condition, ...]:
+        return self.tableau.symmetry_conditions()
 
 
 @lru_cache(maxsize=256)
