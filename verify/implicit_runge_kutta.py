@@ -18,8 +18,8 @@ from verify.implicit_tableau import ImplicitTableau
 from verify.ring import Poly
 from verify.series import Series, at_point, partials
 from verify.solved import Matrix, define, unknowns
-from verify.stages import Stages
-from verify.step_map import H_STEP, P, Q, Expanded, StepMap, Substep
+from verify.stages import Point, Stages
+from verify.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
 
 _NAMES_PER_STAGE = 100
 _MU, _SQUARE = sympy.symbols("mu square")  # an eigenvalue of hM, and its square
@@ -64,9 +64,7 @@ class _Equations:
             ring,
             own,
             residuals=[x - h * y for x, y in zip(own, means, strict=True)],
-            matrix=[
-                [int(k == m) - x for m, x in enumerate(row)] for k, row in enumerate(change)
-            ],
+            matrix=[[int(k == m) - x for m, x in enumerate(row)] for k, row in enumerate(change)],
             partials={
                 "p": lambda: [-sum(row[0::2], ring.zero) for row in change],
                 "q": lambda: [-sum(row[1::2], ring.zero) for row in change],
@@ -79,15 +77,17 @@ class _Equations:
         step = Substep(stages.field, p_next, q_next, self.tableau.area_conditions())
         return StepMap(self.hamiltonian, (step,), self.taylor)
 
-    def _at_stages(self, own: Sequence[Poly]) -> tuple[list[Sequence[Poly]], list[Matrix]]:
+    def _at_stages(self, own: Sequence[Poly]) -> tuple[list[Point], list[Matrix]]:
         """f and f' at each Y_j."""
         ring, source = self.stages.ring, self.source
-        second = [source.ring.diff(source.h_p, "p"), *(source.ring.diff(source.h_q, n) for n in "pq")]
-        slopes, gradients = [], []
+        diff = source.ring.diff
+        second = diff(source.h_p, "p"), diff(source.h_q, "p"), diff(source.h_q, "q")
+        slopes: list[Point] = []
+        gradients: list[Matrix] = []
         for z in zip(own[0::2], own[1::2], strict=True):
             point = [x + y for x, y in zip(self.stages.start, z, strict=True)]
             at = self.stages.at(self.stages.named((point[0], point[1])))
-            slopes.append([ring.named(at(x)) for x in (-source.h_q, source.h_p)])
+            slopes.append((ring.named(at(-source.h_q)), ring.named(at(source.h_p))))
             pp, pq, qq = (ring.named(at(x)) for x in second)
             gradients.append([[-pq, -qq], [pp, pq]])
         return slopes, gradients

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify import newton
-from verify.program import Loop, Program
+from verify.operations import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi", "loop", "solved")
@@ -142,4 +142,3 @@ class Lowering:
         for loop in self.program.loops:
             named |= self._inner(loop).named_constants(number)
         return named
-

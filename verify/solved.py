@@ -80,8 +80,10 @@ class Elimination:
     def __init__(self, ring: Ring, matrix: Matrix, block: int) -> None:
         self.ring, self.block, count = ring, block, len(matrix) // block
         rows = [range(block * i, block * (i + 1)) for i in range(count)]
-        left = [[[[matrix[r][c] for c in rows[j]] for r in rows[i]] for j in range(count)]
-                for i in range(count)]  # fmt: skip
+        left: list[list[Matrix]] = [
+            [[[matrix[r][c] for c in rows[j]] for r in rows[i]] for j in range(count)]
+            for i in range(count)
+        ]
         self.inverses: list[Matrix] = []
         self.factors: dict[tuple[int, int], Matrix] = {}
         for k in range(count):

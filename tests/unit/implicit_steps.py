@@ -4,7 +4,7 @@ By hand the stages' equations are solved in mpmath at many digits, by fixed-poin
 shares nothing with Newton's method, from derivatives that sympy makes.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -28,10 +28,8 @@ TABLEAUS = {
     "gauss6": gauss6.TABLEAU,
 }
 # Of order 3, and not area-preserving.
-RADAU = ImplicitTableau.of(
-    rows=((sympy.Rational(5, 12), sympy.Rational(-1, 12)), (sympy.Rational(3, 4), sympy.Rational(1, 4))),
-    weights=(sympy.Rational(3, 4), sympy.Rational(1, 4)),
-)  # fmt: skip
+_RADAU = (sympy.Rational(3, 4), sympy.Rational(1, 4))
+RADAU = ImplicitTableau.of(((sympy.Rational(5, 12), sympy.Rational(-1, 12)), _RADAU), _RADAU)
 # Coefficients are binary fractions: a quotient such as 1/3 would be rounded as sympy writes it.
 NONLINEAR = {
     "pendulum": "p**2/2 - cos(q)",
@@ -43,9 +41,7 @@ NONLINEAR = {
 Pair = tuple[Fraction, Fraction]
 
 
-def planted(
-    tableau: ImplicitTableau, i: int, j: int, error: sympy.Rational
-) -> ImplicitTableau:
+def planted(tableau: ImplicitTableau, i: int, j: int, error: sympy.Rational) -> ImplicitTableau:
     """With an error in a_ij; in b_j for i beyond the rows."""
     rows = [list(row) for row in (*tableau.rows, tableau.weights)]
     rows[i][j] += error
@@ -78,12 +74,13 @@ def by_hand(text: str, tableau: ImplicitTableau, z: Pair, h: Fraction, digits: i
     slopes = [(context.mpf(0), context.mpf(0))] * count
 
     def moved(row: Sequence[Any]) -> tuple[Any, Any]:
-        pairs = list(zip(row, slopes, strict=True))
-        return p + step * sum(a * k[0] for a, k in pairs), q + step * sum(a * k[1] for a, k in pairs)
+        both = (sum(a * k[part] for a, k in zip(row, slopes, strict=True)) for part in (0, 1))
+        return p + step * next(both), q + step * next(both)
 
     for _ in range(10_000):
         new = [(f[0](*moved(row)), f[1](*moved(row))) for row in exact[:-1]]
-        change = max(abs(x - y) for a, b in zip(new, slopes, strict=True) for x, y in zip(a, b, strict=True))
+        pairs = zip(new, slopes, strict=True)
+        change = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
         slopes = new
         if change < context.mpf(10) ** -(digits + 8):
             break
@@ -155,9 +152,11 @@ def counted(made: StepMap, arithmetic: str, digits: int, z: Pair, h: Fraction, c
             yield k
 
     own = number_systems.get(arithmetic, digits)
-    looked_at = replace(
-        own, compile=lambda source, name, scope: interpreted(source, name, {**scope, "range": counting})
-    )  # fmt: skip
+
+    def compiled(source: str, name: str, scope: Mapping[str, Any]) -> Callable[..., Any]:
+        return interpreted(source, name, {**scope, "range": counting})
+
+    looked_at = replace(own, compile=compiled)
     function = Writer(made, looked_at, frozenset(), False).kernel().function
     with own.context():
         function(count, own.number(h), *map(own.number, z))

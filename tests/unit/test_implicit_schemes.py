@@ -94,7 +94,9 @@ def test_an_equation_is_solved_only_where_it_has_to_be() -> None:
 # -- proofs ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("text", [*NONLINEAR.values(), "p**2/2 + q**2/2 + delta*q**4/4", "p**2*q**3 + q"])
+@pytest.mark.parametrize(
+    "text", [*NONLINEAR.values(), "p**2/2 + q**2/2 + delta*q**4/4", "p**2*q**3 + q"]
+)
 @each_scheme
 def test_order_and_area_are_proved_for_one_h(name: str, text: str) -> None:
     proof = proof_of(name, text)
@@ -189,6 +191,7 @@ def test_an_error_in_a_coefficient_makes_the_oscillator_gain_or_lose_area() -> N
 
 
 def test_step_maps_are_made_once() -> None:
-    one, other = (schemes.get("gauss6").step_map(Hamiltonian.parse("p**2/2 - cos(q)")) for _ in "12")
+    texts = ["p**2/2 - cos(q)"] * 2
+    one, other = (schemes.get("gauss6").step_map(Hamiltonian.parse(text)) for text in texts)
     assert isinstance(one, StepMap)
     assert one is other

@@ -71,7 +71,8 @@ def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> Ev
         found = counterexample(scheme, separable)
         if found is not None:
             hamiltonian, order = found
-            reason = f"of order {scheme.order}, but not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
+            lost = f"not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
+            reason = f"of order {scheme.order}, but {lost}"
             return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
     if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, Generic):
         return proof

@@ -17,7 +17,7 @@ from verify.series import Series, at_point, partials
 from verify.solved import define, unknowns
 from verify.splitting import shears
 from verify.stages import Stages
-from verify.step_map import H_STEP, P, Q, Expanded, StepMap, Substep
+from verify.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
 
 _ONE = Fraction(1)
 _NAMES = 20
