@@ -79,12 +79,13 @@ class Lowering:
     def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
         """The lines before the outer loop, and the inner loop."""
         inner = self._inner(loop)
-        static, turn = inner.lines(loop.updates)
+        static, turn = inner.lines([*loop.updates, *loop.determinants])
         made = newton.Source(
             prefix=f"u{loop.number}_",
             starts=[self.name(index) for index in loop.starts],
             updates=[inner.name(index) for index in loop.updates],
             added_to=[self.name(index) for index in loop.added_to],
+            determinants=[inner.name(index) for index in loop.determinants],
             turn=turn,
             guard=self.guard,
         )
@@ -102,7 +103,7 @@ class Lowering:
         live = self.live(roots)
         names = {self.function(index) for index in live} - {None}
         for loop in self._loops(live):
-            names |= self._inner(loop).called(loop.updates)
+            names |= self._inner(loop).called([*loop.updates, *loop.determinants])
         return {name for name in names if name is not None}
 
     def solves(self, roots: Sequence[int]) -> bool:

@@ -34,8 +34,9 @@ class Op:
 class Loop:
     """Newton's method: x_k ← x_k − `updates`[k] in `inner`, from the outer program's `starts`[k].
 
-    `added_to`[k] is what x_k is a change of, which gives it its scale. In `inner` the inputs
-    `u<number>_<k>` are the unknowns x_k, and `v<index>` are values of the outer program.
+    `determinants`: of the blocks of what it divides by. `added_to`[k] is what x_k is a change of,
+    which gives it its scale. In `inner` the inputs `u<number>_<k>` are the unknowns x_k, and
+    `v<index>` are values of the outer program.
     """
 
     number: int
@@ -43,6 +44,7 @@ class Loop:
     updates: tuple[int, ...]
     starts: tuple[int, ...]
     added_to: tuple[int, ...]
+    determinants: tuple[int, ...]
 
 
 class Program:

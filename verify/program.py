@@ -92,7 +92,8 @@ class Evaluator:
         updates = tuple(own.evaluate(x) for x in system.updates)
         starts = tuple(self.evaluate(x) for x in system.starts)
         added_to = tuple(self.evaluate(x) for x in system.added_to)
-        loop = Loop(number, inner, updates, starts, added_to)
+        determinants = tuple(own.evaluate(x) for x in system.determinants)
+        loop = Loop(number, inner, updates, starts, added_to, determinants)
         found = program.solve(loop, sorted(given))
         for g, at in zip(unknown, found, strict=True):
             self.set(g, at)

@@ -24,13 +24,15 @@ Matrix = Sequence[Sequence[Poly]]
 
 @dataclass(frozen=True)
 class System:
-    """`updates`: (∂F/∂Z)⁻¹ F; `starts`: where Newton's method begins; `added_to`: p or q, of which
-    each unknown is a change."""
+    """`updates`: (∂F/∂Z)⁻¹ F; `determinants`: of the blocks that are divided by, whose product is
+    that of ∂F/∂Z; `starts`: where Newton's method begins; `added_to`: p or q, of which each unknown
+    is a change."""
 
     unknowns: tuple[Generator, ...]
     starts: tuple[Poly, ...]
     added_to: tuple[Poly, ...]
     updates: tuple[Poly, ...]
+    determinants: tuple[Poly, ...]
 
 
 def unknowns(ring: Ring, count: int) -> list[Poly]:
@@ -53,7 +55,8 @@ def define(
     than one, every two make a block.
     """
     block = min(2, len(own))
-    solve = Elimination(ring, matrix, block).solve
+    elimination = Elimination(ring, matrix, block)
+    solve = elimination.solve
     columns: dict[str, Column] = {}
 
     def rule(k: int) -> Callable[[str], Poly]:
@@ -70,7 +73,13 @@ def define(
         ring.define(unknown, residual, rule(k))
         for k, (unknown, residual) in enumerate(zip(own, residuals, strict=True))
     ]
-    system = System(tuple(made), tuple(starts), tuple(added_to), tuple(solve(residuals)))
+    system = System(
+        tuple(made),
+        tuple(starts),
+        tuple(added_to),
+        tuple(solve(residuals)),
+        tuple(elimination.determinants),
+    )
     ring.systems |= {generator.index: system for generator in made}
 
 
@@ -85,6 +94,7 @@ class Elimination:
             for i in range(count)
         ]
         self.inverses: list[Matrix] = []
+        self.determinants: Column = []
         self.factors: dict[tuple[int, int], Matrix] = {}
         for k in range(count):
             self.inverses.append(self._inverse(left[k][k]))
@@ -108,9 +118,11 @@ class Elimination:
 
     def _inverse(self, x: Matrix) -> Matrix:
         if self.block == 1:
+            self.determinants.append(x[0][0])
             return [[self._one_over(x[0][0])]]
         (a, b), (c, d) = x
-        below = self._one_over(self.ring.reduce(a * d - b * c))
+        self.determinants.append(self.ring.reduce(a * d - b * c))
+        below = self._one_over(self.determinants[-1])
         return [[self._named(y * below) for y in row] for row in ((d, -b), (-c, a))]
 
     def _one_over(self, x: Poly) -> Poly:
