@@ -30,7 +30,6 @@ TABLEAUS = {
 # Of order 3, and not area-preserving.
 _RADAU = (sympy.Rational(3, 4), sympy.Rational(1, 4))
 RADAU = ImplicitTableau.of(((sympy.Rational(5, 12), sympy.Rational(-1, 12)), _RADAU), _RADAU)
-# Coefficients are binary fractions: a quotient such as 1/3 would be rounded as sympy writes it.
 NONLINEAR = {
     "pendulum": "p**2/2 - cos(q)",
     "duffing": "p**2/2 + q**2/2 + q**4/4",
@@ -66,7 +65,7 @@ def by_hand(text: str, tableau: ImplicitTableau, z: Pair, h: Fraction, digits: i
     context = MPContext()
     context.dps = digits + 10
     number: Callable[[Any], Any] = lambda x: context.mpf(x.numerator) / x.denominator  # noqa: E731
-    f = [sympy.lambdify((P, Q), x, modules=_functions(context)) for x in _field(text)]
+    f = [_function(x, context) for x in _field(text)]
     exact = [[context.mpf(sympy.N(x, digits + 20)) for x in row]
              for row in (*tableau.rows, tableau.weights)]  # fmt: skip
     p, q, step = number(z[0]), number(z[1]), number(h)
@@ -87,6 +86,16 @@ def by_hand(text: str, tableau: ImplicitTableau, z: Pair, h: Fraction, digits: i
     else:
         raise AssertionError("the fixed-point iteration does not converge: take a smaller h")
     return tuple(_exact(x) for x in moved(exact[-1]))  # type: ignore[return-value]
+
+
+def _function(x: sympy.Expr, context: MPContext) -> Callable[[Any, Any], Any]:
+    """With its rational coefficients in the context's precision, which sympy would round to 53."""
+    exact = sorted(a for a in x.atoms(sympy.Rational) if not a.is_Integer)
+    named = sympy.symbols(f"r:{len(exact)}")
+    put = dict(zip(exact, named, strict=True))
+    made = sympy.lambdify((P, Q, *named), x.xreplace(put), modules=_functions(context))
+    values = [context.mpf(int(a.p)) / int(a.q) for a in exact]
+    return lambda p, q: made(p, q, *values)
 
 
 def _functions(context: MPContext) -> dict[str, Any]:

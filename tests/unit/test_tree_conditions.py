@@ -197,6 +197,19 @@ def test_swapped_stages_and_signs_are_refuted(
     assert proof_of(monkeypatch, renamed, order).verdict is Verdict.PROVED
 
 
+@pytest.mark.parametrize(("name", "order"), [("gauss4", 4), ("gauss6", 6)])
+def test_for_every_separable_h_an_error_is_refuted_as_well(
+    name: str, order: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = proof_of(monkeypatch, TABLEAUS[name], order, separable=True)
+    assert (right.verdict, right.separable) == (Verdict.PROVED, True)
+    assert right.convergence_order == order
+    for place in places(TABLEAUS[name]):
+        wrong = planted(TABLEAUS[name], *place, R(1, 10**11))
+        proof = proof_of(monkeypatch, wrong, order, separable=True)
+        assert (proof.verdict, proof.separable) == (Verdict.REFUTED, True)
+
+
 def test_a_claim_of_more_than_there_is_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert proof_of(monkeypatch, TABLEAUS["gauss4"], 5).verdict is Verdict.REFUTED
     assert proof_of(monkeypatch, TABLEAUS["gauss4"], 3).verdict is Verdict.PROVED
@@ -223,17 +236,22 @@ def test_no_h_stands_against_a_method_that_preserves_area(name: str) -> None:
 # -- the plane ------------------------------------------------------------------------------------
 
 
-def test_in_the_plane_some_trees_depend_on_each_other_from_five_vertices_on() -> None:
+@pytest.mark.parametrize(
+    ("separable", "known"), [(False, [1, 1, 2, 4, 8, 15, 30]), (True, [1, 1, 2, 4, 8, 15, 28])]
+)
+def test_in_the_plane_some_trees_depend_on_each_other_from_five_vertices_on(
+    separable: bool, known: list[int]
+) -> None:
     ranks = []
     for order in range(1, 8):
-        differentials = Differentials(Jets(order))
+        differentials = Differentials(Jets(order, separable=separable))
         rows = []
         for tree in trees(order):
             parts = [x.to_dict() for x in differentials.of(tree)]
             rows.append({(k, m): c for k, part in enumerate(parts) for m, c in part.items()})
         keys = sorted({key for row in rows for key in row})
         ranks.append(flint.fmpq_mat([[row.get(k, 0) for k in keys] for row in rows]).rank())
-    assert ranks == [1, 1, 2, 4, 8, 15, 30]
+    assert ranks == known
 
 
 def test_only_what_cancels_for_every_h_is_taken_for_nothing() -> None:
@@ -243,11 +261,12 @@ def test_only_what_cancels_for_every_h_is_taken_for_nothing() -> None:
     ring = TABLEAUS["gauss4"].numbers.ring
     gap = TABLEAUS["gauss4"].numbers.a[0][1]
     shares = {tree: gap * symmetry(tree) for tree in trees(5)}
-    assert _cancels(ring, {one: shares[one], other: -shares[other]}) is True
-    assert _cancels(ring, {one: shares[one], other: shares[other]}) is False
-    assert _cancels(ring, {one: shares[one]}) is False
-    for tree in set(trees(5)) - {one, other}:
-        assert _cancels(ring, {one: shares[one], tree: -shares[tree]}) is False
+    for jets in (Jets(5), Jets(5, separable=True)):
+        assert _cancels(ring, {one: shares[one], other: -shares[other]}, jets) is True
+        assert _cancels(ring, {one: shares[one], other: shares[other]}, jets) is False
+        assert _cancels(ring, {one: shares[one]}, jets) is False
+        for tree in set(trees(5)) - {one, other}:
+            assert _cancels(ring, {one: shares[one], tree: -shares[tree]}, jets) is False
 
 
 # -- input ----------------------------------------------------------------------------------------

@@ -31,6 +31,7 @@ from verify.proof.counterexample import counterexample
 from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.jets import Jets, Poly, shown
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
+from verify.proof.tree_conditions import TreeConditions
 from verify.scheme import Scheme
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -61,6 +62,8 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
 
 def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> EveryProof:
     """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
+    if separable and isinstance(generic, TreeConditions):
+        generic = replace(generic, separable=True)
     proof = prove_by_conditions(scheme, generic)
     if separable and not generic.separable:
         if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)

@@ -36,7 +36,6 @@ from verify.ring import Poly, Ring
 Tree = tuple["Tree", ...]  # the trees that are left without the root, in descending order
 Vector = tuple[Poly, ...]
 MOST_ORDER = 10
-_FIRST_DEPENDENT = 5  # vertices of trees whose differentials depend on each other in the plane
 
 
 def trees(order: int) -> tuple[Tree, ...]:
@@ -96,7 +95,8 @@ def _vector(tree: Tree) -> str:
 
 @dataclass(frozen=True)
 class TreeConditions:
-    """A Runge–Kutta method for every H, by conditions on its coefficients."""
+    """A Runge–Kutta method for every H, by conditions on its coefficients; `separable`: for every
+    H = T(p) + V(q), of which fewer may count."""
 
     tableau: ImplicitTableau
     separable: bool = False
@@ -110,7 +110,10 @@ class TreeConditions:
             raise InputError(
                 "order", order, f"of a Runge–Kutta method is proved up to {MOST_ORDER}"
             )
-        return tuple(c for n in range(1, order + 1) for c in _of_order(self.tableau, n))
+        return tuple(c for n in range(1, order + 1) for c in self._of_order(n))
+
+    def _of_order(self, order: int) -> tuple[Condition, ...]:
+        return _of_order(self.tableau, order, self.separable)
 
     def area_conditions(self) -> tuple[Condition, ...]:
         return self.tableau.area_conditions()
@@ -120,14 +123,15 @@ class TreeConditions:
 
 
 @lru_cache(maxsize=256)
-def _of_order(tableau: ImplicitTableau, order: int) -> tuple[Condition, ...]:
+def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Condition, ...]:
     weights = _Weights(tableau.numbers)
     gaps = {tree: weights.gap(tree) for tree in trees(order)}
     found = {tree: weights.condition(tree, gap) for tree, gap in gaps.items()}
     wrong = [tree for tree in gaps if found[tree].holds is False]
-    if order < _FIRST_DEPENDENT or not wrong:
+    if not wrong:
         return tuple(found.values())
-    cancel = _cancels(weights.ring, {tree: gaps[tree] for tree in wrong})
+    jets = Jets(order, separable=separable)
+    cancel = _cancels(weights.ring, {tree: gaps[tree] for tree in wrong}, jets)
     if cancel is False:
         return tuple(found.values())
     left = tuple(c for tree, c in found.items() if tree not in wrong)
@@ -135,13 +139,13 @@ def _of_order(tableau: ImplicitTableau, order: int) -> tuple[Condition, ...]:
     return *left, Condition(name, order, "0", cancel)
 
 
-def _cancels(ring: Ring, gaps: Mapping[Tree, Poly]) -> bool | None:
+def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
     """Whether Σ gap F(t)/σ(t), trees of one size, is 0 for every H; None where it is not decided.
 
     The gaps are numbers, the differentials polynomials in the jets, of which the monomials are
     independent: each of them has to have the coefficient 0.
     """
-    differentials = Differentials(Jets(max(map(vertices, gaps))))
+    differentials = Differentials(jets)
     found: dict[tuple[int, Any], Poly] = {}
     for tree, gap in gaps.items():
         share = gap / symmetry(tree)
