@@ -198,7 +198,9 @@ def _explained(shown: Sequence[Panel]) -> list[Line2D]:
     if any(m.y is None for m in marks):
         found.append(Line2D([], [], marker="x", label="× at the edge: failed", **grey))
     if any(panel.beyond(m) for panel in shown for line in panel.lines for m in line.marks):
-        found.append(Line2D([], [], marker=MarkerStyle(CARETUPBASE), label="beyond the edge", **grey))
+        found.append(
+            Line2D([], [], marker=MarkerStyle(CARETUPBASE), label="beyond the edge", **grey)
+        )
     if any(panel.floor for panel in shown):
         found.append(Line2D([], [], marker=".", alpha=0.4, label="floor: rounding part", **grey))
     return found

@@ -21,7 +21,7 @@ _SYSTEM_OPTIONS = (
     click.option(
         "--scheme",
         required=True,
-        help="lie1, lie2, …, symplectic-euler, stormer-verlet, rk4, … or 'p_next = …; q_next = …'.",
+        help="lie1, lie2, …, stormer-verlet, rk4, gauss4, … or 'p_next = …; q_next = …'.",
     ),
     click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output."),
 )

@@ -28,7 +28,7 @@ class Derivatives:
 
     @classmethod
     def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives | None":
-        """None for a scheme that does not take this H."""
+        """None for a scheme that does not take this H, or is given by equations for it."""
         return _derivatives(hamiltonian, scheme)
 
     def second(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
@@ -56,6 +56,8 @@ def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
     try:
         step_map = get(scheme).step_map(hamiltonian)
     except InputError:
+        return None
+    if step_map.solved:
         return None
     step = step_map.whole
     ring, diff = step.ring, step.ring.diff

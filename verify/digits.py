@@ -57,13 +57,14 @@ def _fits(job: Job, digits: int) -> bool:
 def measure(job: Job, name: str, digits: int, progress: Progress | None = None) -> Measured:
     """The job's values to so many digits in the arithmetic of that name, or in its fallback.
 
-    A fixed-point run that leaves its range, or lacks a function, goes to mpfr.
+    A fixed-point run that leaves its range, and where a function is missing, or equations cannot be
+    solved, goes to mpfr.
     """
-    if number_systems.get(name, digits).radius is not None:
-        own = number_systems.get(name, working_digits(digits, job.steps))
-        bounds, run = enclosed(job, own, digits, progress)
-        return Measured(bounds, name, run)
     try:
+        if number_systems.get(name, digits).radius is not None:
+            own = number_systems.get(name, working_digits(digits, job.steps))
+            bounds, run = enclosed(job, own, digits, progress)
+            return Measured(bounds, name, run)
         found = certified(job, name, digits, progress)
         if isinstance(found, Measured):
             return found
@@ -82,6 +83,8 @@ def certified(
     """The job's values to so many digits with rigorous bounds; where there are none, the arithmetic
     at the precision that was reached. Raises UnsupportedError."""
     own = number_systems.get(name, _first_digits(name, digits, job))
+    if job.solved:
+        return own
     for _ in range(_ATTEMPTS):
         foreseen = _Foresight(job, own, digits)
         outcome = job.go(own, tangent=True, progress=progress, enough=foreseen)

@@ -13,6 +13,7 @@ from typing import Any, Protocol, runtime_checkable
 import flint
 import sympy
 
+from verify.conditions import Condition
 from verify.proof.jets import Jets, Poly, Series
 
 Matrix = tuple[tuple[Poly, Poly], tuple[Poly, Poly]]
@@ -116,6 +117,13 @@ class StageEquations:
                     _added(q, jets.shifted(1, 0, *at), stage.drift),
                 )
         return [jets.p + dp[0], *dp[1:]], [jets.q + dq[0], *dq[1:]]
+
+    def conditions(self) -> tuple[Condition, ...]:
+        """det A = det B of each stage, which together suffice for det J ≡ 1."""
+        return tuple(
+            Condition(f"A J = B with det A = det B = {b}", 0, str(a - b), bool(a == b and a != 0))
+            for a, b in self.determinants()
+        )
 
     def determinants(self) -> list[tuple[Poly, Poly]]:
         """(det A, det B) of each stage, where A J = B by implicit differentiation.

@@ -24,7 +24,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from verify import tangent
+from verify import newton, tangent
 from verify.hamiltonian import Hamiltonian
 from verify.increments import increments
 from verify.lowering import Lowering
@@ -100,7 +100,9 @@ class Writer:
         self.map, self.arithmetic = step_map, arithmetic
         self.observables, self.compensated = observables, compensated
         self.program = Program()
-        self.lowering = Lowering(self.program, arithmetic.functions, bits=arithmetic.bits)
+        self.lowering = Lowering(
+            self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
+        )
         self.tangent = tangent.Tangent(self.program) if "tangent" in observables else None
         self.parameters = step_map.hamiltonian.symbols
         self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
@@ -126,6 +128,7 @@ class Writer:
         scope = {
             **self.arithmetic.functions,
             **self.lowering.named_constants(self.arithmetic.number),
+            **newton.constants(self.arithmetic.bits, self.arithmetic.number),
             **(self.tangent.lowering.named_constants(tangent.number) if self.tangent else {}),
         }
         names, kinds, start = zip(*self.carried, strict=True)
@@ -145,11 +148,13 @@ class Writer:
         )
 
     def check(self, needed: Sequence[int]) -> None:
-        """Raises UnsupportedError where the arithmetic lacks a function."""
-        for index in self.lowering.live(needed):
-            function = self.lowering.function(index)
-            if function is not None and function not in self.arithmetic.functions:
+        """Raises UnsupportedError where the arithmetic lacks a function, or solves no equations."""
+        for function in sorted(self.lowering.called(needed)):
+            if function not in self.arithmetic.functions:
                 raise UnsupportedError(f"{self.arithmetic.name} has no {function}")
+        rounded = not self.arithmetic.absolute and self.arithmetic.radius is None
+        if self.lowering.solves(needed) and not rounded:
+            raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
 
     def outputs(self) -> dict[str, int]:
         """Indices of the increments of p and q, of ΔJ and det J as far as they are asked for."""

@@ -7,11 +7,12 @@ from typing import Any
 
 import gmpy2
 
-from verify.program import Program
+from verify import newton
+from verify.operations import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _GUARD = 64  # bits of a given root beyond those of the arithmetic
-_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi")
+_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi", "loop", "solved")
 
 
 @dataclass
@@ -20,13 +21,15 @@ class Lowering:
 
     `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
     where it has `cos_sin` or `sin_cos`. Where it has no `root` that of a number is a number too,
-    given to its `bits`.
+    given to its `bits`. `guard`: a condition on `{x}` that a number in range satisfies (see
+    `verify.number_system`).
     """
 
     program: Program
     functions: Collection[str]
     prefix: str = "v"
     bits: int = 0
+    guard: str | None = None
     _written: set[int] = field(default_factory=set)
 
     def name(self, index: int) -> str:
@@ -49,6 +52,11 @@ class Lowering:
         for index in live:
             if index in self._written or program.ops[index].kind == "const":
                 continue
+            if program.ops[index].kind == "loop":
+                before, inside = self._newton(program.loops[program.ops[index].degree])
+                static += before
+                dynamic += inside
+                continue
             line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
             (static if program.static[index] else dynamic).append(line)
         return static, dynamic
@@ -70,6 +78,24 @@ class Lowering:
         first, second = (self.name(found[kind]) for kind in both.split("_"))
         return f"{first}, {second} = {both}({self.name(op.args[0])})"
 
+    def inner(self, loop: Loop) -> "Lowering":
+        return Lowering(loop.inner, self.functions, f"n{loop.number}_", self.bits)
+
+    def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
+        """The lines before the outer loop, and the inner loop."""
+        inner = self.inner(loop)
+        static, turn = inner.lines([*loop.updates, *loop.determinants])
+        made = newton.Source(
+            prefix=f"u{loop.number}_",
+            starts=[self.name(index) for index in loop.starts],
+            updates=[inner.name(index) for index in loop.updates],
+            added_to=[self.name(index) for index in loop.added_to],
+            determinants=[inner.name(index) for index in loop.determinants],
+            turn=turn,
+            guard=self.guard,
+        )
+        return static, made.lines()
+
     def function(self, index: int) -> str | None:
         """The name of the function that an operation calls, where it calls one."""
         op = self.program.ops[index]
@@ -78,6 +104,22 @@ class Lowering:
         if op.kind == "root":
             return "sqrt" if op.degree == 2 else "root"
         return None if op.kind in _OPERATORS else op.kind
+
+    def called(self, roots: Sequence[int]) -> set[str]:
+        """The names of all functions that the roots need, those in inner loops included."""
+        live = self.live(roots)
+        names = {self.function(index) for index in live} - {None}
+        for loop in self.loops(live):
+            names |= self.inner(loop).called([*loop.updates, *loop.determinants])
+        return {name for name in names if name is not None}
+
+    def solves(self, roots: Sequence[int]) -> bool:
+        """Whether equations are solved for the roots."""
+        return bool(self.loops(self.live(roots)))
+
+    def loops(self, live: Sequence[int]) -> list[Loop]:
+        ops = (self.program.ops[index] for index in live)
+        return [self.program.loops[op.degree] for op in ops if op.kind == "loop"]
 
     def _operation(self, index: int) -> str:
         op = self.program.ops[index]
@@ -92,11 +134,13 @@ class Lowering:
             case "inverse":
                 return f"1 / {args[0]}"
             case "root" if self._given(index):
-                return f"number{index}"
+                return f"number_{self.name(index)}"
             case "root" if op.degree != 2:
                 return f"root({args[0]}, {op.degree})"
             case "pi":
                 return "pi"
+            case "solved":
+                return f"u{self.program.ops[op.args[0]].degree}_{op.degree}"
         return f"{self.function(index)}({args[0]})"
 
     def _given(self, index: int) -> bool:
@@ -116,7 +160,11 @@ class Lowering:
         for index, op in enumerate(self.program.ops):
             if self._given(index):
                 radicand = self.program.ops[op.args[0]].value
-                found[f"number{index}"] = number(_root(radicand, op.degree, self.bits + _GUARD))
+                found[f"number_{self.name(index)}"] = number(
+                    _root(radicand, op.degree, self.bits + _GUARD)
+                )
+        for loop in self.program.loops:
+            found |= self.inner(loop).named_constants(number)
         return found
 
 

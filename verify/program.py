@@ -1,132 +1,23 @@
-"""Polynomials in generators → a straight-line program: one operation a line, nothing twice.
+"""Polynomials in generators → a straight-line program (`verify.operations`): nothing twice.
 
-Operations are hash-consed, so a subexpression that occurs twice is computed once. What depends
-only on the step size, the parameters and constants is `static`, and is computed once before the
-loop; so a polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters
-look like inside it. Constants stay exact rationals; an arithmetic converts them at the edge.
+A polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters look like
+inside it, since what is static is computed once before the loop.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, permutations
 
 from verify.generator import Generator
+from verify.operations import Loop
+from verify.operations import Op as Op
+from verify.operations import Program as Program
 from verify.ring import Poly, Ring
+from verify.solved import System
 
-_LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
-_FUNCTION_LATENCY = 20
-_COST = {"input": 0, "add": 1, "sub": 1, "neg": 1, "mul": 4}
-_COST_OF_FUNCTION = 40
 _MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 
 Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
-
-
-@dataclass(frozen=True)
-class Op:
-    """`kind`: input, const, add, sub, mul, neg, inverse, root, or a function's name."""
-
-    kind: str
-    args: tuple[int, ...] = ()
-    name: str = ""
-    value: Fraction = Fraction(0)
-    degree: int = 1
-
-
-class Program:
-    """A growing list of operations; each method returns the index of its result."""
-
-    def __init__(self) -> None:
-        self.ops: list[Op] = []
-        self.static: list[bool] = []
-        self.depth: list[int] = []
-        self._known: dict[Op, int] = {}
-
-    def _add(self, op: Op, static: bool) -> int:
-        if op not in self._known:
-            self._known[op] = len(self.ops)
-            self.ops.append(op)
-            self.static.append(static)
-            ready = max((self.depth[a] for a in op.args), default=0)
-            cost = 0 if static else _LATENCY.get(op.kind, _FUNCTION_LATENCY if op.args else 0)
-            self.depth.append(0 if static else ready + cost)
-        return self._known[op]
-
-    def copy(self) -> "Program":
-        """One that grows on its own from here."""
-        other = Program()
-        other.ops, other.static, other.depth = self.ops[:], self.static[:], self.depth[:]
-        other._known = dict(self._known)
-        return other
-
-    @property
-    def cost(self) -> int:
-        """What the loop's operations cost; a product is worth several sums."""
-        return sum(
-            _COST.get(op.kind, _COST_OF_FUNCTION)
-            for op, static in zip(self.ops, self.static, strict=True)
-            if not static
-        )
-
-    def input(self, name: str, *, static: bool) -> int:
-        return self._add(Op("input", name=name), static)
-
-    def constant(self, value: Fraction) -> int:
-        return self._add(Op("const", value=value), True)
-
-    def apply(self, kind: str, *args: int, degree: int = 1) -> int:
-        """A function, `neg`, `inverse` or `root` of earlier results."""
-        return self._add(Op(kind, args, degree=degree), all(self.static[a] for a in args))
-
-    def is_constant(self, x: int, value: int) -> bool:
-        return self.ops[x].kind == "const" and self.ops[x].value == value
-
-    def neg(self, x: int) -> int:
-        if self.ops[x].kind == "const":
-            return self.constant(-self.ops[x].value)
-        if self.ops[x].kind == "neg":
-            return self.ops[x].args[0]
-        return self.apply("neg", x)
-
-    def add(self, x: int, y: int) -> int:
-        for a, b in ((x, y), (y, x)):
-            if self.is_constant(a, 0):
-                return b
-        if self.ops[y].kind == "neg":
-            return self.apply("sub", x, self.ops[y].args[0])
-        if self.ops[x].kind == "neg":
-            return self.apply("sub", y, self.ops[x].args[0])
-        return self.apply("add", *sorted((x, y)))
-
-    def mul(self, x: int, y: int) -> int:
-        for a, b in ((x, y), (y, x)):
-            if self.is_constant(a, 0):
-                return a
-            if self.is_constant(a, 1):
-                return b
-            if self.is_constant(a, -1):
-                return self.neg(b)
-            if self.ops[a].kind == "neg" and not self.static[a]:
-                return self.neg(self.mul(self.ops[a].args[0], b))
-        return self.apply("mul", *sorted((x, y)))
-
-    def times(self, x: int, n: int) -> int:
-        """n x for a positive integer n, by sums."""
-        if n == 1:
-            return x
-        half = self.times(x, n // 2)
-        double = self.add(half, half)
-        return self.add(double, x) if n % 2 else double
-
-    def power(self, x: int, n: int) -> int:
-        if n == 0:
-            return self.constant(Fraction(1))
-        if n == 1:
-            return x
-        half = self.power(x, n // 2)
-        square = self.mul(half, half)
-        return self.mul(square, x) if n % 2 else square
 
 
 class Evaluator:
@@ -147,7 +38,7 @@ class Evaluator:
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
         """The index of x's value, or of its product with a static value (the index `factor`)."""
-        used = self.ring.used(x)
+        used = self.ring.used(x, solved=False)
         for generator in used:
             self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
@@ -179,7 +70,33 @@ class Evaluator:
             return self.program._add(Op("pi"), True)
         if g.kind == "stage":
             return self.evaluate(g.argument)
+        if g.kind == "solved":
+            self._solve(self.ring.systems[g.index])
+            return self._at[g.index]
         return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
+
+    def _solve(self, system: System) -> None:
+        """Writes the loop that finds a system's unknowns, with what moves in it inside."""
+        ring, program, number = self.ring, self.program, len(self.program.loops)
+        inner, given = Program(), set()
+        own = Evaluator(inner, ring, {}, self.pipelined)
+        unknown = system.unknowns
+        for k, g in enumerate(unknown):
+            own.set(g, inner.input(f"u{number}_{k}", static=False))
+        for g in ring.used(*system.updates, solved=False):
+            inside = () if g.argument is None else ring.used(g.argument, solved=False)
+            if g not in unknown and not any(x in unknown for x in inside):
+                at = self.at(g)
+                given.add(at)
+                own.set(g, inner.input(f"v{at}", static=program.static[at]))
+        updates = tuple(own.evaluate(x) for x in system.updates)
+        starts = tuple(self.evaluate(x) for x in system.starts)
+        added_to = tuple(self.evaluate(x) for x in system.added_to)
+        determinants = tuple(own.evaluate(x) for x in system.determinants)
+        loop = Loop(number, inner, updates, starts, added_to, determinants)
+        found = program.solve(loop, sorted(given))
+        for g, at in zip(unknown, found, strict=True):
+            self.set(g, at)
 
     def _collect(self, x: Poly, dynamic: Sequence[int]) -> list[Term]:
         """x by monomials in the dynamic generators, the static coefficients evaluated."""

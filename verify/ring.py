@@ -19,8 +19,8 @@ sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import islice
 from typing import Any
@@ -49,6 +49,10 @@ class Decision:
     enclosure: str = ""
 
 
+def _occurring(x: Poly) -> list[int]:
+    return [index for index, power in enumerate(x.degrees()) if power > 0]
+
+
 class RingFullError(Exception):
     """More generators are needed than the ring was made for."""
 
@@ -71,6 +75,9 @@ class Ring:
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
+        self._inside: dict[int, list[int]] = {}
+        self._rules: dict[int, Callable[[str], Poly]] = {}
+        self.systems: dict[int, Any] = {}  # of equations, by their unknowns; see `verify.solved`
         self._written: dict[int, sympy.Expr] = {}
 
     # -- elements -----------------------------------------------------------------------------
@@ -110,6 +117,8 @@ class Ring:
     def _partial(self, index: int, name: str) -> Poly:
         """The partial derivative of a generator; that of a stage has a name of its own, too."""
         known = self._gradients.setdefault(index, {})
+        if name not in known and index in self._rules:
+            known[name] = self._rules[index](name)
         if name not in known and index in self._chains:
             terms = (outer * self.diff(inner, name) for outer, inner in self._chains[index])
             total = self.reduce(sum(terms, self.zero))
@@ -124,18 +133,27 @@ class Ring:
                 total += len(x.derivative(index)) * len(self._partial(index, name))
         return total
 
-    def used(self, *elements: Poly) -> list[Generator]:
-        """The generators that the elements depend on, arguments included, oldest first."""
+    def used(self, *elements: Poly, solved: bool = True) -> list[Generator]:
+        """The generators that the elements depend on, arguments included, oldest first.
+
+        `solved`: those in the equations of unknowns, too.
+        """
         seen: set[int] = set()
-        stack = list(elements)
+        stack = [index for x in elements for index in _occurring(x)]
         while stack:
-            for index, power in enumerate(stack.pop().degrees()):
-                if power > 0 and index not in seen:
-                    seen.add(index)
-                    argument = self._by_index[index].argument
-                    if argument is not None:
-                        stack.append(argument)
+            index = stack.pop()
+            if index not in seen:
+                seen.add(index)
+                if solved or self._by_index[index].kind != "solved":
+                    stack += self._inside_of(index)
         return [g for g in self.generators if g.index in seen]
+
+    def _inside_of(self, index: int) -> list[int]:
+        """The generators in a generator's argument."""
+        if index not in self._inside:
+            argument = self._by_index[index].argument
+            self._inside[index] = [] if argument is None else _occurring(argument)
+        return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
         return any(g.kind == "variable" and str(g.expression) == name for g in self.used(x))
@@ -228,6 +246,16 @@ class Ring:
     def set_chain(self, generator: Poly, chain: Sequence[tuple[Poly, Poly]]) -> None:
         """d generator = Σ outer · d inner over the pairs, worked out when it is asked for."""
         self._chains[self._gens.index(generator)] = chain
+
+    def define(self, unknown: Poly, residual: Poly, rule: Callable[[str], Poly]) -> Generator:
+        """The unknown is where the residual is 0; `rule` gives its partial derivatives by name."""
+        index = self._gens.index(unknown)
+        at = next(k for k, g in enumerate(self.generators) if g.index == index)
+        self.generators[at] = replace(self.generators[at], argument=residual)
+        self._by_index[index] = self.generators[at]
+        self._inside.pop(index, None)
+        self._rules[index] = rule
+        return self.generators[at]
 
     def named(self, x: Poly) -> Poly:
         """x as a generator of its own; x itself where that is as short, or there is no room.

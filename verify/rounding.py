@@ -98,6 +98,8 @@ def analyse(
         if op.kind == "input":
             found[index] = inputs[op.name]
             continue
+        if op.kind == "loop":  # how far Newton's method is from the solution is not counted
+            return None
         interval, error = _value(op, [found[a] for a in op.args])
         if limit is not None and op.kind in _SLOPES and not _within(interval, limit):
             interval = limit * flint.arb(0, 1)

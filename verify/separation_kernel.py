@@ -19,6 +19,7 @@ LLVM compiles it for fixed-point numbers; both round as numba's float64 kernel d
 three against each other).
 """
 
+import keyword
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -28,6 +29,7 @@ from functools import lru_cache
 from typing import Any
 
 from verify import arithmetic as number_systems
+from verify import newton
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import PARTIAL, Kernel, Writer
 from verify.lowering import Lowering
@@ -38,6 +40,7 @@ from verify.step_map import StepMap
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
 LIMITS = ("f_reach_p", "f_reach_q", "w_reach_part")  # of an arithmetic of limited range
 _NAME = re.compile(r"[A-Za-z_]\w*")
+_BARE = {*keyword.kwlist, "abs", "range"}  # where equations are solved there is a loop in the loop
 _CLOSED_SUM = (
     "f_log = f_log1p(f_dj)",
     "f_total = f_sum + f_log",
@@ -78,6 +81,8 @@ def mixed_kernel(
     step_map = get(scheme).step_map(hamiltonian)
     float64 = number_systems.get("float64", 17)
     narrow = _written(step_map, float64, WORKING)
+    if arithmetic.absolute and narrow.lowering.solves(narrow.roots):
+        raise UnsupportedError(f"{arithmetic.name} follows no float64 that solves equations")
     value = {name: f"f_v{index}" for name, index in narrow.outputs.items()}
     closed = not narrow.lowering.program.is_constant(narrow.outputs["dj"], 0)
     before, inside = _lines(narrow, list(value), float64, "f_")
@@ -128,8 +133,10 @@ def _lines(
     kernel: Kernel, outputs: Sequence[str], arithmetic: Arithmetic, prefix: str
 ) -> tuple[list[str], list[str]]:
     """The kernel's lines before the loop and in it that make these outputs, names prefixed."""
-    bare = set() if prefix == "f_" else set(arithmetic.functions)
-    fresh = Lowering(kernel.lowering.program, arithmetic.functions, bits=arithmetic.bits)
+    bare = _BARE if prefix == "f_" else _BARE | set(arithmetic.functions)
+    fresh = Lowering(
+        kernel.lowering.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
+    )
     before, inside = fresh.lines([kernel.outputs[name] for name in outputs])
 
     def prefixed(line: str) -> str:
@@ -142,8 +149,8 @@ def _scope(
     narrow: Kernel, float64: Arithmetic, wide: Kernel, arithmetic: Arithmetic
 ) -> dict[str, Any]:
     """The constants and functions that the source names."""
-    floats = {**float64.functions, **narrow.lowering.named_constants(float64.number)}
-    constants = wide.lowering.named_constants(arithmetic.number)
+    floats = {**float64.functions, **_constants(narrow, float64)}
+    constants = _constants(wide, arithmetic)
     return {
         "wide": lambda x: arithmetic.number(Fraction(x)),
         **arithmetic.functions,
@@ -151,6 +158,13 @@ def _scope(
         **{f"w_{name}": x for name, x in constants.items()},
         "f_log1p": _log1p,
         "w_one": arithmetic.number(Fraction(1)),
+    }
+
+
+def _constants(kernel: Kernel, arithmetic: Arithmetic) -> dict[str, Any]:
+    return {
+        **kernel.lowering.named_constants(arithmetic.number),
+        **newton.constants(arithmetic.bits, arithmetic.number),
     }
 
 

@@ -25,13 +25,13 @@ _DERIVATIVES = 7  # of a name: itself, its two first partial derivatives and its
 class Stages:
     """A ring with room for so many stages of a vector field, and the field at points of it.
 
-    `start` is (p, q) in that ring, and `field` the vector field there.
+    `start` is (p, q) in that ring, and `field` the vector field there. `more`: generators beside.
     """
 
-    def __init__(self, field: VectorField, count: int) -> None:
+    def __init__(self, field: VectorField, count: int, more: int = 0) -> None:
         self.source = field
         functions = len(field.ring.generators) - len(field.ring.variables)
-        room = (count + 1) * functions + count * _NAMES * _DERIVATIVES
+        room = (count + 1) * functions + count * _NAMES * _DERIVATIVES + more
         self.ring = Ring(field.ring.variables, room)
         self.start = self.ring.variable("p"), self.ring.variable("q")
         at = self.at(self.start)

@@ -14,6 +14,7 @@ from functools import cached_property
 import sympy
 
 from verify.composing import composed_polynomials, polynomial, written_out
+from verify.conditions import Condition
 from verify.errors import InputError
 from verify.formula import parse, symbol, to_text
 from verify.hamiltonian import Hamiltonian, VectorField
@@ -27,17 +28,23 @@ P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 # those of its ΔJ.
 _MOST_IN_PARTS = 150
 _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
+_NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 _MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
 
 
 @dataclass(frozen=True)
 class Substep:
-    """(p, q) → (p', q') as elements of the ring of the Hamiltonian's vector field."""
+    """(p, q) → (p', q') as elements of the ring of the Hamiltonian's vector field.
+
+    `conditions`: what is known exactly to suffice for ΔJ ≡ 0, for every H, where all of it holds;
+    for a map that is given by equations, whose ΔJ the ring does not decide.
+    """
 
     field: VectorField
     p_next: Poly
     q_next: Poly
+    conditions: tuple[Condition, ...] = ()
 
     @property
     def ring(self) -> Ring:
@@ -65,6 +72,11 @@ class Substep:
     def staged(self) -> bool:
         """Whether it is made from stages that have names; see `verify.stages`."""
         return any(g.kind == "stage" for g in self.ring.used(self.p_next, self.q_next))
+
+    @cached_property
+    def solved(self) -> bool:
+        """Whether it is given by equations; see `verify.solved`."""
+        return any(g.kind == "solved" for g in self.ring.used(self.p_next, self.q_next))
 
     @cached_property
     def delta_j(self) -> Poly:
@@ -145,6 +157,8 @@ class Substep:
     @cached_property
     def preserves_area(self) -> bool:
         """True where ΔJ is shown to be the zero function."""
+        if self.conditions or self.solved:
+            return bool(self.conditions) and all(c.holds is True for c in self.conditions)
         ring, degree = self.ring, self.degree
         if degree is None:
             return ring.decide(self.delta_j).zero is True
@@ -161,6 +175,16 @@ class StepMap:
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
     expansion: Callable[[int], Expanded] | None = field(default=None, compare=False, repr=False)
+
+    @cached_property
+    def solved(self) -> bool:
+        """Whether it is given by equations, and has no closed form."""
+        return any(step.solved for step in self.substeps)
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What is known exactly of coefficients, and shows ΔJ ≡ 0 where all of it holds."""
+        return tuple(c for step in self.substeps for c in step.conditions)
 
     @property
     def of_parts(self) -> bool:
@@ -208,6 +232,8 @@ class StepMap:
 
     @cached_property
     def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
+        if self.solved:
+            raise InputError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
         p1, q1 = P, Q
         for step in self.substeps:
             put = {P: p1, Q: q1}
@@ -225,6 +251,8 @@ class StepMap:
     @cached_property
     def closed(self) -> Substep | None:
         """The whole map as one substep in closed form; None where a composition is too large."""
+        if self.solved:
+            return None
         if not self.of_parts:
             return self.substeps[0]
         if sum(step.length for step in self.substeps) > _MOST_IN_PARTS:
@@ -258,7 +286,8 @@ class StepMap:
         """The whole map as one substep in closed form; InputError where that is too large."""
         if self.closed is None:
             shown = str(self.hamiltonian.expression)
-            raise InputError("map", shown, "its closed form, all substeps composed, is too large")
+            large = "its closed form, all substeps composed, is too large"
+            raise InputError("map", shown, _NOT_WRITTEN if self.solved else large)
         return self.closed
 
     @property

@@ -91,6 +91,11 @@ class Job:
         self.sections = points or sections
         self.keeper = keeper
 
+    @property
+    def solved(self) -> bool:
+        """Whether a step solves equations; there is no certificate of such runs."""
+        return get(self.scheme).step_map(self.generic).solved
+
     def observing(self, observables: frozenset[str]) -> "Job":
         """The same job with other observables, and without a series."""
         other = copy(self)

@@ -52,7 +52,8 @@ class CostResult(Frozen):
     """What one step executes: operations of the compiled loop, the same subexpression once.
 
     `functions`: calls by name. `gradient`: evaluations of H_p and H_q, where the scheme is made of
-    such (explicit Runge–Kutta, kicks and drifts); None where it is not.
+    such (explicit Runge–Kutta, kicks and drifts); None where it is not. `turn`: what one turn of
+    Newton's method executes beside them, where equations are solved.
     """
 
     additions: int
@@ -60,6 +61,7 @@ class CostResult(Frozen):
     divisions: int
     functions: dict[str, int]
     gradient: dict[str, int] | None
+    turn: "CostResult | None" = None
 
 
 class WorkLine(Frozen):

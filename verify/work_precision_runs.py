@@ -25,9 +25,9 @@ from verify.exact_solution import Solution
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import Kernel, Writer
 from verify.number_system import Arithmetic
-from verify.operations import cost
 from verify.results import Value
 from verify.schemes import get
+from verify.step_cost import cost
 from verify.stepping import Job
 from verify.walk import Walk
 from verify.work_precision_results import CostResult, LimitedBy, WorkPoint

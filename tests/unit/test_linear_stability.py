@@ -16,7 +16,8 @@ from verify.step_map import StepMap
 KNOWN = {
     "lie1": 0, "lie2": 0, "lie3": sympy.sqrt(3), "lie4": 2 * sympy.sqrt(2), "lie5": 0, "lie6": 0,
     "euler": 0, "explicit-midpoint": 0, "rk4": 2 * sympy.sqrt(2), "symplectic-euler": 2,
-    "stormer-verlet": 2, "position-verlet": 2, "implicit-midpoint": sympy.oo,
+    "stormer-verlet": 2, "position-verlet": 2, "implicit-midpoint": sympy.oo, "gauss4": sympy.oo,
+    "gauss6": sympy.oo, "implicit-symplectic-euler": 2,
 }  # fmt: skip
 # Limits of Taylor schemes on the imaginary axis, to the digits of the literature.
 PRINTED = {"lie7": 1.7644, "lie8": 3.3951, "yoshida4": 1.5734}

@@ -27,9 +27,11 @@ from verify.conditions import ByConditions
 from verify.errors import InputError
 from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.counterexample import counterexample
 from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.jets import Jets, Poly, shown
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
+from verify.proof.tree_conditions import TreeConditions
 from verify.scheme import Scheme
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -60,12 +62,21 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
 
 def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> EveryProof:
     """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
+    if separable and isinstance(generic, TreeConditions):
+        generic = replace(generic, separable=True)
     proof = prove_by_conditions(scheme, generic)
     if separable and not generic.separable:
         if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
             reason = f"of every smooth H: {proof.reason}; of H = T(p) + V(q) alone nothing is said"
             return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
         proof = replace(proof, separable=True)
+    if proof.verdict is Verdict.UNDECIDED and proof.convergence_order == scheme.order:
+        found = counterexample(scheme, separable)
+        if found is not None:
+            hamiltonian, order = found
+            lost = f"not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
+            reason = f"of order {scheme.order}, but {lost}"
+            return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
     if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, Generic):
         return proof
     return replace(_of_series(scheme, generic, separable), conditions=proof.conditions)

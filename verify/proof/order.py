@@ -5,13 +5,14 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
 import sympy
 
+from verify.conditions import Condition
 from verify.errors import InputError
 from verify.formula import checked
 from verify.generators import embed
@@ -145,6 +146,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     convergence = convergence_of(step_map)
     leading = leading_of(step_map)
     verdict, reason = _verdict(convergence, leading, scheme)
+    if leading.decision.zero is True and step_map.conditions:
+        reason = f"{reason}, {_by_conditions(step_map.conditions)}"
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -156,6 +159,13 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         witness=leading.decision.witness,
         enclosure=leading.decision.enclosure,
     )
+
+
+def _by_conditions(conditions: Sequence[Condition]) -> str:
+    first = conditions[0].name
+    if len(conditions) == 1:
+        return f"as {first} holds exactly, for every H"
+    return f"as {len(conditions)} conditions on its coefficients hold exactly ({first}, …)"
 
 
 class _BySeries:
@@ -217,6 +227,8 @@ def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
     whole = step_map.whole
     if whole.preserves_area:
         return _VANISHES
+    if step_map.solved:
+        return Leading(MOST_ORDERS + 1, Decision(None))
     decision = whole.ring.decide(whole.delta_j)
     return Leading(MOST_ORDERS + 1 if decision.zero is None else None, decision)
 
