@@ -59,12 +59,8 @@ def stability_plane(plane: Plane, *, name: str, label: str) -> Markup:
                 axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **mark)
         limits = [(lg(h), y) for h, y in zip(plane.linear, ys, strict=True) if h and float(h) > 0]
         if limits:
-            line: dict[str, Any] = {
-                "color": INK,
-                "linewidth": 1.4,
-                "label": "limit of linear theory",
-            }
-            axes.plot(*zip(*limits, strict=True), **line)
+            ends = zip(*limits, strict=True)
+            axes.plot(*ends, color=INK, linewidth=1.4, label="limit of linear theory")
         _frame(axes, xs, ys, plane.parameter)
         figure.legend(loc="outside lower center", ncols=_LEGEND, handlelength=1.6)
         return figure

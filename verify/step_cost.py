@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from verify.generic import RungeKutta, StageEquations
 from verify.kernel import Kernel
 from verify.lowering import Lowering
+from verify.proof.splitting_conditions import Splitting
 from verify.scheme import Scheme
 from verify.work_precision_results import CostResult
 
@@ -58,6 +59,9 @@ def gradient(scheme: Scheme) -> dict[str, int] | None:
     generic = scheme.generic
     if isinstance(generic, RungeKutta):
         return dict.fromkeys(("H_p", "H_q"), len(generic.weights))
+    if isinstance(generic, Splitting):
+        kinds = Counter(kind for kind, _ in generic.parts)
+        return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
     if isinstance(generic, StageEquations) and scheme.explicit:
         return {
             "H_p": sum(stage.drift != 0 for stage in generic.stages),
