@@ -227,7 +227,7 @@ def test_a_method_that_loses_area_is_refuted_by_an_h(
     assert (proof.convergence_order, proof.area_preserving) == (order, False)
 
 
-@pytest.mark.parametrize("name", PRESERVING)
+@pytest.mark.parametrize("name", sorted(PRESERVING))
 def test_no_h_stands_against_a_method_that_preserves_area(name: str) -> None:
     tableau, order = KNOWN[name]
     assert counterexample(made(tableau, order), separable=False) is None
