@@ -61,7 +61,7 @@ def in_c(node: ast.expr) -> str:
         case ast.Name():
             return node.id
         case ast.Constant():
-            return str(node.value) if isinstance(node.value, float) else f"{node.value}"
+            return str(node.value)  # whole numbers only, beside doubles
         case ast.UnaryOp(op=ast.USub()):
             return f"(-{in_c(node.operand)})"
         case ast.BinOp():
