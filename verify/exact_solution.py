@@ -55,10 +55,10 @@ def exact_solution(
     reaches that time or where it could not be followed so far.
     """
     _check(hamiltonian, digits)
-    field, _ = hamiltonian.field()
-    if at_rest(hamiltonian, field, (p, q)) or time == 0:
-        return Solution(p, q, Fraction(0), "the initial value itself")
     known = known_motion(hamiltonian, p, q)
+    rest = known[0].rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
+    if rest or time == 0:
+        return Solution(p, q, Fraction(0), "the initial value itself")
     if known is not None:
         motion, parameters = known
         found = closed_form.evaluate(motion, (p, q), time, digits, parameters)
@@ -78,15 +78,14 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     _check(hamiltonian, _TOLD)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
-    field, _ = hamiltonian.field()
-    if at_rest(hamiltonian, field, (p, q)):
-        return None
     known = known_motion(hamiltonian, p, q)
     if known is not None:
         end = closed_form.blow_up(known[0], 1, _TOLD)
         if end is not None:
             return f"it blows up at t = {float(end):.6g}" if end <= time else None
         return known[0].goes
+    if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
+        return None
     for match in named(hamiltonian):
         if match.system.goes is not None:
             return match.system.goes(match.values, p, q)

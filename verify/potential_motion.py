@@ -18,7 +18,7 @@ from functools import cached_property
 
 import sympy
 
-from verify.motion import Context, Flow, Motion, Number, State, Values, number
+from verify.motion import Context, Flow, Motion, Number, State, Values, at_rest, number
 from verify.weierstrass import Weierstrass, waves
 
 _METHOD = "closed form: Weierstrass's ℘ by Jacobi's elliptic functions"
@@ -34,7 +34,7 @@ def motion(alpha: Fraction, potential: Sequence[Fraction], p: Fraction, q: Fract
     """The solution for H = α p²/2 + V(q) through (p, q), α ≠ 0 and V of degree up to 4."""
     curve = Curve.through(alpha, potential, p, q)
     if curve.v == 0 and curve.b[1] == 0:
-        return Motion(lambda mp, _: (number(mp, p), number(mp, q)), "at rest")
+        return at_rest(p, q)
     to = {sign: curve.destination(sign) for sign in (1, -1)}
     ends = curve.degree > 2
 
