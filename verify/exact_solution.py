@@ -2,10 +2,11 @@
 
 In closed form where one is known (the named systems, whoever wrote them down, and p²/2 + V(q) with
 a polynomial V of degree up to 4), else by the numerical flow, with more digits until two agree.
-The numerical flow is Gragg's method extrapolated, which for the orders that many digits need is
-faster than the Lie series: from (0, 3/2) to t = 100 with 30 and 60 digits it took 0.25 s and 0.9 s
-on the Duffing oscillator, and 0.3 s and 1.3 s on the pendulum; the Lie series of order 43 and 76
-by power series in ball arithmetic 1.1 s and 5.0 s, and 0.4 s and 2.2 s.
+The numerical flow is Gragg's method extrapolated, which at the orders that many digits need is
+faster than the Lie series: to t = 100 with 30 and 60 digits 0.2 and 0.7 s against 1.1 and 5.0 s on
+the Duffing oscillator, 0.2 and 1.1 s against 0.4 and 2.2 s on the pendulum, 0.9 and 3.5 s against
+10 and 56 s on Lennard-Jones (tests/bench/exact_flows.py; the Lie series as power series in t, of
+order 43 and 76, with steps as long as its last terms allow).
 """
 
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from fractions import Fraction
 
 from verify import closed_form
 from verify.errors import InputError
+from verify.exact import decimal
 from verify.hamiltonian import Hamiltonian
 from verify.known_flows import closed_form as known_motion
 from verify.known_flows import named
@@ -54,10 +56,10 @@ def exact_solution(
     reaches that time or where it could not be followed so far.
     """
     _check(hamiltonian, digits)
-    field, _ = hamiltonian.field()
-    if at_rest(hamiltonian, field, (p, q)) or time == 0:
-        return Solution(p, q, Fraction(0), "the initial value itself")
     known = known_motion(hamiltonian, p, q)
+    rest = known[0].rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
+    if rest or time == 0:
+        return Solution(p, q, Fraction(0), "the initial value itself")
     if known is not None:
         motion, parameters = known
         found = closed_form.evaluate(motion, (p, q), time, digits, parameters)
@@ -77,15 +79,14 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     _check(hamiltonian, _TOLD)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
-    field, _ = hamiltonian.field()
-    if at_rest(hamiltonian, field, (p, q)):
-        return None
     known = known_motion(hamiltonian, p, q)
     if known is not None:
         end = closed_form.blow_up(known[0], 1, _TOLD)
         if end is not None:
-            return f"it blows up at t = {float(end):.6g}" if end <= time else None
+            return f"it blows up at t = {decimal(end, 6)}" if end <= time else None
         return known[0].goes
+    if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
+        return None
     for match in named(hamiltonian):
         if match.system.goes is not None:
             return match.system.goes(match.values, p, q)

@@ -18,7 +18,7 @@ class Motion:
     `state(mp, t)` evaluates it in the context's precision, of which it may lose a few digits, and
     `lost` more. `blow_up(mp, sign)` is |t| where the solution ends, forwards (1) or backwards (−1)
     in time, None where it does not. `goes`: how it goes to infinity as t grows, where it does so
-    without an end; None where it stays bounded or blows up.
+    without an end; None where it stays bounded or blows up. `rest`: it stays where it is.
     """
 
     state: Callable[[Context, Number], State]
@@ -26,6 +26,12 @@ class Motion:
     lost: int = 0
     blow_up: Callable[[Context, int], Number | None] = lambda _, __: None
     goes: str | None = None
+    rest: bool = False
+
+
+def at_rest(p: Fraction, q: Fraction) -> Motion:
+    """The motion that stays at an equilibrium."""
+    return Motion(lambda mp, _: (number(mp, p), number(mp, q)), "at rest", rest=True)
 
 
 Flow = Callable[[Values, Fraction, Fraction], Motion | None]

@@ -18,7 +18,7 @@ from functools import cached_property
 
 import sympy
 
-from verify.motion import Context, Flow, Motion, Number, State, Values, number
+from verify.motion import Context, Flow, Motion, Number, State, Values, at_rest, number
 from verify.weierstrass import Weierstrass, waves
 
 _METHOD = "closed form: Weierstrass's ℘ by Jacobi's elliptic functions"
@@ -34,7 +34,7 @@ def motion(alpha: Fraction, potential: Sequence[Fraction], p: Fraction, q: Fract
     """The solution for H = α p²/2 + V(q) through (p, q), α ≠ 0 and V of degree up to 4."""
     curve = Curve.through(alpha, potential, p, q)
     if curve.v == 0 and curve.b[1] == 0:
-        return Motion(lambda mp, _: (number(mp, p), number(mp, q)), "at rest")
+        return at_rest(p, q)
     to = {sign: curve.destination(sign) for sign in (1, -1)}
     ends = curve.degree > 2
 
@@ -157,18 +157,18 @@ class Curve:
 
         At a simple root of f the motion turns; a multiple one it never reaches.
         """
-        v = sign * self.v
-        towards = 1 if (v or self.b[1]) > 0 else -1
-        y = sympy.Symbol("y")
+        towards = 1 if (sign * self.v or self.b[1]) > 0 else -1
         kept = self.b if self.v else self.b[1:]  # y = 0 is a root: the motion turns there
-        f = sympy.Poly([sympy.Rational(x.numerator, x.denominator) for x in kept[::-1]], y)
-        right = [k for _, k in f.intervals(inf=0)] if f.degree() > 0 else []
-        left = [k for _, k in f.intervals(sup=0)][::-1] if f.degree() > 0 else []
-        ahead, behind = (right, left) if towards > 0 else (left, right)
-        if not ahead:
+        # Mirrored so that the motion goes to the right.
+        powers = [
+            sympy.Rational(x.numerator, x.denominator) * towards**k for k, x in enumerate(kept)
+        ]
+        f = sympy.Poly(powers[::-1], sympy.Symbol("y"))
+        if f.degree() < 1 or f.count_roots(inf=0) == 0:
             return towards
-        turns = self.v != 0 and ahead[0] == 1 and not behind
-        return -towards if turns else 0
+        if self.v == 0 or f.count_roots(sup=0) or _nearest_is_multiple(f):
+            return 0
+        return -towards
 
     def time_to_infinity(self, mp: Context, sign: int, end: int) -> Number:
         """|t| at which y is infinite, forwards or backwards in time, at the end ±∞."""
@@ -176,6 +176,21 @@ class Curve:
         v, root = sign * number(mp, self.v), end * mp.sqrt(b4)
         value, slope = b2 / 12 + v * root / 2, -(b3 * v + b1 * root) / 4
         return self.function(mp).inverse(value, slope)
+
+
+def _nearest_is_multiple(f: sympy.Poly) -> bool:
+    """Whether the least of the positive roots of f, which has some, and not 0, is multiple.
+
+    By counting roots (Sturm) rather than finding them: numbers of any size take no longer.
+    """
+    multiple = f.gcd(f.diff()).sqf_part()
+    if multiple.degree() != 1:
+        return bool(multiple.degree() == 2)  # then f is a square
+    lead, rest = multiple.all_coeffs()
+    root = -rest / lead
+    while f.rem(multiple).is_zero:
+        f = f.quo(multiple)
+    return bool(root > 0 and (f.degree() < 1 or f.count_roots(inf=0, sup=root) == 0))
 
 
 def biermann(

@@ -25,6 +25,10 @@ EXTREME: dict[str, tuple[str, Any, Any, Any]] = {
     "stiff-walls": ("p**2/2 + exp(q) + exp(-q)", 1, 40, 100),
     "to-the-barrier": ("p**2/2 + q**2/2 - q**4/2", "1/2", 0, 10**8),
     "from-both-ends": (CUBIC, 0, "-1/2", -(10**8)),
+    "all-sizes": ("p**2/2 + q**2/2 + q**4/(4*10**60*10**60)", "1e1000", "1e-1000", 1),
+    "all-time": (DUFFING, 1, 1, "1e1000"),
+    "smallest-swing-of-all": (PENDULUM, 1, "1e-1000", "1e1000"),
+    "largest-twist-of-all": ("(p**2 + q**2)**2/4", "1e1000", 1, "1e1000"),
     "fast-twist": ("(p**2 + q**2)**2/4", 10**8, 1, 10**8),
 }
 
@@ -54,6 +58,8 @@ BEYOND: dict[str, tuple[str, Any, Any, Any, str]] = {
     "falls-off-the-line": ("p**2/2 - q**2/2", 1, -1, -(10**8), r"beyond 2\^"),
     "steep-wall": ("p**2/2 + 3*(exp(q) - 1)**2", 1, 10**8, 1, "loses more than"),
     "stiff-walls": ("p**2/2 + exp(q) + exp(-q)", 1, 10**8, 1, "loses more than"),
+    "out-of-reach": ("p**2/2 + exp(q) + exp(-q)", 1, "1e1000", 1, "loses more than"),
+    "out-of-reach-numerically": ("p**2/2 + exp(q) - q - 1", 1, "1e1000", 1, "where H is defined"),
     "into-the-pole": (LENNARD_JONES, 1, 0, 1, "not defined"),
 }
 

@@ -109,8 +109,8 @@ def at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool:
     try:
         _, *there = [substitute(x, point, "z0") for x in (hamiltonian.exact, *slopes)]
         constants, elements = embed(there, ())
-    except InputError:
-        raise NoFlowError("H is not defined at the initial value") from None
+    except (InputError, ArithmeticError):
+        raise NoFlowError("H is not defined at the initial value, or too large there") from None
     zero = [constants.decide(x).zero for x in elements]
     if None in zero and False not in zero:
         raise NoFlowError("whether the initial value is an equilibrium is not decided")

@@ -25,7 +25,7 @@ _LOST = 8
 _HALVINGS = 12
 _MOST_STEPS = 200_000  # of one orbit: minutes
 _PATIENCE = 3  # steps after one that was too long before a longer one is tried
-_SHORTEST = 200  # halvings of the first step, after which time stands still
+_SHORTEST = 80  # halvings of the first step, after which time stands still
 LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
 _STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
 

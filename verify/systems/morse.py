@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import flint
 
-from verify.motion import Context, Motion, Number, State, Values, number
+from verify.motion import Context, Motion, Number, State, Values, at_rest, number
 from verify.precision import sign_of
 from verify.system import System
 from verify.weierstrass import waves
@@ -36,7 +36,7 @@ def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
         return slope / (rate * xi), number(mp, q) + mp.log(xi) / rate
 
     if p == q == 0:
-        return Motion(lambda mp, _: (mp.mpf(0), mp.mpf(0)), "at rest")
+        return at_rest(p, q)
     return Motion(state, "closed form: elementary functions", goes=_goes(depth, a, p, q))
 
 

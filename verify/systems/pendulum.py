@@ -13,7 +13,7 @@ from fractions import Fraction
 
 import flint
 
-from verify.motion import Context, Motion, Number, State, Values, number
+from verify.motion import Context, Motion, Number, State, Values, at_rest, number
 from verify.precision import sign_of
 from verify.system import System
 from verify.weierstrass import jacobi
@@ -43,7 +43,7 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
         return 2 * d1, start + sign * (gone + 2 * mp.pi * whole)
 
     if p == q == 0:
-        return Motion(lambda mp, _: (mp.mpf(0), mp.mpf(0)), "at rest")
+        return at_rest(p, q)
     if q == 0 and abs(p) == 2:
         return Motion(state, "closed form: elementary functions")
     return Motion(state, "closed form: Jacobi's elliptic functions", goes=_goes(p, q))

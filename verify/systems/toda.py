@@ -7,7 +7,7 @@ g₃ = E/6 − E³/27, so that Δ = (E² − 4)/4 with E − 2 = p²/2 + 4 sinh�
 
 from fractions import Fraction
 
-from verify.motion import Context, Motion, Number, State, Values, number
+from verify.motion import Context, Motion, Number, State, Values, at_rest, number
 from verify.potential_motion import biermann
 from verify.system import System
 from verify.weierstrass import Weierstrass
@@ -29,7 +29,7 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
         return slope / (1 + y), start + mp.log(1 + y)
 
     if p == q == 0:
-        return Motion(lambda mp, _: (mp.mpf(0), mp.mpf(0)), "at rest")
+        return at_rest(p, q)
     return Motion(state, "closed form: Weierstrass's ℘ by Jacobi's elliptic functions")
 
 

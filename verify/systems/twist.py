@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from verify.motion import Context, Motion, Number, State, Values, number
+from verify.motion import Context, Motion, Number, State, Values, at_rest, number
 from verify.system import System
 
 
@@ -12,6 +12,8 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
         c, s = mp.cos(angle), mp.sin(angle)
         return x * c - y * s, y * c + x * s
 
+    if p == q == 0:
+        return at_rest(p, q)
     return Motion(state, "closed form: elementary functions")
 
 
