@@ -15,6 +15,7 @@ import sympy
 
 from verify.hamiltonian import Hamiltonian
 from verify.implicit_tableau import ImplicitTableau
+from verify.proof.tree_order import order_of
 from verify.ring import Poly
 from verify.series import Series, at_point, partials
 from verify.solved import Matrix, define, unknowns
@@ -75,7 +76,9 @@ class _Equations:
         )
         p_next, q_next = (x + h * mean(self.b, part) for part, x in enumerate(stages.start))
         step = Substep(stages.field, p_next, q_next, self.tableau.area_conditions())
-        return StepMap(self.hamiltonian, (step,), self.taylor)
+        return StepMap(
+            self.hamiltonian, (step,), self.taylor, lambda: order_of(self.tableau, self.source)
+        )
 
     def _at_stages(self, own: Sequence[Poly]) -> tuple[list[Point], list[Matrix]]:
         """f and f' at each Y_j."""

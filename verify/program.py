@@ -152,6 +152,8 @@ class Evaluator:
         coefficients = {
             n: self._sum(group, variables, order[1:], estrin) for n, group in groups.items()
         }
+        if len(coefficients) == 1 and 0 in coefficients:
+            return coefficients[0]
         evaluate = self._estrin if estrin else self._horner
         return evaluate(coefficients, variables[order[0]])
 

@@ -170,11 +170,14 @@ class StepMap:
     """A one-step map of one Hamiltonian, as the composition of its substeps, first one first.
 
     `expansion(most)` is `taylor` of a map whose substeps have stages, which it does not look into.
+    `known_order()`: up to which power of h it agrees with the exact flow and no further, where that
+    is known without the series; else None.
     """
 
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
     expansion: Callable[[int], Expanded] | None = field(default=None, compare=False, repr=False)
+    known_order: Callable[[], int | None] = field(default=lambda: None, compare=False, repr=False)
 
     @cached_property
     def solved(self) -> bool:

@@ -1,6 +1,7 @@
 """Conditions by rooted trees: the trees, methods whose order is known, planted errors."""
 
 import math
+import time
 from dataclasses import replace
 from fractions import Fraction
 
@@ -8,7 +9,7 @@ import flint
 import pytest
 import sympy
 
-from tests.unit.implicit_steps import RADAU, TABLEAUS, places, planted
+from tests.unit.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from verify import schemes
 from verify.conditions import ByConditions, Condition
 from verify.errors import InputError
@@ -19,7 +20,7 @@ from verify.proof import every
 from verify.proof.counterexample import counterexample
 from verify.proof.every import EveryProof, prove_every
 from verify.proof.jets import Jets
-from verify.proof.order import prove
+from verify.proof.order import convergence_of, prove
 from verify.proof.tree_conditions import (
     Differentials,
     TreeConditions,
@@ -30,6 +31,7 @@ from verify.proof.tree_conditions import (
     vertices,
     written,
 )
+from verify.proof.tree_order import order_of
 from verify.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -155,6 +157,28 @@ def test_gauss_methods_are_proved_for_every_h(name: str) -> None:
     count = {"gauss4": 8 + 3, "gauss6": 37 + 6}[name]
     assert len(proof.conditions) == count
     assert all(c.holds and c.residue == "0" for c in proof.conditions)
+
+
+@pytest.mark.parametrize("text", [*NONLINEAR.values(), "p**2*q**3", "cos(p + q)", "exp(p*q)"])
+@pytest.mark.parametrize("name", ["euler", "rk4", "radau IIA", "lobatto IIIA", "gauss4", "gauss6"])
+def test_the_order_at_a_point_is_the_one_of_the_series(name: str, text: str) -> None:
+    tableau, order = KNOWN[name]
+    hamiltonian = Hamiltonian.parse(text)
+    known = order_of(tableau, hamiltonian.field()[0])
+    by_series = replace(implicit_map(hamiltonian, tableau), known_order=lambda: None)
+    found = convergence_of(by_series).order
+    if known is None:  # of this H more is right than of every H, or it is undefined at the points
+        assert found is None or found > order
+    else:
+        assert known == found == order
+
+
+def test_an_involved_h_takes_no_time() -> None:
+    text = "p**2/2 - cos(q) + exp(sin(q)*p)/10 + log(1 + q**2) + sqrt(1 + p**2)"
+    field, _ = Hamiltonian.parse(text).field()
+    begun = time.perf_counter()
+    assert order_of(TABLEAUS["gauss6"], field) == 6
+    assert time.perf_counter() - begun < 10
 
 
 # -- planted errors -------------------------------------------------------------------------------

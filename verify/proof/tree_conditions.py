@@ -25,7 +25,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from typing import Any
+from typing import Any, Protocol
 
 from verify.conditions import Condition
 from verify.errors import InputError
@@ -124,8 +124,7 @@ class TreeConditions:
 
 @lru_cache(maxsize=256)
 def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Condition, ...]:
-    weights = _Weights(tableau.numbers)
-    gaps = {tree: weights.gap(tree) for tree in trees(order)}
+    gaps, weights = gaps_of(tableau, order), _Weights(tableau.numbers)
     found = {tree: weights.condition(tree, gap) for tree, gap in gaps.items()}
     wrong = [tree for tree in gaps if found[tree].holds is False]
     if not wrong:
@@ -137,6 +136,13 @@ def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Co
     left = tuple(c for tree, c in found.items() if tree not in wrong)
     name = f"Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) = 0 over the {len(wrong)} other trees"
     return *left, Condition(name, order, "0", cancel)
+
+
+@lru_cache(maxsize=256)
+def gaps_of(tableau: ImplicitTableau, order: int) -> Mapping[Tree, Poly]:
+    """b·Φ(t) − 1/γ(t) for the trees of so many vertices, in the ring of the tableau's numbers."""
+    weights = _Weights(tableau.numbers)
+    return {tree: weights.gap(tree) for tree in trees(order)}
 
 
 def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
@@ -157,11 +163,20 @@ def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
     return False if False in zeros else None if None in zeros else True
 
 
-class Differentials:
-    """Elementary differentials F(t) of f = (−H_q, H_p), over the jets: F(τ) = f, and
-    F([t_1 … t_m]) = f⁽ᵐ⁾(F(t_1), …, F(t_m))."""
+class Derivatives(Protocol):
+    """H_ij, and 0, in some ring."""
 
-    def __init__(self, jets: Jets) -> None:
+    @property
+    def zero(self) -> Any: ...
+
+    def h(self, i: int, j: int) -> Any: ...
+
+
+class Differentials:
+    """Elementary differentials F(t) of f = (−H_q, H_p), over the jets or what stands for them:
+    F(τ) = f, and F([t_1 … t_m]) = f⁽ᵐ⁾(F(t_1), …, F(t_m))."""
+
+    def __init__(self, jets: Derivatives) -> None:
         self.jets = jets
         self._known: dict[Tree, tuple[Any, Any]] = {}
 
