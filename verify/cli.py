@@ -14,6 +14,7 @@ from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
 from verify.cli_stability import stability
 from verify.errors import InputError
+from verify.show_plan import print_plan
 
 INTERRUPTED = 130
 BAD_INPUT = 2
@@ -173,7 +174,7 @@ def plan(scene: str, as_json: bool) -> None:
     if as_json:
         show.print_json(planned)
     else:
-        show.print_plan(planned)
+        print_plan(planned)
 
 
 @cli.command()

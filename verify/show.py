@@ -217,36 +217,6 @@ def _crossed(way: "CrossoverResult") -> str:
     return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
 
 
-def print_plan(planned: dict[str, Any]) -> None:
-    click.echo(f"{len(planned['tasks'])} tasks")
-    for task in planned["tasks"]:
-        click.echo(f"  {_task_line(task)}")
-    click.echo(f"{len(planned['left_out'])} left out")
-    for item in planned["left_out"]:
-        click.echo(f"  {item['what']}: {item['why']}")
-
-
-def _task_line(task: dict[str, Any]) -> str:
-    reasons = "; ".join(task["reasons"])
-    if task["kind"] == "proof":
-        return f"prove {task['scheme']} for H = {task['hamiltonian']} ({reasons})"
-    if task["kind"] == "every":
-        return f"prove {task['scheme']} for every H ({reasons})"
-    if task["kind"] == "growth":
-        orbit = f"the orbit from q = {task['q']}, p = {task['p']}"
-        return f"growth law of Λ on {orbit} for {task['scheme']} ({reasons})"
-    if task["kind"] == "work_precision":
-        runs = f"{len(task['schemes'])} schemes at {len(task['step_sizes'])} step sizes"
-        return f"error against run time of {runs} over [0, {task['time']}] ({reasons})"
-    where = (
-        f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from "
-        f"q = {task['q']}, p = {task['p']}"
-    )
-    if task["kind"] == "separation":
-        return f"separate truncation from rounding in {where} ({reasons})"
-    return f"run {where} in {task['arithmetic']} ({reasons})"
-
-
 def print_report(made: "Report", page: Path) -> None:
     for claim in made.claims:
         click.echo(f"{claim.verdict:9}  {claim.source}: {claim.evidence}")

@@ -3,6 +3,7 @@
 from fractions import Fraction
 from typing import Any
 
+from verify import newton
 from verify.arithmetic import mpfr
 from verify.lowering import Lowering
 from verify.program import Evaluator, Program
@@ -25,14 +26,16 @@ class Stepper:
         inputs = {name: program.input(name, static=name == "h") for name in ("p", "q", "h")}
         evaluator = Evaluator(program, step.ring, inputs, False)
         roots = [evaluator.evaluate(x) for x in (step.p_next, step.q_next)]
-        lowering = Lowering(program, self.arithmetic.functions)
+        lowering = Lowering(program, self.arithmetic.functions, guard=self.arithmetic.guard)
         static, dynamic = lowering.lines(roots)
         p, q = map(lowering.name, roots)
         lines = ["def at(p, q, h, steps):", *static, "for _ in range(steps):"]
         lines += [*(f"    {line}" for line in dynamic), f"    p, q = {p}, {q}", "return p, q"]
         source = "\n    ".join(lines) + "\n"
         constants = lowering.named_constants(self.arithmetic.number)
-        return self.arithmetic.compile(source, "at", {**self.arithmetic.functions, **constants})
+        solving = newton.constants(self.arithmetic.bits, self.arithmetic.number)
+        scope = {**self.arithmetic.functions, **constants, **solving}
+        return self.arithmetic.compile(source, "at", scope)
 
     def run(self, p: Fraction, q: Fraction, h: Fraction, steps: int) -> tuple[Any, Any]:
         with self.arithmetic.context():

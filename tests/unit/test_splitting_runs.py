@@ -66,7 +66,7 @@ def test_a_given_root_is_rounded_as_the_bound_says(number: str, degree: int, dig
     root = program.apply("root", program.constant(Fraction(number)), degree=degree)
     lowering = Lowering(program, fixed.functions, bits=fixed.bits)
     assert lowering.function(root) is None
-    given = fixed.exact(lowering.named_constants(fixed.number)[f"number{root}"])
+    given = fixed.exact(lowering.named_constants(fixed.number)[f"number_{lowering.name(root)}"])
     with working_precision(2000):
         bound = rounding_of(fixed)(program.ops[root], flint.arb(2))
         true = rational_ball(Fraction(number)).root(degree)

@@ -1,0 +1,52 @@
+"""A plan on the terminal: what would be computed, why, and what is left out."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import click
+
+Task = Mapping[str, Any]
+
+
+def print_plan(planned: dict[str, Any]) -> None:
+    click.echo(f"{len(planned['tasks'])} tasks")
+    for task in planned["tasks"]:
+        click.echo(f"  {_LINES[task['kind']](task)} ({'; '.join(task['reasons'])})")
+    click.echo(f"{len(planned['left_out'])} left out")
+    for item in planned["left_out"]:
+        click.echo(f"  {item['what']}: {item['why']}")
+
+
+def _run(task: Task) -> str:
+    start = f"q = {task['q']}, p = {task['p']}"
+    return f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from {start}"
+
+
+def _growth(task: Task) -> str:
+    orbit = f"the orbit from q = {task['q']}, p = {task['p']}"
+    return f"growth law of Λ on {orbit} for {task['scheme']}"
+
+
+def _work_precision(task: Task) -> str:
+    runs = f"{len(task['schemes'])} schemes at {len(task['step_sizes'])} step sizes"
+    return f"error against run time of {runs} over [0, {task['time']}]"
+
+
+def _map(task: Task) -> str:
+    cells = len(task["values"]) * len(task["step_sizes"])
+    return f"judge {task['scheme']} in {cells} cells of h and {task['parameter']}"
+
+
+_LINES: Mapping[str, Callable[[Task], str]] = {
+    "proof": lambda task: f"prove {task['scheme']} for H = {task['hamiltonian']}",
+    "every": lambda task: f"prove {task['scheme']} for every H",
+    "growth": _growth,
+    "work_precision": _work_precision,
+    "separation": lambda task: f"separate truncation from rounding in {_run(task)}",
+    "run": lambda task: f"run {_run(task)} in {task['arithmetic']}",
+    "stability": lambda task: f"judge {_run(task)}",
+    "largest_step": lambda task: (
+        f"bisect the largest step of {task['scheme']} until {task['time']}"
+    ),
+    "stability_map": _map,
+}
