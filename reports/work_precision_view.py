@@ -1,5 +1,6 @@
 """Error against run time as the page shows it: sentences, figures and tables, all from the data."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
@@ -26,6 +27,7 @@ LIMITS = {
     "tolerance": "its tolerance",
     "failed": "failed",
 }
+_UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
 
 
 @dataclass(frozen=True)
@@ -145,8 +147,7 @@ def _slope(found: SlopeResult) -> str:
 def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     if cost is None:
         return "–", "–"
-    counts = {"+": cost.additions, "×": cost.multiplications, "÷": cost.divisions, **cost.functions}
-    shown = ", ".join(f"{n}{NBSP}{name}" for name, n in counts.items() if n)
+    shown = _UNIT.sub(rf"\1{NBSP}", cost.text)
     if cost.gradient is None:
         return shown, "–"
     counted = (

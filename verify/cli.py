@@ -166,7 +166,10 @@ def separate(
 @click.argument("scene", metavar="SCENE")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
 def plan(scene: str, as_json: bool) -> None:
-    """Show what SCENE (a TOML file, or `paper`) needs computed, what is left out, and why."""
+    """Show what SCENE needs computed, what is left out, and why.
+
+    SCENE is a TOML file, `paper`, `stiff` or `extreme`.
+    """
     from verify.plan import plan_scenes
 
     _, scenes, _ = target(scene)
@@ -183,7 +186,9 @@ def plan(scene: str, as_json: bool) -> None:
 @click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
 def report(scene: str, output: Path | None, workers: int | None, as_json: bool) -> None:
-    """Verify SCENE (a TOML file, or `paper`) and write DIR/index.html and DIR/results.json.
+    """Verify SCENE and write DIR/index.html and DIR/results.json.
+
+    SCENE is a TOML file, `paper`, `stiff` or `extreme`.
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
@@ -196,7 +201,7 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
 
     title, scenes, file = target(scene)
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
-    folder = output or Path(f"{scenes[0].name if scene != 'paper' else 'paper'}-report")
+    folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
     writable(folder)
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from verify.hamiltonian import Hamiltonian
     from verify.scene import Scene
 
+SUITES = {"stiff": "Stiff scenes, judged", "extreme": "Extreme scenes, judged"}
+
 _SYSTEM_OPTIONS = (
     click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
@@ -62,9 +64,11 @@ def paper_folder() -> Path:
 
 
 def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
-    """Title, scenes and claims of `paper` or of a scene's file."""
+    """Title, scenes and claims of `paper`, of a suite, or of a scene's file."""
     from verify.scene import load_scene
 
+    if scene in SUITES:
+        return SUITES[scene], _suite(scene), None
     if scene != "paper":
         loaded = load_scene(Path(scene))
         return loaded.title or loaded.name, [loaded], None
@@ -76,19 +80,13 @@ def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
     return title, scenes, load_claims(folder / "claims.toml")
 
 
-SUITES = ("stiff", "extreme")
-
-
-def scenes_of(scene: str) -> "list[Scene]":
-    """The scenes of `paper`, of a suite, or of a scene's file, without any claims."""
+def _suite(name: str) -> "list[Scene]":
     from importlib.resources import files
 
     from verify.scene import load_scene
 
-    if scene in SUITES:
-        folder = Path(str(files("reports") / "suites" / scene))
-        return [load_scene(path) for path in sorted(folder.glob("*.toml"))]
-    return target(scene)[1]
+    folder = Path(str(files("reports") / "suites" / name))
+    return [load_scene(path) for path in sorted(folder.glob("*.toml"))]
 
 
 def writable(folder: Path) -> None:

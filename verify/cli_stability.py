@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify import show
-from verify.cli_input import scenes_of, writable
+from verify.cli_input import target, writable
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def stability(
         raise InputError("SCENE", "", "is missing; or give --linear --scheme NAME")
     if scheme is not None:
         raise InputError("--scheme", scheme, "goes with --linear; a scene names its own schemes")
-    _of_scenes(scene, scenes_of(scene), keep, workers, as_json)
+    _of_scenes(scene, target(scene)[1], keep, workers, as_json)
 
 
 def _of_scenes(

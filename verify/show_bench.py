@@ -108,12 +108,7 @@ def _about(line: "WorkLine") -> str:
         known = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
         why = f" ({slope.reason})" if slope.reason else ""
         slopes.append(f"order of {of} {known}{why}")
-    operations = ""
-    if line.cost:
-        counts = {"+": line.cost.additions, "×": line.cost.multiplications,
-                  "÷": line.cost.divisions, **line.cost.functions}  # fmt: skip
-        shown = ", ".join(f"{n} {name}" for name, n in counts.items() if n)
-        operations = f"; a step is {shown}"
+    operations = f"; a step is {line.cost.text}" if line.cost else ""
     return f"{line.name}: {'; '.join(slopes)}{operations}; compiled in {line.compile_seconds:.2g} s"
 
 

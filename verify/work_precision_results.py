@@ -63,6 +63,13 @@ class CostResult(Frozen):
     gradient: dict[str, int] | None
     turn: "CostResult | None" = None
 
+    @property
+    def text(self) -> str:
+        """Its operations, as "3 +, 2 ×, 1 sin"; those of Newton's method a turn."""
+        counts = {"+": self.additions, "×": self.multiplications, "÷": self.divisions}
+        shown = ", ".join(f"{n} {what}" for what, n in (counts | self.functions).items() if n)
+        return shown if self.turn is None else f"{shown}, and a turn of Newton {self.turn.text}"
+
 
 class WorkLine(Frozen):
     """One scheme, or one peer, with its points in the order of falling step size or tolerance."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.unit.test_scene import load
-from verify.cli_input import SUITES, scenes_of
+from verify.cli_input import SUITES, target
 from verify.errors import InputError
 from verify.plan import plan_scenes
 from verify.stability_plan import plan_stability, stability_tasks
@@ -133,7 +133,7 @@ def test_bad_maps_are_refused_in_one_line(tmp_path: Path, old: str, new: str, me
 
 @pytest.mark.parametrize("suite", SUITES)
 def test_the_suites_are_scenes_that_ask_for_stability(suite: str) -> None:
-    scenes = scenes_of(suite)
+    scenes = target(suite)[1]
     assert len(scenes) >= 5
     assert len({scene.name for scene in scenes}) == len(scenes)
     for scene in scenes:
