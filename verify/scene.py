@@ -161,6 +161,9 @@ class Series(Frozen):
         return self.time // self.step_size
 
 
+_IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "schemes")
+
+
 class Scene(Frozen):
     """See the module's text for the keys."""
 
@@ -201,6 +204,12 @@ class Scene(Frozen):
                 known = ", ".join(exact.parameters) or "none"
                 raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
         return self
+
+    def with_only(self, **sections: Any) -> "Scene":
+        """The same H and schemes with these sections, and no others."""
+        empty = {name: field.default for name, field in Scene.model_fields.items()
+                 if name not in _IDENTITY}  # fmt: skip
+        return self.model_copy(update=empty | sections)
 
     def exact_hamiltonian(self) -> Hamiltonian:
         """The Hamiltonian with the scene's parameter values."""

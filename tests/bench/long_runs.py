@@ -93,19 +93,18 @@ def first_call(formula: str, name: str, digits: int) -> float:
 
 def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]]:
     """Wall seconds, steps, the fewest digits that are known, and how often each kind of bound."""
-    from verify.cli import _target
+    from verify.cli_input import target
     from verify.execute import Store, execute
     from verify.plan import plan_scenes
     from verify.results import RunResult
 
-    _, scenes, _ = _target("paper")
+    _, scenes, _ = target("paper")
     asked = {"arithmetic": name, "digits": TABLE_DIGITS, "observables": OBSERVABLES}
     chosen = []
     for scene in scenes:
         shorter = {"time": scene.grid.time / shrink, "separate": False}
-        only = {"schemes": ("lie2",), "series": (), "separation": ()}
         grid = scene.grid.model_copy(update=asked | shorter)
-        chosen.append(scene.model_copy(update=only | {"grid": grid}))
+        chosen.append(scene.with_only(schemes=("lie2",), grid=grid))
     begun = time.perf_counter()
     results = execute(plan_scenes(chosen), Store(None), workers=CORES).values()
     seconds = time.perf_counter() - begun

@@ -20,13 +20,12 @@ _RUN = (
     "r = run(h, 'lie2', q=F(3, 2), p=F(0), step_size=F(1, 1000), steps=%d)"
 )
 _TABLES = (
-    "from verify.cli import _target; from verify.plan import plan_scenes;"
+    "from verify.cli_input import target; from verify.plan import plan_scenes;"
     "from verify.execute import Store, execute\n"
     "if __name__ == '__main__':\n"
-    "    _, scenes, _ = _target('paper')\n"
-    "    scenes = [s.model_copy(update={'schemes': ('lie2',), 'series': (), 'separation': (),\n"
-    "        'grid': s.grid.model_copy(update={'arithmetic': 'float64', 'separate': False})})\n"
-    "        for s in scenes]\n"
+    "    _, scenes, _ = target('paper')\n"
+    "    scenes = [s.with_only(schemes=('lie2',), grid=s.grid.model_copy(\n"
+    "        update={'arithmetic': 'float64', 'separate': False})) for s in scenes]\n"
     "    plan = plan_scenes(scenes)\n"
     "    results = execute(plan, Store(None))\n"
     "    print(sum(getattr(r, 'steps', 0) for r in results.values()), 'steps')\n"

@@ -21,11 +21,10 @@ FOREST_RUTH = (
     ("name", "twin"), [(VERLET, "stormer-verlet"), (FOREST_RUTH, "forest-ruth")]
 )
 def test_one_that_is_named_too_is_that_scheme(name: str, twin: str) -> None:
-    hamiltonian = Hamiltonian.parse("p**2/2 - cos(q)")
-    own, other = (schemes.get(n).step_map(hamiltonian).substeps for n in (name, twin))
-    for one, two in zip(own, other, strict=True):
-        assert one.ring.text(one.p_next) == two.ring.text(two.p_next)
-        assert one.ring.text(one.q_next) == two.ring.text(two.q_next)
+    own, other = schemes.get(name).generic, schemes.get(twin).generic
+    for (kind, size), (second, length) in zip(own.parts, other.parts, strict=True):
+        assert kind == second
+        assert abs((size - length).evalf(60)) < 1e-50
     proof = prove_every(name)
     assert (proof.verdict, proof.area_preserving) == (Verdict.PROVED, True)
     assert proof.convergence_order == schemes.get(twin).order
@@ -71,10 +70,10 @@ def test_a_palindrome_claims_symmetry_and_spaces_do_not_count() -> None:
         ("kick 1; drift 1; order 0", "must be 1 … 8"),
         ("kick 1; order 2; drift 1", "order: unknown"),
         ("; ".join(["kick 1"] * 201), "write it as"),
-        ("kick sin(1); drift 1 = 2", ""),
+        ("kick 1; drift 1 = 2", "write it as"),
     ],
 )
 def test_a_bad_one_is_refused_in_one_line(name: str, problem: str) -> None:
-    with pytest.raises(InputError, match=problem.replace("(", r"\(")) as info:
+    with pytest.raises(InputError, match=problem) as info:
         schemes.get(name)
     assert "\n" not in str(info.value)
