@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from reports.plots import Plot
 from reports.typography import listed, number, step, whole
-from verify.exact import short
+from verify.exact import plain, short
 from verify.scene_results import SceneResult
 from verify.stability_results import (
     KINDS,
@@ -123,9 +123,7 @@ def _largest(found: LargestStepResult) -> LargestRow:
 
 
 def _four(x: str) -> str:
-    """Four digits, without an exponent where the number is of ordinary size."""
-    size = float(x)
-    return number(f"{size:.4g}" if 1e-3 <= size < 1e4 else x)
+    return number(plain(Fraction(x), 4))
 
 
 def _bound(steps: Sequence[LargestStepResult]) -> str:

@@ -19,6 +19,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
 _MAX_EXPONENT = 1000
 _MAX_LENGTH = 1000
 _MAX_BITS = 8000
+_ORDINARY = Fraction(1, 1000), 10**4
 _SHORT = 10  # characters
 
 
@@ -92,6 +93,12 @@ def text(value: Fraction) -> str:
     digits = f"{abs(value.numerator) * 10**places // value.denominator:0{places + 1}d}"
     sign = "-" if value < 0 else ""
     return sign + (f"{digits[:-places]}.{digits[-places:]}" if places else digits)
+
+
+def plain(value: Fraction, digits: int) -> str:
+    """So many significant digits, without an exponent where the number is of ordinary size."""
+    ordinary = value == 0 or _ORDINARY[0] <= abs(value) < _ORDINARY[1]
+    return f"{float(value):.{digits}g}" if ordinary else decimal(value, digits)
 
 
 def short(value: Fraction) -> str:

@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from verify import closed_form
 from verify.errors import InputError
-from verify.exact import decimal
+from verify.exact import plain
 from verify.hamiltonian import Hamiltonian
 from verify.known_flows import closed_form as known_motion
 from verify.known_flows import named
@@ -83,7 +83,7 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     if known is not None:
         end = closed_form.blow_up(known[0], 1, _TOLD)
         if end is not None:
-            return f"it blows up at t = {decimal(end, 6)}" if end <= time else None
+            return f"it blows up at t = {plain(end, 6)}" if end <= time else None
         return known[0].goes
     if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
         return None

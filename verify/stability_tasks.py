@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from verify.blame import Judgement, judge
-from verify.exact import decimal, text
+from verify.exact import decimal, plain, text
 from verify.followed import Case
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
@@ -47,7 +47,7 @@ def _against_theory(found: Judgement, h_omega: Fraction, limit: Fraction | None)
     if limit == 0:
         return "; in linear theory it is stable for no step size"
     side = "beyond" if h_omega > limit else "within"
-    return f"; hω = {_plain(h_omega)} is {side} its linear limit {_plain(limit)}"
+    return f"; hω = {plain(h_omega, 3)} is {side} its linear limit {plain(limit, 3)}"
 
 
 def largest(hamiltonian: Hamiltonian, task: LargestStepTask) -> LargestStepResult:
@@ -103,8 +103,3 @@ def _shown(hamiltonian: Hamiltonian) -> dict[str, str]:
 
 def _rounded(x: Fraction | None, digits: int = 3) -> str | None:
     return None if x is None else decimal(x, digits)
-
-
-def _plain(x: Fraction) -> str:
-    """Three digits, without an exponent where the number is of ordinary size."""
-    return f"{float(x):.3g}" if abs(x) < 10**300 else decimal(x, 3)
