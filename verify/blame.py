@@ -29,6 +29,7 @@ from verify.stability_results import Kind
 
 _MOST_DIGITS = 400
 _FLOAT_BITS = 53
+_FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
 _SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
 _LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
@@ -120,12 +121,17 @@ def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> int | None:
 
 
 def _range_alone(motion: CaseMotion) -> bool:
-    """Whether 53 bits with any exponent do as high precision does, where float64 does not."""
-    steps = min(motion.precise[0].asked, _RANGE_STEPS)
+    """Whether any exponent does as high precision does, where float64 does not.
+
+    In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
+    """
+    steps = min(motion.precise[0].asked, _RANGE_STEPS, motion.as_far.done + 1)
     case = replace(motion.case, steps=steps)
     precise = follow(case, motion.precise[1])
-    wide, own = follow(case, mpfr.at_bits(_FLOAT_BITS)), follow(case, float64())
-    return motion.together(wide, precise) and not motion.together(own, precise)
+    if motion.together(follow(case, float64()), precise):
+        return False
+    wide = (follow(case, mpfr.at_bits(bits)) for bits in (_FLOAT_BITS, _FEWER_BITS))
+    return all(motion.together(run, precise) for run in wide)
 
 
 def _out_of_range(motion: CaseMotion, here: Trail) -> Judgement:

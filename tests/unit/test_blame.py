@@ -186,3 +186,21 @@ def test_high_precision_that_does_not_settle_is_undecided(monkeypatch: pytest.Mo
     monkeypatch.setattr(blame, "_MOST_DIGITS", 0)
     found = judged(PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16))
     assert found.kind == "undecided"
+
+
+def test_a_chaotic_run_that_parts_by_rounding_is_not_called_underflow() -> None:
+    # 53 bits keep with 40 digits here to the end, by chance; no number is small.
+    found = judge(case(DUFFING, "symplectic-euler", "1.4", 4000, "0.5", "0.1"))
+    assert found.kind == "unstable: arithmetic"
+
+
+def test_a_scheme_that_comes_back_to_one_point_is_seen_at_the_others_too() -> None:
+    # It turns by π − π/32 a step: after every 64th it is at z0, between them 20 times as far out.
+    found = judged(HARMONIC, "stormer-verlet", "1.997590912410", 12800, "0", "1")
+    assert found.kind == "unstable: scheme"
+    # And here by π/2: after every fourth.
+    for steps in (400, 4096):
+        found = judged(HARMONIC, "stormer-verlet", "1.414213562373095", steps, "0", "1")
+        assert found.kind == "stable"
+        assert found.energy_error is not None
+        assert found.energy_error > Fraction(1, 10)
