@@ -25,6 +25,7 @@ from verify.drift import drift_of
 from verify.exact_orbit import ExactOrbit
 from verify.followed import Case, Trail, first_apart, first_step, follow, follow_precisely
 from verify.neighbours import told_of_rounded_start
+from verify.schemes import get
 from verify.stability_results import Kind
 
 _MOST_DIGITS = 400
@@ -85,9 +86,13 @@ def _scheme(motion: CaseMotion) -> Judgement:
     if step is None:
         told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
         return Judgement("undecided", told, motion.orbit)
-    told = f"the scheme leaves the bounds at step {step}, in {motion.digits} and in {digits} digits"
+    solved = get(motion.case.scheme).step_map(motion.case.hamiltonian).solved
+    unsolved = solved and not again.finished and step == again.done + 1
+    does = "finds no solution of its equations" if unsolved else "leaves the bounds"
+    told = f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits"
     if not motion.float64.finished:
-        told += f"; float64 is out of its range from step {motion.float64.done + 1} on"
+        ends = "goes no further" if solved else "is out of its range"
+        told += f"; float64 {ends} from step {motion.float64.done + 1} on"
     return Judgement("unstable: scheme", told, motion.orbit, step=step)
 
 

@@ -67,6 +67,11 @@ def exact_solution(
     return _followed(hamiltonian, (p, q), time, digits)
 
 
+def _plain(time: Fraction) -> str:
+    """Six digits, without an exponent where the number is of ordinary size."""
+    return f"{float(time):.6g}" if Fraction(1, 1000) < time < 1000 else decimal(time, 6)
+
+
 def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction) -> str | None:
     """How the exact solution leaves every bound, as a short statement; None if it does not.
 
@@ -83,7 +88,7 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     if known is not None:
         end = closed_form.blow_up(known[0], 1, _TOLD)
         if end is not None:
-            return f"it blows up at t = {decimal(end, 6)}" if end <= time else None
+            return f"it blows up at t = {_plain(end)}" if end <= time else None
         return known[0].goes
     if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
         return None

@@ -204,3 +204,13 @@ def test_a_scheme_that_comes_back_to_one_point_is_seen_at_the_others_too() -> No
         assert found.kind == "stable"
         assert found.energy_error is not None
         assert found.energy_error > Fraction(1, 10)
+
+
+def test_a_step_whose_equations_have_no_solution_is_told_as_that() -> None:
+    found = judged("p**2/2 + q**2/2 + p**2*q**2", "gauss4", "0.5", 10, "1", "2")
+    assert found.kind == "unstable: scheme"
+    assert "the scheme finds no solution of its equations at step 1," in found.detail
+    assert found.detail.endswith("float64 goes no further from step 1 on")
+    beyond = judged(HARMONIC, "stormer-verlet", "2.1", 4000, "1")
+    assert "the scheme leaves the bounds at step" in beyond.detail
+    assert "float64 is out of its range from step" in beyond.detail
