@@ -21,7 +21,7 @@ from fractions import Fraction
 
 from verify.arithmetic import mpfr
 from verify.case_motion import CaseMotion, float64
-from verify.drift import drift_of
+from verify.drift import drift_of, too_short
 from verify.exact_orbit import ExactOrbit
 from verify.followed import Case, Trail, first_apart, first_step, follow, follow_precisely
 from verify.neighbours import told_of_rounded_start
@@ -178,5 +178,7 @@ def _bounded(motion: CaseMotion, drifts: bool) -> Judgement:
     if precise.asked < motion.case.steps:
         told += f", of which {precise.asked} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"
+    if drifts and rate is None and too_short(motion):
+        told += "; it goes round too few times to tell a drift of its energy from a swing"
     worst = motion.worst(precise)
     return Judgement(kind, told, motion.orbit, rate=rate, energy_error=worst)

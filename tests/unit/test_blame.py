@@ -214,3 +214,14 @@ def test_a_step_whose_equations_have_no_solution_is_told_as_that() -> None:
     beyond = judged(HARMONIC, "stormer-verlet", "2.1", 4000, "1")
     assert "the scheme leaves the bounds at step" in beyond.detail
     assert "float64 is out of its range from step" in beyond.detail
+
+
+def test_a_run_too_short_to_show_a_drift_says_so() -> None:
+    told = "too few times to tell a drift"
+    for steps, shown in ((200, False), (1000, False), (4000, True)):  # 0.3, 1.6 and 6 periods
+        found = judged(HARMONIC, "lie1", "0.01", steps, "1")
+        assert (found.kind, told in found.detail) == (
+            ("drifts", False) if shown else ("stable", True)
+        )
+    long = judged(HARMONIC, "stormer-verlet", "0.01", 4000, "1")
+    assert told not in long.detail
