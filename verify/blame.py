@@ -25,6 +25,7 @@ from verify.drift import drift_of, too_short
 from verify.exact_orbit import ExactOrbit
 from verify.followed import Case, Trail, first_apart, first_step, follow, follow_precisely
 from verify.neighbours import told_of_rounded_start
+from verify.number_system import Arithmetic
 from verify.schemes import get
 from verify.stability_results import Kind
 
@@ -34,6 +35,7 @@ _FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
 _SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
 _LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
+_Precise = tuple[int, Trail, Arithmetic]
 
 
 @dataclass(frozen=True)
@@ -98,12 +100,17 @@ def _scheme(motion: CaseMotion) -> Judgement:
 
 def _not_the_scheme(motion: CaseMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
-    precise, arithmetic = motion.precise
+    precise, _ = motion.precise
     case, here = replace(motion.case, steps=precise.asked), motion.as_far
-    digits = _confirmed(motion, case, precise)
-    if digits is None:
+    confirmed = _confirmed(motion, case, precise)
+    if confirmed is None:
         told = f"up to {_MOST_DIGITS} digits no two precisions give the same orbit"
         return Judgement("undecided", told, motion.orbit)
+    digits, precise, arithmetic = confirmed
+    if not motion.stays(precise):  # fewer digits did, by rounding
+        step = first_step(case, precise, arithmetic, motion.beyond)
+        told = f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits"
+        return Judgement("unstable: scheme", told, motion.orbit, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
     step = first_apart((case, here, float64()), (case, precise, arithmetic), motion.apart)
@@ -113,14 +120,14 @@ def _not_the_scheme(motion: CaseMotion) -> Judgement:
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
 
-def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> int | None:
-    """The digits with which the run in high precision comes out the same again."""
+def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> _Precise | None:
+    """The digits with which the run in high precision comes out the same again, and that run."""
     digits, last = motion.digits, precise
     while digits <= _MOST_DIGITS:
         digits *= 2
-        again, _ = follow_precisely(case, digits)
+        again, arithmetic = follow_precisely(case, digits)
         if again.asked == last.asked and motion.together(again, last):
-            return digits
+            return digits, again, arithmetic
         last = again
     return None
 

@@ -1,5 +1,6 @@
 """Whose fault it is: scenes where each verdict is right beyond doubt, and those beside them."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from verify import blame
 from verify.blame import Judgement, judge
 from verify.exact import rational
-from verify.followed import Case
+from verify.followed import Case, follow_precisely
 from verify.hamiltonian import Hamiltonian
 from verify.neighbours import equilibrium_near
 
@@ -225,3 +226,16 @@ def test_a_run_too_short_to_show_a_drift_says_so() -> None:
         )
     long = judged(HARMONIC, "stormer-verlet", "0.01", 4000, "1")
     assert told not in long.detail
+
+
+def test_what_more_digits_agree_on_is_held_against_the_bounds_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    top = PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16)
+    assert judged(*top).kind == "unstable: arithmetic"
+
+    def elsewhere(case: Case, digits: int) -> object:
+        return follow_precisely(replace(case, q=1000 * case.q), digits)
+
+    monkeypatch.setattr(blame, "follow_precisely", elsewhere)  # 80 digits and more
+    assert judged(*top).kind == "unstable: scheme"
