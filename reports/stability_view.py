@@ -17,7 +17,7 @@ from verify.stability_results import (
 )
 
 _MEANINGS = {
-    "stable": "stays within the exact orbit’s bounds, and its energy only swings",
+    "stable": "stays within the exact orbit’s bounds, and no drift of its energy is seen",
     "drifts": "stays within them, but its energy moves on in one direction",
     "unstable: scheme": "leaves them with 40 and with 80 digits too: the scheme’s doing",
     "unstable: arithmetic": "parts from the same scheme in high precision: float64’s rounding",

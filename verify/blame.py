@@ -21,17 +21,21 @@ from fractions import Fraction
 
 from verify.arithmetic import mpfr
 from verify.case_motion import CaseMotion, float64
-from verify.drift import drift_of
+from verify.drift import drift_of, too_short
 from verify.exact_orbit import ExactOrbit
 from verify.followed import Case, Trail, first_apart, first_step, follow, follow_precisely
 from verify.neighbours import told_of_rounded_start
+from verify.number_system import Arithmetic
+from verify.schemes import get
 from verify.stability_results import Kind
 
 _MOST_DIGITS = 400
 _FLOAT_BITS = 53
+_FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
 _SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
 _LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
+_Precise = tuple[int, Trail, Arithmetic]
 
 
 @dataclass(frozen=True)
@@ -84,20 +88,29 @@ def _scheme(motion: CaseMotion) -> Judgement:
     if step is None:
         told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
         return Judgement("undecided", told, motion.orbit)
-    told = f"the scheme leaves the bounds at step {step}, in {motion.digits} and in {digits} digits"
+    solved = get(motion.case.scheme).step_map(motion.case.hamiltonian).solved
+    unsolved = solved and not again.finished and step == again.done + 1
+    does = "finds no solution of its equations" if unsolved else "leaves the bounds"
+    told = f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits"
     if not motion.float64.finished:
-        told += f"; float64 is out of its range from step {motion.float64.done + 1} on"
+        ends = "goes no further" if solved else "is out of its range"
+        told += f"; float64 {ends} from step {motion.float64.done + 1} on"
     return Judgement("unstable: scheme", told, motion.orbit, step=step)
 
 
 def _not_the_scheme(motion: CaseMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
-    precise, arithmetic = motion.precise
+    precise, _ = motion.precise
     case, here = replace(motion.case, steps=precise.asked), motion.as_far
-    digits = _confirmed(motion, case, precise)
-    if digits is None:
+    confirmed = _confirmed(motion, case, precise)
+    if confirmed is None:
         told = f"up to {_MOST_DIGITS} digits no two precisions give the same orbit"
         return Judgement("undecided", told, motion.orbit)
+    digits, precise, arithmetic = confirmed
+    if not motion.stays(precise):  # fewer digits did, by rounding
+        step = first_step(case, precise, arithmetic, motion.beyond)
+        told = f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits"
+        return Judgement("unstable: scheme", told, motion.orbit, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
     step = first_apart((case, here, float64()), (case, precise, arithmetic), motion.apart)
@@ -107,25 +120,30 @@ def _not_the_scheme(motion: CaseMotion) -> Judgement:
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
 
-def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> int | None:
-    """The digits with which the run in high precision comes out the same again."""
+def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> _Precise | None:
+    """The digits with which the run in high precision comes out the same again, and that run."""
     digits, last = motion.digits, precise
     while digits <= _MOST_DIGITS:
         digits *= 2
-        again, _ = follow_precisely(case, digits)
+        again, arithmetic = follow_precisely(case, digits)
         if again.asked == last.asked and motion.together(again, last):
-            return digits
+            return digits, again, arithmetic
         last = again
     return None
 
 
 def _range_alone(motion: CaseMotion) -> bool:
-    """Whether 53 bits with any exponent do as high precision does, where float64 does not."""
-    steps = min(motion.precise[0].asked, _RANGE_STEPS)
+    """Whether any exponent does as high precision does, where float64 does not.
+
+    In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
+    """
+    steps = min(motion.precise[0].asked, _RANGE_STEPS, motion.as_far.done + 1)
     case = replace(motion.case, steps=steps)
     precise = follow(case, motion.precise[1])
-    wide, own = follow(case, mpfr.at_bits(_FLOAT_BITS)), follow(case, float64())
-    return motion.together(wide, precise) and not motion.together(own, precise)
+    if motion.together(follow(case, float64()), precise):
+        return False
+    wide = (follow(case, mpfr.at_bits(bits)) for bits in (_FLOAT_BITS, _FEWER_BITS))
+    return all(motion.together(run, precise) for run in wide)
 
 
 def _out_of_range(motion: CaseMotion, here: Trail) -> Judgement:
@@ -167,5 +185,7 @@ def _bounded(motion: CaseMotion, drifts: bool) -> Judgement:
     if precise.asked < motion.case.steps:
         told += f", of which {precise.asked} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"
+    if drifts and rate is None and too_short(motion):
+        told += "; it goes round too few times to tell a drift of its energy from a swing"
     worst = motion.worst(precise)
     return Judgement(kind, told, motion.orbit, rate=rate, energy_error=worst)

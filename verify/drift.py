@@ -30,11 +30,9 @@ def drift_of(motion: CaseMotion) -> Fraction | None:
     Of a motion that has died away within the time, over all of it.
     """
     case, (trail, _) = motion.case, motion.precise
-    if motion.orbit.period is None:
+    if motion.orbit.period is None or too_short(motion):
         return None
     longer = replace(case, steps=_LONGER * trail.asked)
-    if longer.time < _PERIODS * motion.orbit.period:
-        return None  # its energy has not swung often enough to be told from a drift
     if _died(motion, trail):
         lost = _errors(motion, trail)
         return Fraction(lost[-1] / float(case.time)) if lost else None
@@ -48,6 +46,17 @@ def drift_of(motion: CaseMotion) -> Fraction | None:
             if second is None or second / first < 1 / _SLOWER:
                 return None
     return Fraction(first)
+
+
+def too_short(motion: CaseMotion) -> bool:
+    """Whether the energy has not swung often enough to be told from a drift.
+
+    Of an orbit that does not come back within the time there is only that one way.
+    """
+    orbit, (trail, _) = motion.orbit, motion.precise
+    if orbit.period is None:
+        return orbit.kind == "open"
+    return _LONGER * trail.asked * motion.case.step_size < _PERIODS * orbit.period
 
 
 def _died(motion: CaseMotion, trail: Trail) -> bool:

@@ -164,11 +164,14 @@ class _Follow:
             if grown > _FAR and outwards >= _OUTWARDS:
                 told = f"is {_FAR:.0e} times as far out as z0 at t = {float(time):.6g}, and goes on"
                 return self.found("escapes", told, left_at=float(time))
-            shift = self.returned(z, after)
-            if shift is not None:
+            back = self.returned(z, after)
+            if back is not None:
+                shift, part = back
+                with self.arithmetic.context():
+                    period = time - (1 - part) * step
                 kind: Kind = "rotates" if any(shift) else "closed"
-                told = f"{kind}, with a period of about {float(time):.4g}"
-                return self.found(kind, told, shift, period=self.arithmetic.exact(time))
+                told = f"{kind}, with a period of about {float(period):.3g}"
+                return self.found(kind, told, shift, period=self.arithmetic.exact(period))
             z = after
             if time >= self.time:
                 return self.found("open", f"is still under way at t = {float(time):.6g}")
@@ -196,20 +199,24 @@ class _Follow:
         first = max(map(abs, self.z0)) or max(map(abs, self.points[min(1, len(self.points) - 1)]))
         return max(map(abs, z)) / first if first else first
 
-    def returned(self, z: State, after: State) -> State | None:
-        """The shift with which the last step crossed the line through z₀, if it did so near z₀."""
+    def returned(self, z: State, after: State) -> tuple[State, Number] | None:
+        """The shift with which the last step crossed the line through z₀, if it did so near z₀.
+
+        And after which part of that step.
+        """
         with self.arithmetic.context():
             reach = self._ends()[1]
             if len(self.points) < 4 or not all(reach):
                 return None
             for shift in self.shifts:
                 target = (self.z0[0] + shift[0], self.z0[1] + shift[1])
-                if self._crossed(z, after, target, reach):
-                    return shift
+                part = self._crossed(z, after, target, reach)
+                if part is not None:
+                    return shift, part
         return None
 
-    def _crossed(self, z: State, after: State, target: State, reach: State) -> bool:
-        """Whether from z to after the line through the target, normal to f(z₀), is crossed."""
+    def _crossed(self, z: State, after: State, target: State, reach: State) -> Number | None:
+        """Where from z to after the line through the target, normal to f(z₀), is crossed."""
         slope = [r / x for r, x in zip(self.rates[0][:2], reach, strict=True)]
 
         def height(point: State) -> Number:
@@ -219,12 +226,13 @@ class _Follow:
 
         low, high = height(z), height(after)
         if not low < 0 <= high:
-            return False
+            return None
         part = -low / (high - low)
         at = [x + part * (y - x) for x, y in zip(z, after, strict=True)]
-        return all(
+        near = all(
             abs(x - t) < self.number(_NEAR) * r for x, t, r in zip(at, target, reach, strict=True)
         )
+        return part if near else None
 
     def _ends(self) -> tuple[State, State]:
         """The middle of the points seen, and how far they reach from it."""

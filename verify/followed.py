@@ -1,12 +1,16 @@
 """A run followed by its states on the way, so that the step at which something happens is found.
 
-A trail has the state after every n-th step. Where something happens between two of them, that
-stretch is run again from the first with shorter ones, until it is one step.
+A trail has the state after every n-th step, n = 1 in short runs and a prime number in long ones, so
+that a scheme that comes back after a few steps is not seen at one and the same place only. Where
+something happens between two of them, that stretch is run again from the first with shorter ones,
+until it is one step.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+
+from sympy import isprime
 
 from verify import arithmetic as number_systems
 from verify.hamiltonian import Hamiltonian
@@ -15,6 +19,7 @@ from verify.stepping import Job
 
 _SECTIONS = 128, 512  # of a trail, at least and at most
 _BETWEEN = 64  # steps between two of them, where that makes so many
+_FEWEST = 5  # steps between two of them, where not every step is looked at
 _WORTH_COMPILING = 60_000  # steps, as in `verify.digits`
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
@@ -60,8 +65,7 @@ class Trail:
 def follow(case: Case, arithmetic: Arithmetic) -> Trail:
     """The case in this arithmetic. Raises UnsupportedError where that lacks a function."""
     start = {"p": case.p, "q": case.q, "h": case.step_size}
-    fewest, most = _SECTIONS
-    sections = min(most, max(fewest, case.steps // _BETWEEN))
+    sections = _sections(case.steps)
     asked = case.hamiltonian, case.scheme, start, case.steps, frozenset[str](), 0
     outcome = Job(*asked, sections=sections).go(arithmetic)
     section = -(-case.steps // sections)
@@ -69,6 +73,16 @@ def follow(case: Case, arithmetic: Arithmetic) -> Trail:
     for k, state in enumerate(outcome.trail, start=1):
         points.append(Point(min(k * section, case.steps), state["p"], state["q"]))
     return Trail(tuple(points), outcome.done, case.steps)
+
+
+def _sections(steps: int) -> int:
+    """How many stretches a trail has."""
+    fewest, most = _SECTIONS
+    if steps <= most:
+        return steps
+    aimed = min(most, max(fewest, steps // _BETWEEN))
+    lengths = ((sections, -(-steps // sections)) for sections in range(aimed, 0, -1))
+    return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
 
 
 def follow_precisely(case: Case, digits: int) -> tuple[Trail, Arithmetic]:

@@ -63,6 +63,12 @@ def less(timed: Timed, blank: Timed) -> Timed:
     return Timed(*(max(_FINEST, x - blank.least) for x in (timed.least, timed.median)))
 
 
+def above(timed: Timed, blank: Timed) -> Timed | None:
+    """The same; None where the blank call takes longer than what is left, which is then noise."""
+    left = less(timed, blank)
+    return None if left.median < blank.least else left
+
+
 def nothing() -> None:
     """A call that does nothing: what timing itself takes."""
 

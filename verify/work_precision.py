@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from math import hypot, log10
 from statistics import median
 
 from verify import peers
@@ -24,13 +23,14 @@ from verify.proof.exact_flow import NoFlowError
 from verify.results import RunResult
 from verify.runs import run
 from verify.tasks import WorkPrecisionTask
-from verify.timing import Timed, clock, interleaved, less, nothing
-from verify.work_precision_lines import comparisons, line
+from verify.timing import Timed, above, clock, interleaved, nothing
+from verify.work_precision_lines import comparisons, lg, line
 from verify.work_precision_results import SystemPoint, WorkLine, WorkPoint, WorkPrecisionResult
 from verify.work_precision_runs import (
     ROUNDING_SHARE,
     Ladder,
     Problem,
+    distance,
     failed,
     finished,
     printed,
@@ -62,7 +62,7 @@ def work_precision(
     overhead = _time([*own, *(timings for timings, _ in others)], task.repeats)
     lines = [
         line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
-             ladder.compile_seconds)
+             ladder.compile_seconds, problem.scale)
         for ladder, timings in zip(ladders, own, strict=True)
     ]  # fmt: skip
     drawn = [
@@ -123,9 +123,11 @@ def _time(groups: list[list[_Timing]], repeats: int) -> float:
     found = interleaved(calls, repeats)
     empty = dict(zip(map(_of, blanks), found[len(timed) :], strict=False))
     for each, taken in zip(timed, found, strict=False):
-        own = less(taken, empty.get(_of(each.blank), found[-1]))
-        seconds = {"seconds_min": own.least, "seconds_median": own.median}
-        each.point = each.point.model_copy(update=seconds)
+        blank = empty.get(_of(each.blank), found[-1])
+        left = above(taken, blank)
+        if left is not None:
+            seconds = {"seconds_min": left.least, "seconds_median": left.median}
+            each.point = each.point.model_copy(update=seconds)
     return found[-1].median
 
 
@@ -200,20 +202,20 @@ def _systems(problem: Problem, task: WorkPrecisionTask) -> list[SystemPoint]:
     points = []
     for k, ((name, digits), result) in enumerate(zip(asked, first, strict=True)):
         taken = [each[k].seconds for each in rounds]
-        timed = Timed(min(taken), median(taken))
+        timed: Timed | None = Timed(min(taken), median(taken))
         if name == "float64":  # compiled, as it is in the other figures
             timed = _compiled_float(problem, task)
         points.append(_system_point(name, digits, result, timed))
     return points
 
 
-def _compiled_float(problem: Problem, task: WorkPrecisionTask) -> Timed:
+def _compiled_float(problem: Problem, task: WorkPrecisionTask) -> Timed | None:
     ladder, h = Ladder(problem, task.number_systems_scheme), task.number_systems_step_size
-    own, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], task.repeats)
-    return less(own, blank)
+    taken, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], task.repeats)
+    return above(taken, blank)
 
 
-def _system_point(name: str, digits: int, result: RunResult, timed: Timed) -> SystemPoint:
+def _system_point(name: str, digits: int, result: RunResult, timed: Timed | None) -> SystemPoint:
     known = result.status == "finished"
     reason = result.fallback if known else f"{result.status}: {result.error_method}"
     return SystemPoint(
@@ -222,17 +224,20 @@ def _system_point(name: str, digits: int, result: RunResult, timed: Timed) -> Sy
         certified=_digits_of_state(result) if known else None,
         error_kind=result.error_kind,
         error_method=result.error_method,
-        seconds_min=timed.least if known else None,
-        seconds_median=timed.median if known else None,
+        seconds_min=timed.least if known and timed else None,
+        seconds_median=timed.median if known and timed else None,
         reason=reason,
     )
 
 
 def _digits_of_state(result: RunResult) -> str | None:
     """−lg(bound / size) of the state (p, q), with one decimal."""
-    values = [result.values.get(name) for name in ("p", "q")]
-    if None in values:
+    p, q = (result.values.get(name) for name in ("p", "q"))
+    if p is None or q is None:
         return None
-    size = hypot(*(float(v.value) for v in values if v))
-    bound = sum(float(v.bound) for v in values if v)
-    return f"{-log10(bound / size):.1f}" if bound and size else None
+    size, _ = distance((Fraction(p.value), Fraction(q.value)), (Fraction(0), Fraction(0)))
+    bound = Fraction(p.bound) + Fraction(q.bound)
+    if not bound or not size:
+        return None
+    part = bound / size
+    return f"{-lg(f'{part.numerator}/{part.denominator}'):.1f}"

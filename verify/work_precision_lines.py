@@ -5,8 +5,10 @@ the smallest step up to where the slopes between neighbours leave that of the tw
 than `SETTLED`: beyond, the leading term is not yet the error.
 
 Equal run time: between two of its points a scheme is followed along the straight line on
-logarithmic axes, over the run times that both schemes cover. A run whose error is larger than the
-orbit itself takes no part: it says nothing of how good the scheme is.
+logarithmic axes, over the run times that both schemes cover.
+
+A run whose error is larger than the orbit itself takes no part in either: it says nothing of how
+good the scheme is.
 """
 
 from collections.abc import Iterable, Sequence
@@ -28,6 +30,7 @@ from verify.work_precision_results import (
 SETTLED = 0.1
 ALIKE = 1.1  # a ratio within this both ways is within what run times are known to
 FEWEST = 3  # points of a slope
+_ANY = "Infinity"  # the size of an orbit that no error is too large for
 _NOTHING = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
 Place = tuple[float, float]  # lg of one quantity and of another
 
@@ -38,16 +41,17 @@ def line(
     preserves_area: bool | None,
     cost: CostResult | None,
     compile_seconds: float,
+    scale: str = _ANY,
 ) -> WorkLine:
-    """A scheme's line, or with only a name a peer's."""
+    """A scheme's line, or with only a name a peer's; `scale` is the orbit's size."""
     peer = isinstance(scheme, str)
     return WorkLine(
         name=points[0].scheme,
         peer=peer,
         order=None if isinstance(scheme, str) else scheme.order,
         area_preserving=bool(preserves_area),
-        error_slope=_NOTHING if peer else error_slope(points),
-        lambda_slope=_NOTHING if peer else lambda_slope(points, bool(preserves_area)),
+        error_slope=_NOTHING if peer else error_slope(points, scale),
+        lambda_slope=_NOTHING if peer else lambda_slope(points, bool(preserves_area), scale),
         cost=cost,
         compile_seconds=compile_seconds,
         points=tuple(points),
@@ -57,18 +61,39 @@ def line(
 # -- orders ---------------------------------------------------------------------------------------
 
 
-def error_slope(points: Sequence[WorkPoint]) -> SlopeResult:
-    """The order of the error in h."""
-    return fitted([(x, x.error) for x in points if x.limited_by == "truncation"])
+def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
+    """The order of the error in h; `scale` is the orbit's size."""
+    told = [x for x in points if x.limited_by == "truncation"]
+    return _near_alone(told, [(x, x.error) for x in near(told, scale)])
 
 
-def lambda_slope(points: Sequence[WorkPoint], preserves_area: bool) -> SlopeResult:
+def lambda_slope(
+    points: Sequence[WorkPoint], preserves_area: bool, scale: str = _ANY
+) -> SlopeResult:
     """The order of |Λ| in h."""
     if preserves_area:
         return SlopeResult(
             value=None, standard_error=None, points=0, reason="ΔJ ≡ 0 is proved: Λ is exactly 0"
         )
-    return fitted([(x, x.lam) for x in points if x.lambda_limited_by == "truncation"])
+    told = [x for x in points if x.lambda_limited_by == "truncation"]
+    return _near_alone(told, [(x, x.lam) for x in near(told, scale)])
+
+
+def _near_alone(
+    told: Sequence[WorkPoint], found: Sequence[tuple[WorkPoint, Value | None]]
+) -> SlopeResult:
+    """The order over those that are near; it says how many are not."""
+    slope, far = fitted(found), len(told) - len(found)
+    if not far:
+        return slope
+    reason = f"{slope.reason}; " if slope.reason else ""
+    reason += f"with {far} more the error is larger than the orbit"
+    return slope.model_copy(update={"reason": reason})
+
+
+def near(points: Iterable[WorkPoint], scale: str) -> list[WorkPoint]:
+    """The runs whose error is not larger than the orbit."""
+    return [x for x in points if x.error and Decimal(x.error.value) <= Decimal(scale)]
 
 
 def fitted(found: Sequence[tuple[WorkPoint, Value | None]]) -> SlopeResult:
@@ -145,15 +170,10 @@ def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
     )
 
 
-def _usable(line: WorkLine, scale: str) -> list[WorkPoint]:
-    """The runs whose error is not larger than the orbit."""
-    return [x for x in line.points if x.error and Decimal(x.error.value) <= Decimal(scale)]
-
-
 def _places(line: WorkLine, quantity: str, scale: str) -> list[Place]:
     """(lg run time, lg quantity) by run time."""
     found = []
-    for point in _usable(line, scale):
+    for point in near(line.points, scale):
         value: Value | None = getattr(point, quantity)
         if value and Decimal(value.value) and point.seconds_median:
             found.append((lg(repr(point.seconds_median)), lg(value.value)))
@@ -201,8 +221,8 @@ def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, sc
     if exact:
         rest = one if other.area_preserving else other
         keeps = other if other.area_preserving else one
-        errors = _sizes(x.lam for x in _usable(rest, scale))
-        rounded = _sizes(x.lam_plain for x in _usable(keeps, scale))
+        errors = _sizes(x.lam for x in near(rest.points, scale))
+        rounded = _sizes(x.lam_plain for x in near(keeps.points, scale))
         seen = f", where {rest.name} has |Λ| of {_span(errors)}" if errors else ""
         shown = f"; what float64’s rounding shows of it is {_span(rounded)}" if rounded else ""
         return f"In area {exact[0]} makes no error (ΔJ ≡ 0 is proved){seen}{shown}."

@@ -17,7 +17,8 @@ class WorkPoint(Frozen):
     `error`, `lambda_limited_by` of Λ; "tolerance" is a peer's, in which nothing tells truncation
     from rounding, "undecided" has its reason in `reason`. A failed run has no values; `failed_step`
     is the step at which it left its range. Seconds are those of the whole run, its compilation and
-    the call itself apart. `evaluations`: of the vector field in the whole run, where it is counted.
+    the call itself apart; None where that takes longer than the run. `evaluations`: of the vector
+    field in the whole run, where it is counted.
     """
 
     scheme: str

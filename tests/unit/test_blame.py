@@ -1,5 +1,6 @@
 """Whose fault it is: scenes where each verdict is right beyond doubt, and those beside them."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from verify import blame
 from verify.blame import Judgement, judge
 from verify.exact import rational
-from verify.followed import Case
+from verify.followed import Case, follow_precisely
 from verify.hamiltonian import Hamiltonian
 from verify.neighbours import equilibrium_near
 
@@ -186,3 +187,55 @@ def test_high_precision_that_does_not_settle_is_undecided(monkeypatch: pytest.Mo
     monkeypatch.setattr(blame, "_MOST_DIGITS", 0)
     found = judged(PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16))
     assert found.kind == "undecided"
+
+
+def test_a_chaotic_run_that_parts_by_rounding_is_not_called_underflow() -> None:
+    # 53 bits keep with 40 digits here to the end, by chance; no number is small.
+    found = judge(case(DUFFING, "symplectic-euler", "1.4", 4000, "0.5", "0.1"))
+    assert found.kind == "unstable: arithmetic"
+
+
+def test_a_scheme_that_comes_back_to_one_point_is_seen_at_the_others_too() -> None:
+    # It turns by π − π/32 a step: after every 64th it is at z0, between them 20 times as far out.
+    found = judged(HARMONIC, "stormer-verlet", "1.997590912410", 12800, "0", "1")
+    assert found.kind == "unstable: scheme"
+    # And here by π/2: after every fourth.
+    for steps in (400, 4096):
+        found = judged(HARMONIC, "stormer-verlet", "1.414213562373095", steps, "0", "1")
+        assert found.kind == "stable"
+        assert found.energy_error is not None
+        assert found.energy_error > Fraction(1, 10)
+
+
+def test_a_step_whose_equations_have_no_solution_is_told_as_that() -> None:
+    found = judged("p**2/2 + q**2/2 + p**2*q**2", "gauss4", "0.5", 10, "1", "2")
+    assert found.kind == "unstable: scheme"
+    assert "the scheme finds no solution of its equations at step 1," in found.detail
+    assert found.detail.endswith("float64 goes no further from step 1 on")
+    beyond = judged(HARMONIC, "stormer-verlet", "2.1", 4000, "1")
+    assert "the scheme leaves the bounds at step" in beyond.detail
+    assert "float64 is out of its range from step" in beyond.detail
+
+
+def test_a_run_too_short_to_show_a_drift_says_so() -> None:
+    told = "too few times to tell a drift"
+    for steps, shown in ((200, False), (1000, False), (4000, True)):  # 0.3, 1.6 and 6 periods
+        found = judged(HARMONIC, "lie1", "0.01", steps, "1")
+        assert (found.kind, told in found.detail) == (
+            ("drifts", False) if shown else ("stable", True)
+        )
+    long = judged(HARMONIC, "stormer-verlet", "0.01", 4000, "1")
+    assert told not in long.detail
+
+
+def test_what_more_digits_agree_on_is_held_against_the_bounds_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    top = PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16)
+    assert judged(*top).kind == "unstable: arithmetic"
+
+    def elsewhere(case: Case, digits: int) -> object:
+        return follow_precisely(replace(case, q=1000 * case.q), digits)
+
+    monkeypatch.setattr(blame, "follow_precisely", elsewhere)  # 80 digits and more
+    assert judged(*top).kind == "unstable: scheme"

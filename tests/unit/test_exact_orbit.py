@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import mpmath
 import pytest
 
 from verify.exact import rational
@@ -84,3 +85,11 @@ def test_near_a_saddle_the_digits_of_the_initial_value_count() -> None:
     assert found.kind == "closed"
     assert found.period is not None
     assert abs(found.period - 4 * Fraction("71.16")) < 2
+
+
+@pytest.mark.parametrize("q", ["1/10", "1", "2", "3"])
+def test_the_period_is_that_of_the_elliptic_integral(q: str) -> None:
+    found = orbit(PENDULUM, q).period
+    assert found is not None
+    true = 4 * mpmath.ellipk(mpmath.sin(mpmath.mpf(float(Fraction(q))) / 2) ** 2)
+    assert abs(float(found) / float(true) - 1) < 1e-3

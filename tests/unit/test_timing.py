@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from verify import timing
-from verify.timing import Timed, interleaved, less
+from verify.timing import Timed, above, interleaved, less
 
 
 class Clock:
@@ -82,3 +82,9 @@ def test_the_real_clock_moves() -> None:
     sum(range(200_000))
     assert now() > begun
     assert name
+
+
+def test_a_run_that_is_shorter_than_its_call_has_no_time() -> None:
+    blank = Timed(100e-9, 110e-9)
+    assert above(Timed(150e-9, 190e-9), blank) is None
+    assert above(Timed(150e-9, 250e-9), blank) == less(Timed(150e-9, 250e-9), blank)

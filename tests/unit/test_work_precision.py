@@ -15,7 +15,9 @@ from verify.errors import InputError
 from verify.exact_solution import exact_solution
 from verify.hamiltonian import Hamiltonian
 from verify.perform import perform
+from verify.runs import run
 from verify.tasks import WorkPrecisionTask
+from verify.work_precision import _digits_of_state
 from verify.work_precision_lines import error_slope, lambda_slope, lg
 from verify.work_precision_results import WorkPoint, WorkPrecisionResult
 from verify.work_precision_runs import ROUNDING_SHARE, Ladder, Problem
@@ -149,6 +151,16 @@ def test_a_slope_that_has_not_settled_is_not_given() -> None:
     assert "settled" in found.reason
 
 
+def test_runs_whose_error_is_larger_than_the_orbit_have_no_order() -> None:
+    # Pushed off a wall at once, every one goes with the speed of its first kick, which is as h.
+    lost = problem(Hamiltonian.parse("p**2/2 + 1/q"), q="1/10000", time=1)
+    found = points(lost, "stormer-verlet", [2, 4, 8])
+    near_alone = error_slope(found, lost.scale)
+    assert near_alone.value is None
+    assert "with 3 more the error is larger than the orbit" in near_alone.reason
+    assert error_slope(found).value is not None, "without the exclusion there is one"
+
+
 def test_the_order_of_the_area_error_is_measured_or_told_to_be_none() -> None:
     of = problem(PENDULUM)
     found = lambda_slope(points(of, "lie3", [64, 128, 256, 512]), False)
@@ -279,3 +291,13 @@ def test_heyoka_takes_numbers_that_are_no_binary_fractions() -> None:
     last = found.lines[-1].points[-1]
     assert last.error is not None, last.reason
     assert float(last.error.value) < 1e-13
+
+
+def test_digits_beyond_the_range_of_float_are_told() -> None:
+    found = run(
+        PENDULUM, "lie2", q=Fraction(1), p=Fraction(0),
+        step_size=Fraction(1, 4), steps=4, arithmetic="mpfr", digits=350, observables=(),
+    )  # fmt: skip
+    digits = _digits_of_state(found)
+    assert digits is not None
+    assert 345 < float(digits) < 370
