@@ -115,9 +115,9 @@ def _linear(scheme: str, as_json: bool) -> None:
             }
         )
         return
-    shown = f"0 < hω ≤ {found.decimal(12)}"
+    shown = f"for 0 < hω < {found.decimal(12)}"
     if found.interval.is_infinite or found.interval == 0:
-        shown = "every hω > 0" if found.interval else "for no hω > 0"
+        shown = "for every hω > 0" if found.interval else "for no hω > 0"
     click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
     if found.interval.is_finite and not found.interval.is_rational:
         click.echo(f"  exactly  {found.exact}")

@@ -26,6 +26,11 @@ class ByConditions(Protocol):
     @property
     def separable(self) -> bool: ...
 
+    @property
+    def most_order(self) -> int:
+        """Beyond it `order_conditions` raises InputError."""
+        ...
+
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """All that make the map agree with the exact flow up to h^order, for every H.
 

@@ -4,10 +4,12 @@ For H = (p² + ω²q²)/2, in the coordinates (p, ωq), a step of one of our sch
 matrix M(y), y = hω, with polynomials or rational functions of y as entries. With d = det M and
 t = tr M its eigenvalues are at most 1 in size exactly where 1 − d, 1 + d − t and 1 + d + t are all
 ≥ 0 (Jury's conditions; for `lieη`, d = |R_η(iy)|² with the truncated exponential R_η). Where they
-are > 0, or d = 1 and |t| < 2, powers of M stay bounded.
+are > 0, or d = 1 and |t| < 2, powers of M stay bounded. Where d = 1 and |t| = 2 they do so for
+M = ±I alone, and else grow like a shear's; that is why a splitting's interval does not hold Y.
 
-The interval is (0, Y) with the greatest Y such that all three hold in it. Their signs between
-their roots are decided exactly: by isolating the real roots of integer polynomials.
+The interval is (0, Y) with the greatest Y such that all three hold in it; there is none where M is
+a shear, or its negative, for all y. Their signs between their roots are decided exactly: by
+isolating the real roots of integer polynomials.
 """
 
 from collections.abc import Sequence
@@ -74,6 +76,8 @@ def of_map(name: str, step: StepMap) -> LinearStability:
     det, trace = (sympy.cancel(x) for x in (a * e - b * c, a + e))
     conditions = [_polynomial(x) for x in (1 - det, 1 + det - trace, 1 + det + trace)]
     interval = min(_first_failure(f) for f in conditions)
+    if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
+        interval = sympy.S.Zero
     told = sympy.factor(det - 1), trace, _root_of(interval, conditions)
     return LinearStability(name, interval, *told)
 

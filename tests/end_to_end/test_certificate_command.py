@@ -77,4 +77,7 @@ def test_linear_stability_is_exact(capsys: pytest.CaptureFixture[str]) -> None:
     assert found["interval_exact"] == "2*sqrt(2)"
     assert found["interval"].startswith("2.828427124746190097603377448")
     assert "2*sqrt(2)" in here(capsys, *command)[1]
+    # At hω = 2 the matrix has a double eigenvalue −1, and its powers grow.
+    told = here(capsys, "stability", "--linear", "--scheme", "stormer-verlet")[1]
+    assert "for 0 < hω < 2.0" in told
     assert here(capsys, "stability", "--scheme", "lie4")[0] == 2

@@ -18,8 +18,10 @@ class Made:
 
     wrong: dict[int, bool | None]
     separable: bool = False
+    most_order: int = 10
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
+        assert order <= self.most_order
         return tuple(self.condition(n) for n in range(1, min(order, 3) + 1))
 
     def area_conditions(self) -> tuple[Condition, ...]:
@@ -79,3 +81,12 @@ def test_what_fails_for_some_h_may_hold_for_every_separable_one(
     assert prove_every("made", separable=True).separable is True
     monkeypatch.setattr(every, "get", lambda _: made({2: False}, 2, separable=True))
     assert prove_every("made", separable=True).verdict is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("claimed", [2, 3])
+def test_no_condition_is_asked_for_beyond_those_that_are_known(claimed: int) -> None:
+    scheme = made({}, claimed)
+    proof = prove_by_conditions(scheme, Made({}, most_order=3))
+    assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, 3)
+    wrong = prove_by_conditions(scheme, Made({2: False}, most_order=3))
+    assert (wrong.verdict, wrong.convergence_order) == (Verdict.REFUTED, 1)

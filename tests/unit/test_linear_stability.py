@@ -101,6 +101,13 @@ def test_maps_of_ones_own(p_next: str, q_next: str, end: object) -> None:
         assert found.interval == end
 
 
+@pytest.mark.parametrize("name", ["kick 1", "drift 1", "kick 1; drift 0"])
+def test_a_shear_is_stable_for_no_step_as_its_powers_grow(name: str) -> None:
+    assert linear_stability(name).interval == 0
+    nothing = linear_stability("kick 1; kick -1; drift 0")
+    assert nothing.interval == sympy.oo  # the identity, of the same trace and determinant
+
+
 def test_what_is_not_linear_is_refused() -> None:
     with pytest.raises(InputError, match="not linear"):
         of_map("own", StepMap.from_formulas(HARMONIC, "p - h*q**2", "q"))

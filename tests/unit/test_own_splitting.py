@@ -46,6 +46,19 @@ def test_an_order_that_is_one_too_high_is_refuted() -> None:
     assert prove_every(VERLET).verdict is Verdict.PROVED
 
 
+def triple(root: int, steps: list[str]) -> list[str]:
+    """The triple jump of these steps of order root − 1."""
+    outer, inner = f"1/(2 - 2**(1/{root}))", f"(1 - 2/(2 - 2**(1/{root})))"
+    return [f"{size}*{step}" for size in (outer, inner, outer) for step in steps]
+
+
+def test_order_8_is_proved_though_no_condition_beyond_it_is_known() -> None:
+    steps = triple(7, triple(5, triple(3, ["1"])))
+    parts = "; ".join(f"kick {x}/2; drift {x}; kick {x}/2" for x in steps)
+    proof = prove_every(f"{parts}; order 8")
+    assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, 8)
+
+
 def test_without_an_order_it_claims_consistency() -> None:
     scheme = schemes.get("kick 1; drift 1")
     assert (scheme.order, scheme.symmetric) == (1, False)

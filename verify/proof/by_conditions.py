@@ -41,14 +41,15 @@ def prove_by_conditions(scheme: Scheme, generic: ByConditions) -> EveryProof:
 
 def _agreed(generic: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
     """The order of the map, as far as it is looked at, and what ends it."""
-    for order in range(1, claimed + _MORE + 1):
+    most = min(claimed + _MORE, generic.most_order)
+    for order in range(1, most + 1):
         here = [c for c in generic.order_conditions(order) if c.order == order]
         wrong = first_wrong(here)
         if wrong is not None:
             word = "does not hold" if wrong.holds is False else "is not decided"
             end = f"no further: of h^{order}, {shown(wrong)} {word}"
             return order - 1, (end,)
-    return claimed + _MORE, ()
+    return most, ()
 
 
 def _count(generic: ByConditions, order: int) -> str:

@@ -60,6 +60,10 @@ class Splitting:
         kinds = (LETTERS[kind] for kind, _ in self.parts)
         return ring, list(zip(kinds, sizes, strict=True))
 
+    @property
+    def most_order(self) -> int:
+        return MOST_ORDER
+
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """One for each Lyndon word of at most `order` letters; InputError beyond order 8."""
         if order > MOST_ORDER:

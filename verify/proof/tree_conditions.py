@@ -101,6 +101,10 @@ class TreeConditions:
     tableau: ImplicitTableau
     separable: bool = False
 
+    @property
+    def most_order(self) -> int:
+        return MOST_ORDER
+
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those that the trees of 1 … `order` vertices give; see the module's text.
 
