@@ -60,8 +60,7 @@ def average_of(
     period = found.period if found else None
     at_rest = found is not None and period is None
     return AverageResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
+        **hamiltonian.written,
         scheme=scheme,
         digits=digits,
         q=text(start[1]),

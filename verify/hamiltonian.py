@@ -3,12 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import sympy
 
 from verify.errors import InputError
 from verify.exact import Exact, rational, text
-from verify.formula import parameter_name, parse, symbol
+from verify.formula import parameter_name, parse, symbol, to_text
 from verify.generators import MAX_TERMS, embed
 from verify.ring import Poly, Ring
 from verify.substitution import substitute
@@ -74,6 +75,14 @@ class Hamiltonian:
         put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
         shown = ", ".join(f"{n}={text(v)}" for n, v in self.values)
         return substitute(expression, put, shown)
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """Its formula and parameter values as text, by the names that results give them."""
+        return {
+            "hamiltonian": to_text(self.expression),
+            "parameters": {name: text(value) for name, value in self.values},
+        }
 
     def generic(self) -> "Hamiltonian":
         """H with its parameters as symbols, but for those of value 0, whose terms vanish.

@@ -127,8 +127,7 @@ def _proof(task: ProofTask, _: Keeper) -> ProofResult:
         p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in written)
         jacobian = (a, b), (c, d)
     return ProofResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
+        **hamiltonian.written,
         scheme=scheme,
         verdict=proof.verdict,
         reason=proof.reason,

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from verify.exact import text
-from verify.formula import to_text
 from verify.planned import Plan
 from verify.runs import CLOSED_FORM
 from verify.scene import Grid, Scene
@@ -26,18 +25,15 @@ def plan_scenes(scenes: list[Scene]) -> Plan:
 
 
 def proof_task(scene: Scene, scheme: str) -> ProofTask:
-    exact = scene.exact_hamiltonian()
-    return ProofTask(
-        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme
-    )
+    return ProofTask(**scene.given(), scheme=scheme)
 
 
 def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
     """The grid's run for a step size and the index of an initial value."""
     assert scene.grid is not None  # noqa: S101 - asked for by grids only
-    exact, grid, at = scene.exact_hamiltonian(), scene.grid, scene.grid.initial_values[start]
+    grid, at = scene.grid, scene.grid.initial_values[start]
     return RunTask(
-        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        **scene.given(), scheme=scheme,
         step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, arithmetic=grid.arithmetic,
         digits=grid.digits, observables=grid.observables, points=0,
     )  # fmt: skip
@@ -47,9 +43,9 @@ def separation_task(
     scene: Scene, scheme: str, grid: Grid, h: Fraction, start: int
 ) -> SeparationTask:
     """The split of the grid's run for a step size and the index of an initial value."""
-    exact, at = scene.exact_hamiltonian(), grid.initial_values[start]
+    at = grid.initial_values[start]
     return SeparationTask(
-        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        **scene.given(), scheme=scheme,
         step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, digits=SEPARATED_DIGITS,
     )  # fmt: skip
 
@@ -57,9 +53,9 @@ def separation_task(
 def growth_task(scene: Scene, scheme: str, start: int) -> GrowthTask:
     """The growth law for the index of an initial value of the grid."""
     assert scene.grid is not None  # noqa: S101 - asked for by grids only
-    exact, at = scene.exact_hamiltonian(), scene.grid.initial_values[start]
+    at = scene.grid.initial_values[start]
     return GrowthTask(
-        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        **scene.given(), scheme=scheme,
         q=at.q, p=at.p, digits=AVERAGE_DIGITS,
     )  # fmt: skip
 
@@ -71,10 +67,10 @@ def grids_separated(scene: Scene) -> list[Grid]:
 
 
 def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
-    exact, series = scene.exact_hamiltonian(), scene.series[index]
+    series = scene.series[index]
     at = series.initial_value
     return RunTask(
-        hamiltonian=to_text(exact.expression), parameters=dict(exact.values), scheme=scheme,
+        **scene.given(), scheme=scheme,
         step_size=series.step_size, steps=series.count, q=at.q, p=at.p,
         arithmetic=series.arithmetic, digits=series.digits, observables=CLOSED_FORM,
         points=series.points,

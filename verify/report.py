@@ -13,7 +13,6 @@ from verify.claims import Claim
 from verify.exact import text
 from verify.execute import Done, Store, execute
 from verify.findings import Findings
-from verify.formula import to_text
 from verify.keeping import versions
 from verify.plan import plan_scenes, series_task
 from verify.planned import Plan
@@ -74,8 +73,7 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
     return SceneResult(
         name=scene.name,
         title=scene.title or scene.name,
-        hamiltonian=to_text(exact.expression),
-        parameters={name: text(value) for name, value in exact.values},
+        **exact.written,
         source=systems.get(scene.system).source if scene.system else "the user's formula",
         time=text(scene.grid.time) if scene.grid and scene.grid.time else None,
         proofs=tuple(findings.proof(scene, scheme) for scheme in scene.schemes),

@@ -19,7 +19,6 @@ from verify.enclosure import enclose
 from verify.errors import InputError
 from verify.exact import Exact, known_digits, positive, rational, text
 from verify.float_bounds import bounded
-from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
 from verify.precision import working_precision
@@ -79,8 +78,7 @@ def run(
     if found.status == "finished":
         values |= {n: _printed(*known[n], digits) for n in observables if n in known}
     return RunResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
+        **hamiltonian.written,
         scheme=scheme,
         arithmetic=done.arithmetic,
         fallback=done.fallback,
@@ -117,8 +115,7 @@ def known_run(
     if not set(observables) <= set(known):
         return None
     return RunResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
+        **hamiltonian.written,
         scheme=scheme,
         arithmetic="ball",
         digits=digits,

@@ -46,6 +46,7 @@ from verify import schemes as scheme_catalogue
 from verify import systems
 from verify.errors import InputError
 from verify.exact import text
+from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
 from verify.runs import CLOSED_FORM, MAX_STEPS, OBSERVABLES
@@ -210,6 +211,11 @@ class Scene(Frozen):
         empty = {name: field.default for name, field in Scene.model_fields.items()
                  if name not in _IDENTITY}  # fmt: skip
         return self.model_copy(update=empty | sections)
+
+    def given(self) -> dict[str, Any]:
+        """H as a task has it: its formula, and its parameter values exactly."""
+        exact = self.exact_hamiltonian()
+        return {"hamiltonian": to_text(exact.expression), "parameters": dict(exact.values)}
 
     def exact_hamiltonian(self) -> Hamiltonian:
         """The Hamiltonian with the scene's parameter values."""

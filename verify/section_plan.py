@@ -3,7 +3,6 @@
 from importlib.util import find_spec
 
 from verify.errors import InputError
-from verify.formula import to_text
 from verify.scene import Scene
 from verify.scene_sections import WorkPrecision
 from verify.tasks import WorkPrecisionTask
@@ -11,12 +10,10 @@ from verify.tasks import WorkPrecisionTask
 
 def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTask:
     """Error against run time. Raises InputError where peers are wanted and not installed."""
-    exact = scene.exact_hamiltonian()
     schemes, sizes = section.schemes or scene.schemes, sorted(section.step_sizes, reverse=True)
     peers, left_out = _peers(section.peers)
     return WorkPrecisionTask(
-        hamiltonian=to_text(exact.expression),
-        parameters=dict(exact.values),
+        **scene.given(),
         schemes=schemes,
         time=section.time,
         step_sizes=tuple(sizes),

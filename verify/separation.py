@@ -36,7 +36,6 @@ from fractions import Fraction
 from verify import arithmetic as number_systems
 from verify.errors import InputError
 from verify.exact import Exact, known_digits, positive, rational, text
-from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
 from verify.results import (
@@ -90,8 +89,7 @@ def separate(
     except Stopped as answer:
         stopped = answer
     return SeparationResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
+        **hamiltonian.written,
         scheme=scheme,
         arithmetic=chains.arithmetic if chains else arithmetic,
         digits=digits,

@@ -55,13 +55,11 @@ def proof_json(
     exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential", seconds: str
 ) -> dict[str, Any]:
     from verify.exact import text
-    from verify.formula import to_text
 
     return {
         "verdict": proof.verdict.value,
         "reason": proof.reason,
-        "hamiltonian": to_text(exact.expression),
-        "parameters": {name: text(value) for name, value in exact.values},
+        **exact.written,
         "scheme": scheme,
         "order": proof.order,
         "leading": proof.first.text,

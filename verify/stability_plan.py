@@ -1,10 +1,8 @@
 """A scene's sections on stability → the tasks that they need."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from verify.exact import short
-from verify.formula import to_text
 from verify.planned import Plan
 from verify.scene import Scene
 from verify.tasks import LargestStepTask, StabilityMapTask, StabilityTask
@@ -29,14 +27,9 @@ def need_stability(plan: Plan, scene: Scene) -> None:
         plan.need(over, f"{name}: stability over step size and {over.parameter}")
 
 
-def _given(scene: Scene) -> dict[str, Any]:
-    exact = scene.exact_hamiltonian()
-    return {"hamiltonian": to_text(exact.expression), "parameters": dict(exact.values)}
-
-
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
     """Each case with its name: scene, section, scheme, step size and which initial value."""
-    given = _given(scene) if scene.stability else {}
+    given = scene.given() if scene.stability else {}
     for section in scene.stability:
         for scheme in section.schemes or scene.schemes:
             for k, at in enumerate(section.initial_values, start=1):
@@ -52,7 +45,7 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
 
 
 def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
-    given = _given(scene) if scene.largest_step else {}
+    given = scene.given() if scene.largest_step else {}
     for section in scene.largest_step:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:
@@ -60,7 +53,7 @@ def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
 
 
 def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
-    given = _given(scene) if scene.stability_map else {}
+    given = scene.given() if scene.stability_map else {}
     for section in scene.stability_map:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:

@@ -5,7 +5,6 @@ from fractions import Fraction
 from verify.blame import Judgement, judge
 from verify.exact import decimal, plain, text
 from verify.followed import Case
-from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.stability import frequency, largest_step, linear_limit, stability_map
 from verify.stability_results import (
@@ -22,8 +21,7 @@ def judged(hamiltonian: Hamiltonian, task: StabilityTask) -> StabilityResult:
     found = judge(case)
     limit, h_omega = linear_limit(task.scheme), task.step_size * frequency(found.orbit)
     return StabilityResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters=_shown(hamiltonian),
+        **hamiltonian.written,
         scheme=task.scheme,
         step_size=text(task.step_size),
         steps=task.steps,
@@ -54,8 +52,7 @@ def largest(hamiltonian: Hamiltonian, task: LargestStepTask) -> LargestStepResul
     found = largest_step(hamiltonian, task.scheme, task.p, task.q, task.time)
     h = found.bounded
     return LargestStepResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters=_shown(hamiltonian),
+        **hamiltonian.written,
         scheme=task.scheme,
         time=text(task.time),
         q=text(task.q),
@@ -83,8 +80,7 @@ def mapped(hamiltonian: Hamiltonian, task: StabilityMapTask) -> StabilityMapResu
         )
     )
     return StabilityMapResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters=_shown(hamiltonian),
+        **hamiltonian.written,
         scheme=task.scheme,
         parameter=task.parameter,
         values=tuple(map(text, task.values)),
@@ -95,10 +91,6 @@ def mapped(hamiltonian: Hamiltonian, task: StabilityMapTask) -> StabilityMapResu
         cells=tuple(tuple(MapCell(kind=x.kind, step=x.step) for x in row) for _, row in rows),
         linear=tuple(_rounded(h, 4) for h, _ in rows),
     )
-
-
-def _shown(hamiltonian: Hamiltonian) -> dict[str, str]:
-    return {name: text(value) for name, value in hamiltonian.values}
 
 
 def _rounded(x: Fraction | None, digits: int = 3) -> str | None:

@@ -14,55 +14,55 @@ class _Task(Frozen):
     alone: ClassVar[bool] = False
 
 
-class ProofTask(_Task):
+class _OfHamiltonian(_Task):
+    """H as its formula, with its parameter values."""
+
+    hamiltonian: str
+    parameters: dict[str, Number]
+
+
+class _OfScheme(_OfHamiltonian):
+    scheme: str
+
+
+class _FromPoint(_OfScheme):
+    """One scheme from one initial value."""
+
+    q: Number
+    p: Number
+
+
+class ProofTask(_OfScheme):
     """Prove the order of ΔJ and of the map for one H and one scheme."""
 
     kind: Literal["proof"] = "proof"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
 
 
-class RunTask(_Task):
+class RunTask(_FromPoint):
     """Run N steps and report the observables."""
 
     kind: Literal["run"] = "run"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
     step_size: StepSize
     steps: int
-    q: Number
-    p: Number
     arithmetic: str
     digits: int
     observables: tuple[str, ...]
     points: int
 
 
-class SeparationTask(_Task):
+class SeparationTask(_FromPoint):
     """Split Λ of a float64 run into truncation and rounding."""
 
     kind: Literal["separation"] = "separation"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
     step_size: StepSize
     steps: int
-    q: Number
-    p: Number
     digits: int
 
 
-class GrowthTask(_Task):
+class GrowthTask(_FromPoint):
     """The growth law of Λ on one orbit, with the time average in it."""
 
     kind: Literal["growth"] = "growth"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
-    q: Number
-    p: Number
     digits: int
 
 
@@ -73,7 +73,7 @@ class EveryTask(_Task):
     scheme: str
 
 
-class WorkPrecisionTask(_Task):
+class WorkPrecisionTask(_OfHamiltonian):
     """Error against run time of schemes over step sizes, of number systems, and of peers.
 
     `peers`: names of those that are drawn; `peers_left_out`: the others, each with the reason.
@@ -81,8 +81,6 @@ class WorkPrecisionTask(_Task):
 
     alone: ClassVar[bool] = True
     kind: Literal["work_precision"] = "work_precision"
-    hamiltonian: str
-    parameters: dict[str, Number]
     schemes: tuple[str, ...]
     time: Number
     step_sizes: tuple[StepSize, ...]
@@ -97,44 +95,29 @@ class WorkPrecisionTask(_Task):
     peers_left_out: tuple[tuple[str, str], ...]
 
 
-class StabilityTask(_Task):
+class StabilityTask(_FromPoint):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     kind: Literal["stability"] = "stability"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
     step_size: StepSize
     steps: int
-    q: Number
-    p: Number
 
 
-class LargestStepTask(_Task):
+class LargestStepTask(_FromPoint):
     """The largest step size with bounded motion until `time`."""
 
     kind: Literal["largest_step"] = "largest_step"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
     time: Number
-    q: Number
-    p: Number
 
 
-class StabilityMapTask(_Task):
+class StabilityMapTask(_FromPoint):
     """Verdicts over a parameter's values and step sizes."""
 
     kind: Literal["stability_map"] = "stability_map"
-    hamiltonian: str
-    parameters: dict[str, Number]
-    scheme: str
     parameter: str
     values: tuple[Number, ...]
     step_sizes: tuple[StepSize, ...]
     steps: int
-    q: Number
-    p: Number
 
 
 Task = (

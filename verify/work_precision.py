@@ -16,7 +16,6 @@ from verify.arithmetic import float64
 from verify.errors import InputError
 from verify.exact import text, upper
 from verify.exact_solution import exact_solution
-from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.peer import Answer, InitialValueProblem, PeerError, Solver
 from verify.proof.exact_flow import NoFlowError
@@ -70,8 +69,7 @@ def work_precision(
         for name, (timings, compiled) in zip(task.peers, others, strict=True)
     ]
     return WorkPrecisionResult(
-        hamiltonian=to_text(hamiltonian.expression),
-        parameters={name: text(value) for name, value in hamiltonian.values},
+        **hamiltonian.written,
         time=text(task.time),
         q=text(task.q),
         p=text(task.p),
