@@ -50,8 +50,8 @@ class Judgement:
     energy_error: Fraction | None = None
 
 
-def judge(case: Case, *, drifts: bool = True) -> Judgement:
-    """The verdict on one case; without `drifts` what drifts counts as stable."""
+def judge(case: Case) -> Judgement:
+    """The verdict on one case."""
     motion = CaseMotion(case)
     if motion.orbit.kind == "escapes":
         return Judgement("escapes", f"the exact solution {motion.orbit.told}", motion.orbit)
@@ -72,7 +72,7 @@ def judge(case: Case, *, drifts: bool = True) -> Judgement:
     if lost:
         worst = motion.worst(motion.float64)
         return Judgement("underflow", lost, motion.orbit, energy_error=worst)
-    return _bounded(motion, drifts)
+    return _bounded(motion)
 
 
 def bounded(case: Case) -> bool:
@@ -178,14 +178,14 @@ def _vanished(motion: CaseMotion) -> str:
     return ""
 
 
-def _bounded(motion: CaseMotion, drifts: bool) -> Judgement:
+def _bounded(motion: CaseMotion) -> Judgement:
     precise, _ = motion.precise
-    rate = drift_of(motion) if drifts else None
+    rate = drift_of(motion)
     told = f"bounded over all {motion.case.steps} steps"
     if precise.asked < motion.case.steps:
         told += f", of which {precise.asked} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"
-    if drifts and rate is None and too_short(motion):
+    if rate is None and too_short(motion):
         told += "; it goes round too few times to tell a drift of its energy from a swing"
     worst = motion.worst(precise)
     return Judgement(kind, told, motion.orbit, rate=rate, energy_error=worst)

@@ -7,13 +7,14 @@ Bounds: ten times the exact orbit's reach in p and in q, and a hundred times its
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import mpfr
 from verify.exact_orbit import exact_orbit, written_digits
 from verify.followed import Case, Point, Trail, follow, follow_precisely
+from verify.hamiltonian import Hamiltonian
 from verify.number_system import Arithmetic
 from verify.proof.exact_flow import functions_at
 
@@ -25,6 +26,16 @@ _DIGITS = 40
 
 def float64() -> Arithmetic:
     return number_systems.get("float64", 17)
+
+
+@lru_cache(maxsize=64)
+def _energy(
+    hamiltonian: Hamiltonian, digits: int
+) -> tuple[Arithmetic, Callable[..., tuple[Any, ...]]]:
+    """H as a function of (p, q), and what to evaluate it in; the cases of one H share it."""
+    arithmetic = mpfr.make(digits)
+    field, (element,) = hamiltonian.field(hamiltonian.exact)
+    return arithmetic, functions_at(arithmetic, [(field.ring, element)])
 
 
 class CaseMotion:
@@ -55,19 +66,13 @@ class CaseMotion:
 
     def energy(self, point: Point) -> Fraction | None:
         """H at a point; None where it is not defined there or too large."""
-        arithmetic, at = self._energy
+        arithmetic, at = _energy(self.case.hamiltonian, 2 * self.digits)
         try:
             with arithmetic.context():
                 (found,) = at(arithmetic.number(point.p), arithmetic.number(point.q))
         except (ArithmeticError, ValueError):
             return None
         return arithmetic.exact(found) if arithmetic.finite(found) else None
-
-    @cached_property
-    def _energy(self) -> tuple[Arithmetic, Callable[..., tuple[Any, ...]]]:
-        arithmetic, hamiltonian = mpfr.make(2 * self.digits), self.case.hamiltonian
-        field, (element,) = hamiltonian.field(hamiltonian.exact)
-        return arithmetic, functions_at(arithmetic, [(field.ring, element)])
 
     @cached_property
     def _first_energy(self) -> Fraction | None:

@@ -19,7 +19,7 @@ from verify.stepping import Job, Outcome
 from verify.walk import Progress
 
 _ATTEMPTS = 5
-_WORTH_COMPILING = (
+WORTH_COMPILING = (
     60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
 )
 _WIDEST = 1000  # digits beyond which mpfr's products are the faster ones
@@ -41,7 +41,7 @@ def choose(job: Job, digits: int) -> str:
 
     float64 is not among them: it is what is under test, and its bounds are estimates.
     """
-    if job.steps < _WORTH_COMPILING or digits > _WIDEST:
+    if job.steps < WORTH_COMPILING or digits > _WIDEST:
         return _INTERPRETED
     return _COMPILED if _fits(job, digits) else _INTERPRETED
 

@@ -29,16 +29,16 @@ def drift_of(motion: CaseMotion) -> Fraction | None:
 
     Of a motion that has died away within the time, over all of it.
     """
-    case, (trail, _) = motion.case, motion.precise
-    if motion.orbit.period is None or too_short(motion):
+    case, (trail, _), period = motion.case, motion.precise, motion.orbit.period
+    if period is None or too_short(motion):
         return None
-    longer = replace(case, steps=_LONGER * trail.asked)
-    if _died(motion, trail):
-        lost = _errors(motion, trail)
-        return Fraction(lost[-1] / float(case.time)) if lost else None
+    errors = _errors(motion, trail)
+    if errors and errors[-1] and _died(motion, trail, period):
+        return Fraction(errors[-1] / float(case.time))
     first = _rate(motion, case, trail)
     if first is None:
         return None
+    longer = replace(case, steps=_LONGER * trail.asked)
     if longer.steps <= MOST_INTERPRETED:
         again, _ = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
@@ -59,19 +59,13 @@ def too_short(motion: CaseMotion) -> bool:
     return _LONGER * trail.asked * motion.case.step_size < _PERIODS * orbit.period
 
 
-def _died(motion: CaseMotion, trail: Trail) -> bool:
+def _died(motion: CaseMotion, trail: Trail, period: Fraction) -> bool:
     """Whether at its end the run moves by a hundredth of the exact orbit's reach at most.
 
     Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
     """
     last = trail.points[-1]
-    if (
-        motion.orbit.period is None
-        or not trail.finished
-        or (_errors(motion, trail) or [0.0])[-1] == 0
-    ):
-        return False
-    steps = min(_MOST_LOOKED_AT, ceil(motion.orbit.period / motion.case.step_size))
+    steps = min(_MOST_LOOKED_AT, ceil(period / motion.case.step_size))
     onwards = replace(motion.case, p=last.p, q=last.q, steps=max(2, steps))
     seen = follow(onwards, motion.precise[1]).points
     ends = [[getattr(point, name) for point in seen] for name in ("p", "q")]

@@ -13,10 +13,8 @@ from functools import lru_cache
 from typing import Literal
 
 from verify.errors import InputError
-from verify.exact_solution import NOT_KNOWN, leaves
+from verify.exact_solution import NOT_KNOWN, leaves_by_algebra
 from verify.hamiltonian import Hamiltonian
-from verify.known_flows import closed_form as known_motion
-from verify.known_flows import named
 from verify.proof.closed_orbit import shifts
 from verify.proof.exact_flow import Flow, NoFlowError, Number, State, functions_at
 
@@ -41,8 +39,7 @@ class ExactOrbit:
     leaves every bound (escapes), or not followed to its end (unknown); `told` says more. `centre`
     and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit runs
     through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest
-    ω² = det Hess H on the orbit; `period` of a closed one and `left_at`, the time of an escape, are
-    known about.
+    ω² = det Hess H on the orbit; `period`: that of a closed one, about.
     """
 
     kind: Kind
@@ -52,9 +49,7 @@ class ExactOrbit:
     turns: tuple[bool, bool]
     scale: Fraction
     stiffness: Fraction
-    energy: Fraction
     period: Fraction | None = None
-    left_at: float | None = None
 
 
 @lru_cache(maxsize=256)
@@ -63,25 +58,19 @@ def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fracti
     orbit = _Follow(hamiltonian, (p, q), time).orbit()
     if orbit.kind not in ("escapes", "open"):
         return orbit
-    exactly = _in_closed_form(hamiltonian, p, q, time)
+    exactly = _by_algebra(hamiltonian, p, q, time)
     if exactly is None:
         return orbit
     return replace(orbit, told=exactly if orbit.kind == "escapes" else f"{orbit.told}; {exactly}")
 
 
-def _in_closed_form(
-    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction
-) -> str | None:
-    """How it leaves, of an orbit for which that is known by algebra."""
-    if known_motion(hamiltonian, p, q) is None and not any(
-        match.system.goes for match in named(hamiltonian)
-    ):
-        return None
+def _by_algebra(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> str | None:
+    """How it leaves, of an orbit for which that is known so."""
     try:
-        told = leaves(hamiltonian, p=p, q=q, time=time)
+        told = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
     except (InputError, NoFlowError):
         return None
-    return None if told is None or told.startswith(NOT_KNOWN) else told.removeprefix("it ")
+    return None if told is None or told == NOT_KNOWN else told.removeprefix("it ")
 
 
 class _Follow:
@@ -95,8 +84,7 @@ class _Follow:
         self.flow = Flow(field, _DIGITS + written_digits(start))
         self.arithmetic = self.flow.arithmetic
         self.at = functions_at(
-            self.arithmetic,
-            [(ring, x) for x in (-field.h_q, field.h_p, stiffness, energy)],
+            self.arithmetic, [(ring, x) for x in (-field.h_q, field.h_p, stiffness, energy)]
         )
         self.start, self.time = start, self.number(time)
         self.z0: State = self.number(start[0]), self.number(start[1])
@@ -104,7 +92,6 @@ class _Follow:
         self.free = tuple(x == 0 for x in (field.h_p, field.h_q))  # whether q, p stay as they are
         self.points: list[State] = [self.z0]
         self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
-        self.energy: Number = self.number(Fraction(0))
 
     def turned(self, shift: tuple[Fraction, Fraction]) -> State:
         """A shift that is given in units of 2π."""
@@ -135,12 +122,10 @@ class _Follow:
         """Keeps what is to be known at a point of the orbit."""
         try:
             with self.arithmetic.context():
-                dp, dq, stiffness, energy = self.at(*z)
+                dp, dq, stiffness, _ = self.at(*z)  # H too has to be defined there
         except (ArithmeticError, ValueError):
             raise NoFlowError("H or its derivatives are not defined there") from None
         self.rates.append((dp, dq, stiffness))
-        if len(self.rates) == 1:
-            self.energy = energy
 
     def followed(self) -> ExactOrbit:
         with self.arithmetic.context():
@@ -153,7 +138,7 @@ class _Follow:
             step, after = self.stepped(z, step)
             if after is None or (longest and step < left and step * _FASTER < longest):
                 told = f"becomes ever faster at t = {float(time):.6g}"
-                return self.found("escapes", told, left_at=float(time))
+                return self.found("escapes", told)
             with self.arithmetic.context():
                 time = time + step
                 longest = max(longest or step, step)
@@ -163,7 +148,7 @@ class _Follow:
             self.note(after)
             if grown > _FAR and outwards >= _OUTWARDS:
                 told = f"is {_FAR:.0e} times as far out as z0 at t = {float(time):.6g}, and goes on"
-                return self.found("escapes", told, left_at=float(time))
+                return self.found("escapes", told)
             back = self.returned(z, after)
             if back is not None:
                 shift, part = back
@@ -249,7 +234,6 @@ class _Follow:
         told: str,
         shift: Sequence[Number] = (0, 0),
         period: Fraction | None = None,
-        left_at: float | None = None,
     ) -> ExactOrbit:
         exact, zero = self.arithmetic.exact, self.number(Fraction(0))
         with self.arithmetic.context():
@@ -271,9 +255,7 @@ class _Follow:
             turns=(bool(shift[0]), bool(shift[1])),
             scale=scale,
             stiffness=exact(stiffest),
-            energy=exact(self.energy),
             period=period,
-            left_at=left_at,
         )
 
 

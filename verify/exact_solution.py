@@ -76,6 +76,14 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     orbit that was seen to close. Raises InputError and NoFlowError as `exact_solution` does where
     H is not defined at the initial value.
     """
+    told = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
+    return _seen_to_leave(hamiltonian, (p, q)) if told == NOT_KNOWN else told
+
+
+def leaves_by_algebra(
+    hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
+) -> str | None:
+    """As `leaves`, without following the orbit: `NOT_KNOWN` where algebra alone does not tell."""
     _check(hamiltonian, _TOLD)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
@@ -90,7 +98,7 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     for match in named(hamiltonian):
         if match.system.goes is not None:
             return match.system.goes(match.values, p, q)
-    return _seen_to_leave(hamiltonian, (p, q))
+    return NOT_KNOWN
 
 
 def _check(hamiltonian: Hamiltonian, digits: int) -> None:

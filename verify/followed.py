@@ -13,6 +13,7 @@ from fractions import Fraction
 from sympy import isprime
 
 from verify import arithmetic as number_systems
+from verify.digits import WORTH_COMPILING
 from verify.hamiltonian import Hamiltonian
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.stepping import Job
@@ -20,7 +21,6 @@ from verify.stepping import Job
 _SECTIONS = 128, 512  # of a trail, at least and at most
 _BETWEEN = 64  # steps between two of them, where that makes so many
 _FEWEST = 5  # steps between two of them, where not every step is looked at
-_WORTH_COMPILING = 60_000  # steps, as in `verify.digits`
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
@@ -90,7 +90,7 @@ def follow_precisely(case: Case, digits: int) -> tuple[Trail, Arithmetic]:
 
     Without a compiler only the first 300 000 of its steps are done, and `asked` says so.
     """
-    if case.steps >= _WORTH_COMPILING:
+    if case.steps >= WORTH_COMPILING:
         compiled = number_systems.get("fixed", digits)
         try:
             trail = follow(case, compiled)
