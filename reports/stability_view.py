@@ -103,13 +103,20 @@ def _finding(cases: Sequence[StabilityResult], steps: Sequence[LargestStepResult
 
 def _case(case: StabilityResult) -> CaseRow:
     return CaseRow(
-        name="/".join(case.id.split("/")[1:-2]),
+        name=_name(case),
         scheme=case.scheme,
         step_size=step(short(Fraction(case.step_size))),
         steps=whole(case.steps),
         verdict=case.verdict,
         detail=case.detail,
     )
+
+
+def _name(case: StabilityResult) -> str:
+    """What its id says beside the scene, the scheme and the step size: section, initial value."""
+    _, *parts = case.id.split("/")
+    own = (case.scheme, f"h={short(Fraction(case.step_size))}")
+    return ", ".join(part for part in parts if part not in own)
 
 
 def _largest(found: LargestStepResult) -> LargestRow:

@@ -46,6 +46,19 @@ def test_the_verdicts_are_counted_and_what_occurs_is_explained() -> None:
     assert "float64’s rounding" not in text
 
 
+@pytest.mark.parametrize(
+    ("id_", "named"),
+    [
+        ("mine/some/lie2/h=0.1", "some"),
+        ("mine/some/lie2/h=0.1/z0 no. 2", "some, z0 no. 2"),
+        ("mine/lie2/h=0.1", ""),
+    ],
+)
+def test_a_case_is_named_by_its_section_and_initial_value(id_: str, named: str) -> None:
+    page = page_of(stability=(case(id=id_),))
+    assert f'<th scope="row">{named}</th><td><code>lie2</code></td>' in page
+
+
 def test_the_fastest_drift_is_told() -> None:
     slow = case(rate="-1.00e-09", scheme="lie4")
     text = text_of(page_of(stability=(slow, case())))
