@@ -1,0 +1,49 @@
+"""Closed outlines in the plane: smooth arcs that join, each s ↦ (x, y) in whatever arithmetic.
+
+An arc's formula is written once over `mp`, mpmath's context or one that takes arrays of float64
+(`verify.float_context`), so that it has as many digits as the area measured with it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.motion import Context, Number, number
+
+Arc = Callable[[Context, Number], tuple[Number, Number]]
+"""(mp, s) ↦ (x, y), smooth on 0 ≤ s ≤ 1; x is drawn to the right (q), y upwards (p)."""
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A closed curve: its arcs in their order, each beginning where the one before ends.
+
+    Corners are at the ends of arcs only; a smooth closed curve is one arc or more.
+    """
+
+    name: str
+    arcs: tuple[Arc, ...]
+
+    def placed(self, q: Fraction, p: Fraction, scale: Fraction) -> "Outline":
+        """The same curve scaled about (0, 0) and moved there."""
+        return Outline(self.name, tuple(_placed(arc, q, p, scale) for arc in self.arcs))
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Outlines that belong together; the first bounds the region whose area is reported."""
+
+    name: str
+    outlines: tuple[Outline, ...]
+
+    def placed(self, q: Fraction, p: Fraction, scale: Fraction) -> "Shape":
+        return Shape(self.name, tuple(each.placed(q, p, scale) for each in self.outlines))
+
+
+def _placed(arc: Arc, q: Fraction, p: Fraction, scale: Fraction) -> Arc:
+    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+        x, y = arc(mp, s)
+        size = number(mp, scale)
+        return number(mp, q) + size * x, number(mp, p) + size * y
+
+    return at
