@@ -10,9 +10,11 @@ import click
 from verify import show
 from verify.cli_bench import bench
 from verify.cli_check import check
+from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
 from verify.cli_stability import stability
+from verify.cli_tasks import json_option, told, workers_option
 from verify.errors import InputError
 from verify.show_plan import print_plan
 
@@ -44,6 +46,7 @@ def cli(context: click.Context) -> None:
 
 cli.add_command(prove)
 cli.add_command(certificate)
+cli.add_command(flow)
 cli.add_command(stability)
 cli.add_command(check)
 cli.add_command(bench)
@@ -183,8 +186,8 @@ def plan(scene: str, as_json: bool) -> None:
 @cli.command()
 @click.argument("scene", metavar="SCENE")
 @click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
-@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@workers_option
+@json_option
 def report(scene: str, output: Path | None, workers: int | None, as_json: bool) -> None:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
@@ -194,9 +197,8 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     """
     from reports.page import write
     from verify.claim_plan import add_claims
-    from verify.execute import Store, cost
+    from verify.execute import Store
     from verify.plan import plan_scenes
-    from verify.progress import progress_bar
     from verify.report import make_report
 
     title, scenes, file = target(scene)
@@ -205,34 +207,18 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     writable(folder)
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
-    total = sum(cost(task) for task in planned.tasks.values())
-    finished = 0
-    with progress_bar(f"{len(planned.tasks)} tasks", total, unit="") as advance:
-
-        def done(name: str, _: object) -> None:
-            nonlocal finished
-            finished += 1
-            advance(cost(planned.tasks[name]))
-
-        try:
-            made = make_report(
-                title,
-                scenes,
-                claims,
-                Store(folder / "kept"),
-                command=f"verify report {scene} -o {folder.name}",
-                claim_scenes=claim_scenes,
-                plan=planned,
-                workers=workers,
-                done=done,
-            )
-        except KeyboardInterrupt:
-            click.echo(
-                f"interrupted: {finished} of {len(planned.tasks)} tasks are kept in "
-                f"{folder / 'kept'}; the same command goes on from there",
-                err=True,
-            )
-            raise
+    with told(planned.tasks, folder / "kept") as done:
+        made = make_report(
+            title,
+            scenes,
+            claims,
+            Store(folder / "kept"),
+            command=f"verify report {scene} -o {folder.name}",
+            claim_scenes=claim_scenes,
+            plan=planned,
+            workers=workers,
+            done=done,
+        )
     page = write(made, folder)
     if as_json:
         show.print_json(made.model_dump(mode="json"))
