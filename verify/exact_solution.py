@@ -92,7 +92,7 @@ def leaves_by_algebra(
         end = closed_form.blow_up(known[0], 1, _TOLD)
         if end is not None:
             return f"it blows up at t = {plain(end, 6)}" if end <= time else None
-        return known[0].goes
+        return known[0].goes()
     if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
         return None
     for match in named(hamiltonian):

@@ -1,12 +1,18 @@
-"""The exact solution through one initial value in closed form: what a named system knows of it."""
+"""The exact solution through one initial value in closed form: what a named system knows of it.
+
+The same formulas serve one initial value and a batch of them (`verify.batch`): where they branch,
+all of the batch must take the same way, else they raise Mixed.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-Context = Any  # mpmath's MPContext, which has no type stubs: one of its own for each evaluation
-Number = Any  # a real number of that context
+from verify.float_context import FloatContext
+
+Context = Any  # mpmath's MPContext, which has no type stubs, or verify.float_context's
+Number = Any  # a real number of that context, or a Batch of them
 Values = Mapping[str, Fraction]  # a system's parameters
 State = tuple[Number, Number]  # p, q
 
@@ -17,7 +23,7 @@ class Motion:
 
     `state(mp, t)` evaluates it in the context's precision, of which it may lose a few digits, and
     `lost` more. `blow_up(mp, sign)` is |t| where the solution ends, forwards (1) or backwards (−1)
-    in time, None where it does not. `goes`: how it goes to infinity as t grows, where it does so
+    in time, None where it does not. `goes()`: how it goes to infinity as t grows, where it does so
     without an end; None where it stays bounded or blows up. `rest`: it stays where it is.
     """
 
@@ -25,7 +31,7 @@ class Motion:
     method: str
     lost: int = 0
     blow_up: Callable[[Context, int], Number | None] = lambda _, __: None
-    goes: str | None = None
+    goes: Callable[[], str | None] = lambda: None
     rest: bool = False
 
 
@@ -39,5 +45,7 @@ Flow = Callable[[Values, Fraction, Fraction], Motion | None]
 
 
 def number(mp: Context, x: Fraction) -> Number:
-    """An exact rational, rounded once."""
+    """An exact rational, or a batch of them, rounded once."""
+    if isinstance(mp, FloatContext):
+        return mp.rational(x)
     return mp.mpf(x.numerator) / x.denominator

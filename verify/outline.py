@@ -13,6 +13,9 @@ from verify.motion import Context, Number, number
 Arc = Callable[[Context, Number], tuple[Number, Number]]
 """(mp, s) ↦ (x, y), smooth on 0 ≤ s ≤ 1; x is drawn to the right (q), y upwards (p)."""
 
+Point = tuple[Fraction, Fraction]
+"""x, y."""
+
 
 @dataclass(frozen=True)
 class Outline:
@@ -38,6 +41,23 @@ class Shape:
 
     def placed(self, q: Fraction, p: Fraction, scale: Fraction) -> "Shape":
         return Shape(self.name, tuple(each.placed(q, p, scale) for each in self.outlines))
+
+
+def angle(mp: Context, s: Number) -> Number:
+    """Once around, from −π to π: in float64 its rounding is half of that from 0 to 2π."""
+    return 2 * mp.pi * (s - mp.mpf(1) / 2)
+
+
+def line(start: Point, end: Point) -> Arc:
+    """The straight arc between two points."""
+
+    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+        x, y = (
+            number(mp, a) * (1 - s) + number(mp, b) * s for a, b in zip(start, end, strict=True)
+        )
+        return x, y
+
+    return at
 
 
 def _placed(arc: Arc, q: Fraction, p: Fraction, scale: Fraction) -> Arc:

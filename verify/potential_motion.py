@@ -14,10 +14,13 @@ The b_k are exact, so that Δ = 0 (a separatrix, or elementary functions) is kno
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
+from typing import Any
 
 import sympy
 
+from verify.barriers import destinations
+from verify.batch import Batch
 from verify.motion import Context, Flow, Motion, Number, State, Values, at_rest, number
 from verify.weierstrass import Weierstrass, waves
 
@@ -35,17 +38,26 @@ def motion(alpha: Fraction, potential: Sequence[Fraction], p: Fraction, q: Fract
     curve = Curve.through(alpha, potential, p, q)
     if curve.v == 0 and curve.b[1] == 0:
         return at_rest(p, q)
-    to = {sign: curve.destination(sign) for sign in (1, -1)}
     ends = curve.degree > 2
+
+    @cache
+    def to(sign: int) -> Any:
+        if isinstance(p, Batch):
+            return destinations(alpha, potential, p, q, sign)
+        return curve.destination(sign)
 
     def state(mp: Context, t: Number) -> State:
         y, slope = curve.at(mp, t)
         return slope / number(mp, alpha), number(mp, q) + y
 
     def blow_up(mp: Context, sign: int) -> Number | None:
-        return curve.time_to_infinity(mp, sign, to[sign]) if ends and to[sign] else None
+        return curve.time_to_infinity(mp, sign, to(sign)) if ends and to(sign) else None
 
-    goes = f"q goes to {'+' if to[1] > 0 else '−'}∞ as t grows" if to[1] and not ends else None
+    def goes() -> str | None:
+        if ends or not to(1):
+            return None
+        return f"q goes to {'+' if to(1) > 0 else '−'}∞ as t grows"
+
     method = _ELEMENTARY if curve.delta == 0 else _METHOD
     return Motion(state, method, curve.lost, blow_up, goes)
 
@@ -74,7 +86,7 @@ class Curve:
 
     @property
     def degree(self) -> int:
-        return max((k for k, b in enumerate(self.b) if b), default=0)
+        return next((k for k in (4, 3, 2, 1) if self.b[k]), 0)
 
     @cached_property
     def invariants(self) -> tuple[Fraction, Fraction]:
@@ -92,6 +104,8 @@ class Curve:
     @property
     def lost(self) -> int:
         """Digits by which 1 and the modulus may agree, as they do near a separatrix."""
+        if isinstance(self.v, Batch):
+            return 0  # floats have the digits that they have
         g2, g3 = self.invariants
         if not self.delta:
             return 0

@@ -8,6 +8,7 @@ are 0, the other two follow by Δ without loss: their difference squared is Δ /
 
 from dataclasses import dataclass
 
+from verify.batch import choose, some
 from verify.motion import Context, Number
 
 
@@ -69,17 +70,15 @@ class Weierstrass:
         size = mp.sqrt(3 * r**2 - self.g2 / 4)
         k = mp.sqrt(size)
         sn, cn, dn = jacobi(mp, 2 * k * t, mp.mpf(1) / 2 - 3 * r / (4 * size))
-        if cn > 0:  # 1 − cn cancels
-            if sn == 0:
-                return None
-            less = sn**2 / (1 + cn)
-        else:
-            less = 1 - cn
+        if cn > 0 and sn == 0:
+            return None
+        total = 1 + abs(cn)
+        less = choose(cn > 0, sn**2 / total, total)  # 1 − cn, which cancels where cn > 0
         return r + size * (1 + cn) / less, -4 * k**3 * sn * dn / less**2
 
     def _alone(self) -> Number:
         """The real root of the greatest size; the only real one where Δ < 0."""
-        mp, sign = self.mp, -1 if self.g3 < 0 else 1
+        mp, sign = self.mp, choose(self.g3 < 0, -1, 1)
         part = mp.sqrt(abs(self.delta) / 27)
         if self.delta >= 0:
             angle = mp.atan2(part, abs(self.g3))
@@ -97,7 +96,12 @@ class Weierstrass:
             return r, -r / 2 + apart / 2, -r / 2 - apart / 2
         half = abs(apart) / 2
         others = -r / 2 + half, -r / 2 - half
-        return (r, *others) if r > 0 else (*others, r)
+        above = r > 0
+        return (
+            choose(above, r, others[0]),
+            choose(above, others[0], others[1]),
+            choose(above, others[1], r),
+        )
 
     def _inverse(self, value: Number, roots: tuple[Number, Number, Number]) -> Number:
         """The t in 0 … half a period with ℘(t) = value."""
@@ -120,7 +124,7 @@ def jacobi(mp: Context, u: Number, m: Number) -> tuple[Number, Number, Number]:
         return mp.tanh(u), mp.sech(u), mp.sech(u)
     a, b, c = mp.mpf(1), mp.sqrt(1 - m), mp.sqrt(m)
     ratios = []
-    while c > mp.eps * a:
+    while some(c > mp.eps * a):  # a turn too many changes nothing
         a, b, c = (a + b) / 2, mp.sqrt(a * b), (a - b) / 2
         ratios.append(c / a)
     angle = mp.ldexp(a * u, len(ratios))

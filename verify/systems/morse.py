@@ -37,7 +37,7 @@ def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
 
     if p == q == 0:
         return at_rest(p, q)
-    return Motion(state, "closed form: elementary functions", goes=_goes(depth, a, p, q))
+    return Motion(state, "closed form: elementary functions", goes=lambda: _goes(depth, a, p, q))
 
 
 def _goes(depth: Fraction, a: Fraction, p: Fraction, q: Fraction) -> str | None:

@@ -20,11 +20,15 @@ from verify.weierstrass import jacobi
 
 
 def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
+    separatrix = q == 0 and abs(p) == 2
+
     def state(mp: Context, t: Number) -> State:
         start, d = number(mp, q), number(mp, p) / 2
         turns = mp.nint(start / (2 * mp.pi))
         s, c = mp.sin(start / 2 - turns * mp.pi), mp.cos(start / 2 - turns * mp.pi)
         m = s**2 + d**2
+        if m == 1 and not separatrix:
+            raise ValueError("too few digits")
         if m <= 1:
             s, c, d = _added(mp, s, c, d, t, m)
             return 2 * d, 2 * (mp.atan2(s, c) + turns * mp.pi)
@@ -44,9 +48,9 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
 
     if p == q == 0:
         return at_rest(p, q)
-    if q == 0 and abs(p) == 2:
+    if separatrix:
         return Motion(state, "closed form: elementary functions")
-    return Motion(state, "closed form: Jacobi's elliptic functions", goes=_goes(p, q))
+    return Motion(state, "closed form: Jacobi's elliptic functions", goes=lambda: _goes(p, q))
 
 
 def _added(

@@ -1,0 +1,85 @@
+"""Where many motions in one polynomial potential go, by the barriers on their way.
+
+`verify.potential_motion` finds it for one motion by exact algebra. Here the energies of many are
+held against the potential's critical values, which are those of all; who is so near to one that
+floats cannot tell is Doubtful.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from verify.batch import Batch, Doubtful
+from verify.float_context import WIDE
+
+Array = Any  # numpy.ndarray
+_NEAR = 2.0**-40  # of what an energy is summed from
+_DIGITS = 40
+
+
+def destinations(
+    alpha: Fraction, potential: Sequence[Fraction], p: Batch, q: Batch, sign: int
+) -> Batch:
+    """1 or −1 where q goes to ±∞, forwards (sign 1) or backwards in time; 0 where it stays bounded.
+
+    For H = α p²/2 + V(q), of points that are not at rest. Raises Doubtful.
+    """
+    import numpy as np
+
+    # H/α has the same orbits in q, with V/α the potential of a unit mass.
+    values = [c / alpha for c in potential]
+    force = -sum((k * c * q ** (k - 1) for k, c in enumerate(values) if k), q * 0)
+    towards = np.where(p.values == 0, np.sign(_float(force)), np.sign(_float(sign * alpha * p)))
+    at = _float(q)
+    energy = _float(p**2 / 2)  # above V(q)
+    size = _float(p**2 / 2 + sum(abs(c * q**k) for k, c in enumerate(values)))
+    turns, back = _barrier(values, q, at, energy, size, towards)
+    turns_back, doubtful = _barrier(values, q, at, energy, size, -towards)
+    doubt = back | (doubtful & turns)
+    if doubt.any():
+        raise Doubtful(doubt)
+    stays = turns & (turns_back | (p.values == 0))
+    return Batch(np.where(stays, 0, np.where(turns, -towards, towards)).astype(int))
+
+
+def _barrier(
+    values: Sequence[Fraction], q: Batch, at: Array, energy: Array, size: Array, side: Array
+) -> tuple[Array, Array]:
+    """Whether the motion turns on that side (1 or −1) of q, and whether that is doubtful."""
+    import numpy as np
+
+    rising = [_rises(values, s) for s in (1, -1)]
+    turns = np.where(side > 0, *rising).astype(bool)
+    doubt = np.zeros(len(at), bool)
+    if all(rising):
+        return turns, doubt
+    here = sum(c * q**k for k, c in enumerate(values))
+    for critical in _critical(values):
+        height = sum(c * critical**k for k, c in enumerate(values))
+        beyond = (WIDE.rational(critical) - at) * side > 0
+        apart = _float(here - height) + energy
+        near = abs(apart) <= _NEAR * (size + abs(float(height)))
+        turns |= beyond & (apart < 0)
+        doubt |= beyond & near
+    return turns, doubt
+
+
+def _rises(values: Sequence[Fraction], side: int) -> bool:
+    """Whether V does not fall without end on that side: c₁q falls, too."""
+    top = next((k for k in range(len(values) - 1, 0, -1) if values[k]), 0)
+    return top > 0 and values[top] * side**top > 0
+
+
+def _critical(values: Sequence[Fraction]) -> list[Fraction]:
+    """The real zeros of V', to many digits."""
+    x = sympy.Symbol("x")
+    slope = sum(sympy.Rational(k * c.numerator, c.denominator) * x ** (k - 1)
+                for k, c in enumerate(values) if k)  # fmt: skip
+    found = sympy.Poly(slope, x).real_roots(multiple=True) if slope.has(x) else []
+    return [Fraction(str(root.evalf(_DIGITS))) for root in found]
+
+
+def _float(x: Batch) -> Array:
+    return WIDE.rational(x).values
