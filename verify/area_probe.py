@@ -132,8 +132,11 @@ class Probe:
             for arc, a, b in ends
         ]
         images = self._images(starts, self.plane.carried)
-        swept = zip(ends, starts, images, self._areas(starts), self._areas(images), strict=True)
-        return [Panel(*end, *parts) for end, *parts in swept]
+        areas = self._areas(starts), self._areas(images)
+        return [
+            Panel(*end, start, image, before, after)
+            for end, start, image, before, after in zip(ends, starts, images, *areas, strict=True)
+        ]
 
     def _images(
         self, starts: Sequence[tuple[Any, Any]], carry: Callable[[Any, Any], tuple[Any, Any]]

@@ -10,6 +10,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,6 @@ from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
 from verify.hausdorff import hausdorff
 from verify.many_points import LeftError
-from verify.number_system import UnsupportedError
 from verify.outline import Outline, Shape
 from verify.planes import ExactPlane, FloatPlane, SchemePlane, WidePlane
 from verify.polyline import DRAWN, dense, thinned
@@ -51,7 +51,7 @@ def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
     span = task.step_size * task.steps
     exact = task.map == EXACT_FLOW
     preserves = True if exact else get(task.map).step_map(hamiltonian).preserves_area
-    found: dict[str, object] = {}
+    found: dict[str, Any] = {}
     try:
         carried, plane = _measured(hamiltonian, task, preserves)
         found = _areas(carried, plane, preserves)
@@ -80,16 +80,16 @@ def _measured(
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
     shape = task.shape.made()
     if task.map == EXACT_FLOW:
-        plane = ExactPlane(hamiltonian, task.step_size * task.steps)
-        return _all(shape, plane), plane
+        exact = ExactPlane(hamiltonian, task.step_size * task.steps)
+        return _all(shape, exact), exact
     given = hamiltonian, task.map, task.step_size, task.steps
     if task.digits <= _FLOAT_DIGITS:
-        plane = FloatPlane(*given)
-        carried = _all(shape, plane)
+        floats = FloatPlane(*given)
+        carried = _all(shape, floats)
         if preserves or _is_sharp(carried[0].measured):
-            return carried, plane
-    plane = WidePlane.of(*given, digits=max(task.digits, _MORE_DIGITS))
-    return _all(shape, plane), plane
+            return carried, floats
+    wide = WidePlane.of(*given, digits=max(task.digits, _MORE_DIGITS))
+    return _all(shape, wide), wide
 
 
 def _all(shape: Shape, plane: SchemePlane | ExactPlane) -> list[_Carried]:
@@ -108,7 +108,7 @@ def _is_sharp(measured: Measured) -> bool:
 
 def _areas(
     carried: Sequence[_Carried], plane: SchemePlane | ExactPlane, preserves: bool
-) -> dict[str, object]:
+) -> dict[str, Any]:
     region = carried[0].measured
     problem = ""
     if not preserves and not _is_sharp(region):
@@ -160,7 +160,7 @@ def _known(value: Fraction, error: Fraction) -> str:
 # -- beside the areas -----------------------------------------------------------------------------
 
 
-def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, object]:
+def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, Any]:
     centre = task.shape.centre
     found: Mean = RegionMean(hamiltonian, task.map, task.step_size, task.steps).of(
         region.outline, (float(centre.q), float(centre.p))
@@ -177,7 +177,7 @@ def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[st
 
 def _distance(
     hamiltonian: Hamiltonian, span: Fraction, carried: Sequence[_Carried]
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """The greatest Hausdorff distance of an outline from its image by the exact flow."""
     plane = ExactPlane(hamiltonian, span)
     greatest, bound = 0.0, 0.0
@@ -189,7 +189,7 @@ def _distance(
         own, own_sagitta = dense(each.after)
         found = hausdorff([own], [exact], own_sagitta, exact_sagitta)
         if found.value >= greatest:
-            greatest, bound = found.value, found.bound + float(plane.radius)
+            greatest, bound = found.value, found.bound + float(plane.radius or 0)
     return {
         "distance": _known(Fraction(greatest), Fraction(bound)),
         "distance_error": decimal(Fraction(bound), 2),

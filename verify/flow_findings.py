@@ -48,8 +48,7 @@ def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
     Those keys are null where there is no such scheme; `images` have no points.
     """
     images = [
-        {"scene": name, "shape": flow.shape, "step_size": flow.step_size}
-        | _without_points(image)
+        {"scene": name, "shape": flow.shape, "step_size": flow.step_size} | _without_points(image)
         for name, flow in found
         for image in flow.images
     ]

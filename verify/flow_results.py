@@ -61,7 +61,8 @@ class FlowImage(Frozen):
 class FlowResult(Frozen):
     """A shape carried by maps: its outlines before, and its images by map, then by steps.
 
-    `centre` (q, p) and `scale`: where the shape was put, and how large. `source`: what of a paper it repeats (`Figure 4`).
+    `centre` (q, p) and `scale`: where the shape was put, and how large. `source`: what of a paper
+    it repeats (`Figure 4`).
     """
 
     shape: str

@@ -53,14 +53,16 @@ class ShapeGiven(Frozen):
 
     def made(self) -> Shape:
         """The shape where it is put."""
-        from verify.own_outline import from_path, from_polygon
-
         if self.shape is not None:
             made = shapes.get(self.shape)
         elif self.polygon is not None:
-            made = from_polygon(self.polygon)
+            from verify.own_outline import polygon
+
+            made = polygon(self.polygon)
         else:
-            made = from_path(self.path or "")
+            from verify.own_outline import svg_path
+
+            made = svg_path(self.path or "")
         return made.placed(self.centre.q, self.centre.p, self.scale)
 
 
@@ -94,14 +96,13 @@ class Flow(ShapeGiven):
         """The numbers of steps, ascending. Raises InputError for a time that h does not divide."""
         found = list(self.steps)
         for time in self.times:
-            count = time / self.step_size
-            if count.denominator != 1:
+            if (time / self.step_size).denominator != 1:
                 problem = f"must divide the time {text(time)}"
                 raise InputError("step_size", text(self.step_size), problem)
-            found.append(int(count))
+            found.append(int(time / self.step_size))
         for count in found:
             if not 1 <= count <= MAX_STEPS:
-                raise InputError("steps", int(count), f"allowed: 1 … {MAX_STEPS}")
+                raise InputError("steps", count, f"allowed: 1 … {MAX_STEPS}")
         return tuple(sorted(found))
 
     def shape_given(self) -> ShapeGiven:

@@ -41,7 +41,7 @@ CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
-LOOP = "    for k in range(steps):"  # the line of the source before which all is the same for every k
+LOOP = "    for k in range(steps):"  # what is before this line is the same for every k
 
 
 @dataclass(frozen=True, eq=False)

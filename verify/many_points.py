@@ -47,22 +47,19 @@ class PointMap:
         self.arithmetic, self.steps = arithmetic, steps
         start = {"h": step_size, "p": Fraction(0), "q": Fraction(0)}
         self.job = Job(hamiltonian, scheme, start, steps, observables, 0)
-        self.kernel = kernel_for(
-            self.job.generic, scheme, arithmetic, observables, compensated
-        )
+        self.kernel = kernel_for(self.job.generic, scheme, arithmetic, observables, compensated)
         if self.kernel.scales or self.kernel.tangent:
             raise UnsupportedError(f"{arithmetic.name} carries no observables for many points")
 
-    def __call__(self, p: Sequence[Any], q: Sequence[Any]) -> Values:
-        """All that is carried, for the points (p_i, q_i) given as the arithmetic's numbers.
+    def __call__(self, p: Any, q: Any) -> Values:
+        """All that is carried, for points (p_i, q_i): two sequences of the arithmetic's numbers.
 
         Raises LeftError.
         """
         if self.arithmetic.name == float64.NAME:
             found = self._in_lanes(np.asarray(p, dtype=np.float64), np.asarray(q, np.float64))
-        else:
-            found = self._one_by_one(p, q)
-        return dict(zip(self.kernel.carried, found, strict=True))
+            return dict(zip(self.kernel.carried, found, strict=True))
+        return dict(zip(self.kernel.carried, self._one_by_one(p, q), strict=True))
 
     def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Any]:
         given = [*self.job.inputs(self.kernel, 0).values(), *extra]
@@ -94,7 +91,8 @@ class PointMap:
             except (ArithmeticError, ValueError):
                 done = -1
             if done < self.steps or not all(map(self.arithmetic.finite, after)):
-                raise _left(*(float(self.arithmetic.exact(x)) for x in z), self.arithmetic.name)
+                at = [float(self.arithmetic.exact(x)) for x in z]
+                raise _left(at[0], at[1], self.arithmetic.name)
             return tuple(after)
 
         with self.arithmetic.context():

@@ -10,10 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from math import prod
+from typing import Any
 
 import numpy as np
 from mpmath.ctx_mp import MPContext
 
+Number = Any  # of an mpmath context
 NODES = 16
 _GUARD = 40  # bits, of which Newton's method and differences of nodes take a few
 
@@ -59,7 +62,7 @@ def rule(bits: int) -> Rule:
     return Rule(bits, _exact(nodes), _exact(weights), tuple(map(_exact, d)), swept)
 
 
-def _node(mp: MPContext, k: int) -> tuple:
+def _node(mp: MPContext, k: int) -> tuple[Number, Number]:
     """The k-th root of Legendre's polynomial, from the right, and the derivative there."""
     x = mp.cos(mp.pi * (4 * k + 3) / (4 * NODES + 2))
     for _ in range(mp.prec.bit_length() + 3):
@@ -71,10 +74,10 @@ def _node(mp: MPContext, k: int) -> tuple:
     return x, slope
 
 
-def _derivative(nodes: Sequence) -> list[list]:
+def _derivative(nodes: Sequence[Number]) -> list[list[Number]]:
     """The differentiation matrix of interpolation at these nodes, by barycentric weights."""
     n = len(nodes)
-    weight = [1 / _product(nodes[i] - nodes[j] for j in range(n) if j != i) for i in range(n)]
+    weight = [1 / prod(nodes[i] - nodes[j] for j in range(n) if j != i) for i in range(n)]
     d = [
         [0 if i == j else weight[j] / weight[i] / (nodes[i] - nodes[j]) for j in range(n)]
         for i in range(n)
@@ -84,14 +87,7 @@ def _derivative(nodes: Sequence) -> list[list]:
     return d
 
 
-def _product(factors):
-    result = 1
-    for x in factors:
-        result = x * result
-    return result
-
-
-def _exact(values: Sequence) -> tuple[Fraction, ...]:
+def _exact(values: Sequence[Number]) -> tuple[Fraction, ...]:
     found = []
     for x in values:
         sign, mantissa, exponent, _ = x._mpf_

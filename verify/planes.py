@@ -48,7 +48,8 @@ class _Floats:
 class FloatPlane(_Floats):
     """A scheme's steps in float64."""
 
-    sampled, radius = 1 << 30, None
+    sampled = 1 << 30  # all
+    radius: Fraction | None = None
     name, digits = float64.NAME, 17
     method = "float64; its rounding by the same steps with compensated sums"
 
@@ -76,12 +77,12 @@ class ExactPlane(_Floats):
 
     def __init__(self, hamiltonian: Hamiltonian, time: Fraction) -> None:
         self._hamiltonian, self._time = hamiltonian, time
-        self.radius = Fraction(0)
+        self.radius: Fraction | None = Fraction(0)
         self.method = ""
 
     def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
-        found = exact_points(self._hamiltonian, p=y, q=x, times=[self._time])
-        self.radius = max(self.radius, Fraction(found.bound))
+        found = exact_points(self._hamiltonian, y, x, [self._time])
+        self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
         self.method = found.method
         return found.q[0], found.p[0]
 
@@ -92,7 +93,8 @@ class ExactPlane(_Floats):
 class WidePlane:
     """A scheme's steps in a number system of so many digits."""
 
-    sampled, radius = _SAMPLED, None
+    sampled = _SAMPLED
+    radius: Fraction | None = None
 
     def __init__(
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, name: str, digits: int
@@ -147,7 +149,8 @@ class WidePlane:
         wider, arithmetic = self._wider
         exact, own = self.arithmetic.exact, self.arithmetic.number
         q, p = _image(wider, *([arithmetic.number(exact(v)) for v in z] for z in (x, y)))
-        return tuple(_objects([own(arithmetic.exact(v)) for v in z]) for z in (q, p))
+        q, p = (_objects([own(arithmetic.exact(v)) for v in z]) for z in (q, p))
+        return q, p
 
 
 def _image(point_map: PointMap, x: Any, y: Any) -> tuple[Any, Any]:
@@ -163,7 +166,8 @@ def _objects(values: Sequence[Any]) -> np.ndarray:
 
 def _exact(mp: Any, x: Any) -> Fraction:
     sign, mantissa, exponent, _ = mp.mpf(x)._mpf_
-    return (-1) ** sign * Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return -size if sign else size
 
 
 SchemePlane = FloatPlane | WidePlane

@@ -204,10 +204,9 @@ class Scene(Frozen):
         also += [name for section in self.flow for name in section.schemes]
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
-        runs = self.grid, self.series, self.separation, self.work_precision, self.stability
-        runs = *runs, self.flow
+        runs = self.grid, self.series, self.separation, self.work_precision, self.flow
         free = set(exact.symbols)
-        if not any((*runs, self.largest_step)):
+        if not any((*runs, self.stability, self.largest_step)):
             free -= {over.parameter for over in self.stability_map}
         if any((*runs, *of_stability)) and free:
             raise InputError("parameter", min(free), "has no value; a run needs one")
