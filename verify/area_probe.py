@@ -1,10 +1,10 @@
-"""The area that a map gives to the region inside a curve, measured far more finely than it changes.
+"""The areas that a map gives to regions inside curves, measured far more finely than they change.
 
-The curve is cut into Gauss–Legendre panels (`verify.panels`). Each is measured whole and in halves;
+A curve is cut into Gauss–Legendre panels (`verify.panels`). Each is measured whole and in halves;
 the difference is the error of the whole, and so a bound, and by far, for that of the halves, whose
 areas count. Where shear has stretched the curve so that the difference matters, the halves are cut
 again. Rounding is measured too: the halves' points are carried once more in finer arithmetic, and
-the panels' differences count without their signs.
+the panels' differences count without their signs. All curves are carried together.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +20,6 @@ from verify.panels import NODES, Rule, rule
 FIRST_PANELS = 8  # of an outline, at least
 MOST_NODES = 120_000
 _MOST_ROUNDS = 24
-_BELOW = 10_000  # the quadrature's error is to be so many times below the change of area
 _STUCK = 2  # a difference that halving does not make smaller by this factor is rounding's
 
 
@@ -28,6 +27,9 @@ class Plane(Protocol):
     """Points in one number system, and a map of them."""
 
     bits: int  # about so many are right after the point
+    grid: int  # 2^grid is what `whole` multiplies by
+    sampled: int  # panels that are carried in finer arithmetic
+    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
         """Sequences of x and y of an arc's points."""
@@ -35,22 +37,29 @@ class Plane(Protocol):
     def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Their images."""
 
-    sampled: int  # panels that are carried in finer arithmetic
-    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
-
     def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Their images in finer arithmetic."""
 
     def whole(self, x: Any) -> np.ndarray:
         """2^grid x, rounded to whole numbers; an array of int."""
 
-    grid: int
+
+@dataclass(frozen=True)
+class Goal:
+    """How small the quadrature's error is to be: `change` of the change of area, or `area` of it.
+
+    The greater of the two is enough, so that a change of nothing is not followed into rounding.
+    """
+
+    change: Fraction
+    area: Fraction
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A part of an arc with its points, and the points' images."""
+    """A part of an arc of an outline with its points, and the points' images."""
 
+    outline: int
     arc: int
     left: Fraction
     right: Fraction
@@ -63,8 +72,17 @@ class Panel:
     def change(self) -> int:
         return self.after - self.before
 
+    @property
+    def halves(self) -> list["_Part"]:
+        middle = (self.left + self.right) / 2
+        where = self.outline, self.arc
+        return [(*where, self.left, middle), (*where, middle, self.right)]
 
-@dataclass
+
+_Part = tuple[int, int, Fraction, Fraction]  # outline, arc, and from where to where on it
+
+
+@dataclass(frozen=True)
 class Family:
     """A panel in halves, with how much they differ from the whole."""
 
@@ -75,6 +93,10 @@ class Family:
     @property
     def change(self) -> int:
         return self.halves[0].change + self.halves[1].change
+
+    @property
+    def before(self) -> int:
+        return self.halves[0].before + self.halves[1].before
 
 
 @dataclass(frozen=True)
@@ -101,41 +123,44 @@ class Measured:
 
 
 class Probe:
-    """Measures one outline in one plane."""
+    """Measures outlines in one plane, each to its goal."""
 
-    def __init__(self, outline: Outline, plane: Plane) -> None:
-        self.outline, self.plane = outline, plane
+    def __init__(self, outlines: Sequence[Outline], plane: Plane, goals: Sequence[Goal]) -> None:
+        self.outlines, self.plane, self.goals = outlines, plane, goals
         self.rule: Rule = rule(plane.bits + 24)
         self.unit = Fraction(1, 2 ** (2 * plane.grid + self.rule.bits))
 
-    def measure(self) -> Measured:
-        """Cuts until the error is far below the change, or no cut makes it smaller."""
-        count = -(-FIRST_PANELS // len(self.outline.arcs))
-        ends = [
-            (arc, Fraction(k, count), Fraction(k + 1, count))
-            for arc in range(len(self.outline.arcs))
-            for k in range(count)
-        ]
-        families = self._families(self._panels(ends))
+    def measure(self) -> list[Measured]:
+        """Cuts until the errors are as small as they are to be, or no cut makes them smaller."""
+        parts: list[_Part] = []
+        for index, outline in enumerate(self.outlines):
+            count = -(-FIRST_PANELS // len(outline.arcs))
+            ends = [Fraction(k, count) for k in range(count + 1)]
+            for arc in range(len(outline.arcs)):
+                parts += [(index, arc, a, b) for a, b in zip(ends, ends[1:], strict=False)]
+        families = self._families(self._panels(parts))
         for _ in range(_MOST_ROUNDS):
             cut = self._to_cut(families)
             if not cut or NODES * 2 * (len(families) + len(cut)) > MOST_NODES:
                 break
             families = self._cut(families, cut)
-        return self._measured(families)
+        rounding = self._roundings(families)
+        return [
+            self._measured(self._of(families, i), rounding[i]) for i in range(len(self.outlines))
+        ]
 
     # -- panels -------------------------------------------------------------------------------
 
-    def _panels(self, ends: Sequence[tuple[int, Fraction, Fraction]]) -> list[Panel]:
+    def _panels(self, parts: Sequence[_Part]) -> list[Panel]:
         starts = [
-            self.plane.points(self.outline, arc, [a + (b - a) * s for s in self.rule.nodes])
-            for arc, a, b in ends
+            self.plane.points(self.outlines[i], arc, [a + (b - a) * s for s in self.rule.nodes])
+            for i, arc, a, b in parts
         ]
         images = self._images(starts, self.plane.carried)
         areas = self._areas(starts), self._areas(images)
         return [
-            Panel(*end, start, image, before, after)
-            for end, start, image, before, after in zip(ends, starts, images, *areas, strict=True)
+            Panel(*part, start, image, before, after)
+            for part, start, image, before, after in zip(parts, starts, images, *areas, strict=True)
         ]
 
     def _images(
@@ -154,94 +179,94 @@ class Probe:
         return list(self.rule.areas(x, y))
 
     def _families(self, panels: Sequence[Panel]) -> list[Family]:
-        middles = [(p.left + p.right) / 2 for p in panels]
-        ends = [
-            (p.arc, *part)
-            for p, m in zip(panels, middles, strict=True)
-            for part in ((p.left, m), (m, p.right))
-        ]
-        halves = self._panels(ends)
+        halves = self._panels([half for panel in panels for half in panel.halves])
+        pairs = zip(halves[::2], halves[1::2], strict=True)
         return [
-            Family(both, _difference(p, both))
-            for p, both in zip(panels, zip(halves[::2], halves[1::2], strict=True), strict=True)
+            Family(both, _difference(panel, both))
+            for panel, both in zip(panels, pairs, strict=True)
         ]
 
     # -- where to cut -------------------------------------------------------------------------
 
-    def _to_cut(self, families: Sequence[Family]) -> set[int]:
-        """The families whose difference is more than their share of what is allowed."""
-        allowed = max(abs(sum(f.change for f in families)) // _BELOW, self._least(families))
-        share = allowed // (2 * len(families))
-        return {i for i, f in enumerate(families) if f.difference > share and not f.stuck}
+    @staticmethod
+    def _of(families: Sequence[Family], index: int) -> list[Family]:
+        return [family for family in families if family.halves[0].outline == index]
 
-    def _least(self, families: Sequence[Family]) -> int:
-        """What no quadrature sees: the last bits of the plane."""
-        area = abs(sum(h.before for f in families for h in f.halves))
-        return int(area) >> (self.plane.bits - 4)
+    def _to_cut(self, families: Sequence[Family]) -> set[int]:
+        """The ids of families whose difference is more than their share of what is allowed."""
+        found: list[Family] = []
+        for index, goal in enumerate(self.goals):
+            own = self._of(families, index)
+            change = abs(sum(family.change for family in own))
+            allowed = max(goal.change * change, goal.area * self._size(own))
+            share = allowed / (2 * len(own))
+            found += [f for f in own if f.difference > share and not f.stuck]
+        return set(map(id, found))
+
+    @staticmethod
+    def _size(families: Sequence[Family]) -> int:
+        return abs(sum(family.before for family in families))
 
     def _cut(self, families: Sequence[Family], cut: set[int]) -> list[Family]:
-        parents = [half for i in sorted(cut) for half in families[i].halves]
+        parents = [half for family in families if id(family) in cut for half in family.halves]
         made = iter(self._families(parents))
+        sizes = [self._size(self._of(families, i)) for i in range(len(self.outlines))]
         result: list[Family] = []
-        for i, family in enumerate(families):
-            if i not in cut:
+        for family in families:
+            if id(family) not in cut:
                 result.append(family)
                 continue
             two = [next(made), next(made)]
-            if _STUCK * sum(f.difference for f in two) > family.difference and self._is_noise(
-                family, families
-            ):
+            halved = _STUCK * sum(f.difference for f in two) <= family.difference
+            noise = sizes[family.halves[0].outline] >> (self.plane.bits // 2)
+            if not halved and family.difference < noise:
                 two = [Family(f.halves, f.difference, stuck=True) for f in two]
             result += two
         return result
 
-    def _is_noise(self, family: Family, families: Sequence[Family]) -> bool:
-        """Whether a difference is small enough to be rounding's at all."""
-        area = abs(sum(h.before for f in families for h in f.halves))
-        return family.difference < int(area) >> (self.plane.bits // 2)
-
     # -- the result ---------------------------------------------------------------------------
 
-    def _measured(self, families: Sequence[Family]) -> Measured:
-        panels = tuple(half for f in families for half in f.halves)
-        area = sum(p.before for p in panels)
-        change = sum(p.change for p in panels)
-        truncated = sum(f.difference for f in families)
-        size = abs(area)
+    def _measured(self, families: Sequence[Family], rounding: int) -> Measured:
+        panels = tuple(half for family in families for half in family.halves)
+        area, size = sum(panel.before for panel in panels), self._size(families)
         return Measured(
             area=area * self.unit,
-            change=Fraction(change, area),
-            truncated=Fraction(truncated, size),
-            rounded=Fraction(self._rounding(panels), size) + self._floor(panels, size),
+            change=Fraction(sum(panel.change for panel in panels), area),
+            truncated=Fraction(sum(family.difference for family in families), size),
+            rounded=Fraction(rounding + self._floor(panels), size),
             panels=panels,
         )
 
-    def _rounding(self, panels: Sequence[Panel]) -> int:
+    def _roundings(self, families: Sequence[Family]) -> list[int]:
         """Differences of the panels' areas from those in finer arithmetic, without their signs.
 
         Where the images' error is known, that times the length of the image.
         """
+        own = [[h for f in self._of(families, i) for h in f.halves] for i in range(len(self.goals))]
         if self.plane.radius is not None:
-            return round(self.plane.radius * self._length(panels) / self.unit)
-        some = panels[:: max(1, len(panels) // self.plane.sampled)]
-        starts = [p.start for p in some]
-        images = self._images(starts, self.plane.finer)
-        apart = sum(abs(a - p.after) for a, p in zip(self._areas(images), some, strict=True))
-        return 2 * -(-apart * len(panels) // len(some))
+            return [round(self.plane.radius * self._length(x) / self.unit) for x in own]
+        some = [panels[:: max(1, len(panels) // self.plane.sampled)] for panels in own]
+        flat = [panel for panels in some for panel in panels]
+        areas = iter(self._areas(self._images([p.start for p in flat], self.plane.finer)))
+        apart = [sum(abs(next(areas) - panel.after) for panel in panels) for panels in some]
+        return [
+            2 * -(-x * len(panels) // len(few))
+            for x, panels, few in zip(apart, own, some, strict=True)
+        ]
 
     def _length(self, panels: Sequence[Panel]) -> Fraction:
-        """At least the sum of |dx| + |dy| along the image, by its nodes."""
-        grid = [[self.plane.whole(p.image[i]) for p in panels] for i in (0, 1)]
-        steps = (abs(np.diff(np.concatenate(axis))).sum() for axis in grid)
-        return Fraction(int(sum(steps)) * 5 // 4, 2**self.plane.grid)
+        """The sum of |dx| + |dy| along the image, by its nodes, and a quarter more."""
+        axes = [np.concatenate([self.plane.whole(p.image[i]) for p in panels]) for i in (0, 1)]
+        steps = sum(int(abs(np.diff(axis)).sum()) for axis in axes)
+        return Fraction(steps * 5 // 4, 2**self.plane.grid)
 
-    def _floor(self, panels: Sequence[Panel], size: int) -> Fraction:
+    def _floor(self, panels: Sequence[Panel]) -> int:
         """The rounding of the rule's numbers."""
         largest = max(int(abs(self.plane.whole(x)).max()) for p in panels for x in p.image)
-        return Fraction(len(panels) * NODES**2 * largest**2, size)
+        return len(panels) * NODES**2 * largest**2
 
 
 def _difference(whole: Panel, halves: tuple[Panel, Panel]) -> int:
-    return abs(whole.before - halves[0].before - halves[1].before) + abs(
-        whole.after - halves[0].after - halves[1].after
-    )
+    before = whole.before - halves[0].before - halves[1].before
+    after = whole.after - halves[0].after - halves[1].after
+    return abs(before) + abs(after)

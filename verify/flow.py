@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.area_probe import Measured, Probe
+from verify.area_probe import Goal, Measured, Probe
 from verify.exact import decimal, text
 from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
@@ -32,7 +32,13 @@ from verify.tasks import FlowTask
 BELOW = 100  # how many times the probe's error is to be below the change of area
 _MORE_DIGITS = 33
 _FLOAT_DIGITS = 17
+_DRAWN_POINTS = 20_000  # of a curve before it is thinned
 _SHOWN = 12  # significant digits at most
+_LOST = 7  # digits
+# Of the region where the map changes area, and where it does not, and of the outlines inside it.
+_CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
+_UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**10))
+_DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**7))
 
 
 @dataclass(frozen=True)
@@ -81,21 +87,28 @@ def _measured(
     shape = task.shape.made()
     if task.map == EXACT_FLOW:
         exact = ExactPlane(hamiltonian, task.step_size * task.steps)
-        return _all(shape, exact), exact
+        return _all(shape, exact, _UNCHANGED), exact
     given = hamiltonian, task.map, task.step_size, task.steps
     if task.digits <= _FLOAT_DIGITS:
         floats = FloatPlane(*given)
-        carried = _all(shape, floats)
+        carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
         if preserves or _is_sharp(carried[0].measured):
             return carried, floats
     wide = WidePlane.of(*given, digits=max(task.digits, _MORE_DIGITS))
-    return _all(shape, wide), wide
+    return _all(shape, wide, _unchanged(wide.digits) if preserves else _CHANGED), wide
 
 
-def _all(shape: Shape, plane: SchemePlane | ExactPlane) -> list[_Carried]:
+def _unchanged(digits: int) -> Goal:
+    """As fine as the arithmetic can tell, with some digits for what shear does to rounding."""
+    return Goal(Fraction(0), Fraction(1, 10 ** (digits - _LOST)))
+
+
+def _all(shape: Shape, plane: SchemePlane | ExactPlane, goal: Goal) -> list[_Carried]:
+    goals = [goal, *[_DETAIL] * (len(shape.outlines) - 1)]
     found = []
-    for outline in shape.outlines:
-        measured = Probe(outline, plane).measure()
+    for outline, measured in zip(
+        shape.outlines, Probe(shape.outlines, plane, goals).measure(), strict=True
+    ):
         before = [plane.floats(panel.start) for panel in measured.panels]
         after = [plane.floats(panel.image) for panel in measured.panels]
         found.append(_Carried(outline, measured, before, after))
@@ -116,7 +129,7 @@ def _areas(
             f"the probe's error {decimal(region.error, 2)} is not {BELOW} times below the change "
             f"of area {decimal(region.change, 2)}"
         )
-    curves = [dense(each.after)[0] for each in carried]
+    curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
     return {
         "problem": problem,
         "area_change": None if problem else _known(region.change, region.error),
@@ -180,12 +193,12 @@ def _distance(
 ) -> dict[str, Any]:
     """The greatest Hausdorff distance of an outline from its image by the exact flow."""
     plane = ExactPlane(hamiltonian, span)
+    panels = [z for each in carried for z in each.before]
+    q, p = plane.carried(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
+    images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
     greatest, bound = 0.0, 0.0
     for each in carried:
-        x, y = (np.concatenate([z[i] for z in each.before]) for i in (0, 1))
-        q, p = plane.carried(x, y)
-        cut = np.split(np.arange(len(q)), len(each.before))
-        exact, exact_sagitta = dense([(q[i], p[i]) for i in cut])
+        exact, exact_sagitta = dense([next(images) for _ in each.before])
         own, own_sagitta = dense(each.after)
         found = hausdorff([own], [exact], own_sagitta, exact_sagitta)
         if found.value >= greatest:

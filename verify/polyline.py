@@ -8,24 +8,28 @@ from verify.float_context import FLOAT
 from verify.outline import Shape
 from verify.panels import NODES, interpolation
 
-DRAWN = 1500  # a curve is drawn to this part of the picture's size
+DRAWN = 800  # a curve is drawn to this part of the picture's size
 _TRACED = 400  # points of an arc that is drawn as it is
-_BETWEEN = 32  # points of a panel of 16 nodes
+_MOST_POINTS = 40_000  # of a dense curve
+_BETWEEN = 16, 128  # points of a panel of 16 nodes, at least and at most
 _MORE = 1.5  # the arc between two points may be farther from its chord than its middle is
 
 
-def dense(panels: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, float]:
-    """A closed curve's points (n, 2) from its panels' nodes, and how far it is from its chords.
+def dense(
+    panels: Sequence[tuple[np.ndarray, np.ndarray]], points: int = _MOST_POINTS
+) -> tuple[np.ndarray, float]:
+    """A closed curve's points (n, 2), about so many, from its panels' nodes, and how far it is from its chords.
 
     The distance is an estimate, by the points midway between those.
     """
-    matrix = interpolation(2 * _BETWEEN)
+    least, most = _BETWEEN
+    between = min(most, max(least, points // len(panels)))
+    matrix = interpolation(2 * between)
     nodes = np.array([np.stack(z, axis=1) for z in panels], dtype=np.float64).reshape(-1, NODES, 2)
     fine = np.einsum("kn,pnd->pkd", matrix, nodes).reshape(-1, 2)
-    points, middles = fine[::2], fine[1::2]
-    ends = np.roll(points, -1, axis=0)
-    apart = middles - (points + ends) / 2
-    return points, float(_MORE * np.hypot(*apart.T).max())
+    found, middles = fine[::2], fine[1::2]
+    apart = middles - (found + np.roll(found, -1, axis=0)) / 2
+    return found, float(_MORE * np.hypot(*apart.T).max())
 
 
 def thinned(points: np.ndarray, tolerance: float) -> np.ndarray:
@@ -58,8 +62,8 @@ def _from_chord(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.nd
 
 
 def text(points: np.ndarray) -> str:
-    """`x,y x,y …` with six significant digits."""
-    return " ".join(f"{x:.6g},{y:.6g}" for x, y in points)
+    """`x,y x,y …` with five significant digits."""
+    return " ".join(f"{x:.5g},{y:.5g}" for x, y in points)
 
 
 def parsed(points: str) -> np.ndarray:
