@@ -26,7 +26,7 @@ from verify.proof.exact_flow import NoFlowError
 Array = Any  # numpy.ndarray, which is imported where it is used
 _UNIT = 2.0**-53  # the rounding of a result, relative to it
 _SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
-_TRUSTED = 2.0**-36  # the most, of an orbit's scale, that float64 may be wrong for a point ...
+_TRUSTED = 2.0**-31  # the most, of an orbit's scale, that float64 may be wrong for a point ...
 _TRUSTED_NUMERICAL = 1e-8  # ... and two numerical flows apart
 _SAMPLE, _SAMPLE_NUMERICAL = 12, 3  # points held against `exact_solution`
 _DIGITS = 20
