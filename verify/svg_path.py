@@ -50,8 +50,8 @@ def subpaths(text: str, name: str = "path") -> list[tuple[Segment, ...]]:
             pen.draw(letter, values)
             if pen.count > MAX_SEGMENTS:
                 raise reader.wrong(f"more than {MAX_SEGMENTS} segments", at)
-        if command in "Zz":
-            pen.opened = at
+        if command in "Zz" and reader.more():
+            pen.opened = reader.at
     _finish(reader, pen)
     if not pen.done:
         raise InputError(name, text, "draws no curve; allowed: closed curves, as M 0 0 h 1 v 1 z")
