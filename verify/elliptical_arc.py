@@ -50,7 +50,8 @@ def _frame(arc: EllipticalArc, bits: int) -> tuple[Number, ...]:
     import mpmath
 
     mp = mpmath.MPContext()
-    mp.prec = 4 * bits + 64
+    # Near half of an ellipse the root of a small rest costs half of the digits.
+    mp.prec = 2 * bits + 64
     (x0, y0), (x1, y1), (rx, ry) = (
         (number(mp, x), number(mp, y)) for x, y in (arc.start, arc.end, arc.radii)
     )
@@ -60,8 +61,7 @@ def _frame(arc: EllipticalArc, bits: int) -> tuple[Number, ...]:
     u, v = (cos * half_x + sin * half_y) / rx, (cos * half_y - sin * half_x) / ry
     chord = mp.sqrt(u * u + v * v)  # half of it: the sine of α
     rest = (1 - chord) * (1 + chord)
-    if rest < mp.mpf(2) ** (-3 * bits):
-        # Half of the ellipse. The root of a rest that is rounding would cost half of the digits.
+    if rest <= 0:
         alpha, scale = mp.pi / 2, chord
     else:
         alpha, scale = mp.atan2(chord, mp.sqrt(rest)), mp.mpf(1)

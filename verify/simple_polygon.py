@@ -42,10 +42,10 @@ def _near(corners: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
         boxes.append((x0, x1, y0, y1, k))
     passed: list[tuple[int, int, int, int, int]] = []  # those that reach as far to the right
     for box in sorted(boxes):
-        passed = [other for other in passed if other[1] >= box[0]]
-        for other in passed:
-            if other[2] <= box[3] and box[2] <= other[3]:
-                yield min(box[4], other[4]), max(box[4], other[4])
+        passed = [earlier for earlier in passed if earlier[1] >= box[0]]
+        for _, _, low, high, k in passed:
+            if low <= box[3] and box[2] <= high:
+                yield min(box[4], k), max(box[4], k)
         passed.append(box)
 
 

@@ -153,7 +153,7 @@ def circle_of_halves(degrees: str, radius: str = "1") -> Outline:
 @pytest.mark.parametrize("degrees", ["0", "30", "45", "17.3"])
 @pytest.mark.parametrize("radius", ["1", "0.2"])  # the second is too small, and scaled up
 def test_halves_of_a_circle_keep_every_digit(degrees: str, radius: str) -> None:
-    """The root of a rest that should be 0 costs half of the digits where it is taken plainly."""
+    """The root of what rounding leaves of 0 would cost half of them, taken plainly."""
     for digits in (15, 30, 100):
         mp = mpmath.MPContext()
         mp.dps = digits
@@ -165,17 +165,17 @@ def test_halves_of_a_circle_keep_every_digit(degrees: str, radius: str) -> None:
     assert np.abs(np.hypot(x, y) - 1).max() < 1e-15
 
 
-def test_nearly_half_a_circle_is_not_taken_for_half() -> None:
+@pytest.mark.parametrize("places", [20, 32])
+def test_nearly_half_a_circle_is_not_taken_for_half(places: int) -> None:
     """The control of the test above: a radius 10⁻²⁰ longer moves the middle by some 10⁻¹⁰."""
-    mp = mpmath.MPContext()
-    mp.dps = 30
-    precise = mpmath.MPContext()
-    precise.dps = 90
-    (arc, _) = svg_path("M 1 0 A 1.00000000000000000001 1 0 0 0 -1 0 Z").outlines[0].arcs
+    mp, precise = mpmath.MPContext(), mpmath.MPContext()
+    mp.dps, precise.dps = 30, 90
+    longer = f"1.{'0' * (places - 1)}1"
+    (arc, _) = svg_path(f"M 1 0 A {longer} 1 0 0 0 -1 0 Z").outlines[0].arcs
     _, y = arc(mp, mp.mpf(1) / 2)
-    true = 1 - precise.sqrt(1 - precise.mpf("1.00000000000000000001") ** -2)
-    assert abs(y - true) < 1e-28
-    assert abs(true - 1) > 1e-10
+    true = 1 - precise.sqrt(1 - precise.mpf(longer) ** -2)
+    assert abs(y - true) < 1e-29
+    assert abs(true - 1) > 10.0 ** (-places / 2)
 
 
 def test_an_arc_of_a_very_large_circle_keeps_its_ends() -> None:
