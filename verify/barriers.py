@@ -2,7 +2,7 @@
 
 `verify.potential_motion` finds it for one motion by exact algebra. Here the energies of many are
 held against the potential's critical values, which are those of all; who is so near to one that
-floats cannot tell is Doubtful.
+floats cannot tell is DoubtfulError.
 """
 
 from collections.abc import Sequence
@@ -11,58 +11,54 @@ from typing import Any
 
 import sympy
 
-from verify.batch import Batch, Doubtful
+from verify.batch import Batch, DoubtfulError
 from verify.float_context import WIDE
 
 Array = Any  # numpy.ndarray
+Rationals = Any  # a Batch of exact rationals
 _NEAR = 2.0**-40  # of what an energy is summed from
 _DIGITS = 40
 
 
 def destinations(
-    alpha: Fraction, potential: Sequence[Fraction], p: Batch, q: Batch, sign: int
+    alpha: Fraction, potential: Sequence[Fraction], p: Rationals, q: Rationals, sign: int
 ) -> Batch:
     """1 or −1 where q goes to ±∞, forwards (sign 1) or backwards in time; 0 where it stays bounded.
 
-    For H = α p²/2 + V(q), of points that are not at rest. Raises Doubtful.
+    For H = α p²/2 + V(q), of points that are not at rest. Raises DoubtfulError.
     """
     import numpy as np
 
-    # H/α has the same orbits in q, with V/α the potential of a unit mass.
-    values = [c / alpha for c in potential]
-    force = -sum((k * c * q ** (k - 1) for k, c in enumerate(values) if k), q * 0)
-    towards = np.where(p.values == 0, np.sign(_float(force)), np.sign(_float(sign * alpha * p)))
-    at = _float(q)
-    energy = _float(p**2 / 2)  # above V(q)
-    size = _float(p**2 / 2 + sum(abs(c * q**k) for k, c in enumerate(values)))
-    turns, back = _barrier(values, q, at, energy, size, towards)
-    turns_back, doubtful = _barrier(values, q, at, energy, size, -towards)
-    doubt = back | (doubtful & turns)
+    values = [c / alpha for c in potential]  # V/α of a unit mass has the same orbits in q
+    at, start = _float(q), _float(p)
+    terms = [WIDE.rational(c) * at**k for k, c in enumerate(values)]
+    pulls = [-k * WIDE.rational(c) * at ** (k - 1) for k, c in enumerate(values) if k]
+    level, size = start**2 / 2 + sum(terms), start**2 / 2 + sum(map(abs, terms))
+    force, resting = sum(pulls), start == 0
+    doubt = resting & (abs(force) <= _NEAR * sum(map(abs, pulls)))
+    towards: Array = np.sign(np.where(resting, force, sign * float(alpha) * start))
+    turns, unclear = _barrier(values, at, level, size, towards)
+    turns_back, unclear_back = _barrier(values, at, level, size, -towards)
+    doubt |= unclear | (turns & ~resting & unclear_back)
     if doubt.any():
-        raise Doubtful(doubt)
-    stays = turns & (turns_back | (p.values == 0))
+        raise DoubtfulError(doubt)
+    stays = turns & (turns_back | resting)
     return Batch(np.where(stays, 0, np.where(turns, -towards, towards)).astype(int))
 
 
 def _barrier(
-    values: Sequence[Fraction], q: Batch, at: Array, energy: Array, size: Array, side: Array
+    values: Sequence[Fraction], at: Array, level: Array, size: Array, side: Array
 ) -> tuple[Array, Array]:
     """Whether the motion turns on that side (1 or −1) of q, and whether that is doubtful."""
     import numpy as np
 
-    rising = [_rises(values, s) for s in (1, -1)]
-    turns = np.where(side > 0, *rising).astype(bool)
+    turns = np.where(side > 0, *(_rises(values, s) for s in (1, -1))).astype(bool)
     doubt = np.zeros(len(at), bool)
-    if all(rising):
-        return turns, doubt
-    here = sum(c * q**k for k, c in enumerate(values))
     for critical in _critical(values):
-        height = sum(c * critical**k for k, c in enumerate(values))
-        beyond = (WIDE.rational(critical) - at) * side > 0
-        apart = _float(here - height) + energy
-        near = abs(apart) <= _NEAR * (size + abs(float(height)))
-        turns |= beyond & (apart < 0)
-        doubt |= beyond & near
+        height = WIDE.rational(sum(c * critical**k for k, c in enumerate(values)))
+        beyond = ((WIDE.rational(critical) - at) * side > 0) & ~turns
+        doubt |= beyond & (abs(level - height) <= _NEAR * (size + abs(height)))
+        turns |= beyond & (level < height)
     return turns, doubt
 
 
@@ -81,5 +77,5 @@ def _critical(values: Sequence[Fraction]) -> list[Fraction]:
     return [Fraction(str(root.evalf(_DIGITS))) for root in found]
 
 
-def _float(x: Batch) -> Array:
+def _float(x: Rationals) -> Array:
     return WIDE.rational(x).values

@@ -1,7 +1,7 @@
 """Many numbers in the place of one, so that a formula written for one number serves them all.
 
 A comparison of a batch that does not come out the same for all of it cannot decide a branch: then
-`Mixed` tells by a mask where it holds, and who evaluates the formula splits the batch there.
+`MixedError` tells by a mask where it holds, and who evaluates the formula splits the batch there.
 """
 
 import operator
@@ -13,9 +13,10 @@ from typing import Any
 import gmpy2
 
 Array = Any  # numpy.ndarray, which is imported where it is used
+_BITS = 120  # more than two float64 hold
 
 
-class Mixed(Exception):
+class MixedError(Exception):
     """A branch that some of a batch take and others do not."""
 
     def __init__(self, mask: Array) -> None:
@@ -23,7 +24,7 @@ class Mixed(Exception):
         self.mask = mask
 
 
-class Doubtful(Mixed):
+class DoubtfulError(MixedError):
     """What float64 cannot decide for some of a batch, which are to be evaluated one by one."""
 
 
@@ -40,7 +41,7 @@ class Batch:
         if mask.all():
             return True
         if mask.any():
-            raise Mixed(mask)
+            raise MixedError(mask)
         return False
 
     def __abs__(self) -> "Batch":
@@ -62,9 +63,11 @@ class Batch:
         """Exact rationals as sums of two float64 each, the first of them the nearest."""
         import numpy as np
 
-        high = np.array([float(x) for x in self.values])
-        pairs = zip(self.values.tolist(), high.tolist(), strict=True)
-        return high, np.array([float(x - gmpy2.mpq(y)) for x, y in pairs])
+        with gmpy2.context(precision=_BITS):
+            wide = [gmpy2.mpfr(x) for x in self.values]
+            high = [float(x) for x in wide]
+            low = [float(x - y) for x, y in zip(wide, high, strict=True)]
+        return np.array(high), np.array(low)
 
 
 def _binary(name: str) -> None:
@@ -118,8 +121,8 @@ def some(condition: Any) -> bool:
 def in_groups(size: int, evaluate: Callable[[Array], None], alone: Callable[[Array], None]) -> None:
     """Evaluate the indices 0 … size − 1 in groups of which each takes one way through.
 
-    `evaluate` raises Mixed with a mask over its group; `alone` gets those who cannot be decided in
-    a group, or whose evaluation fails (ArithmeticError, ValueError).
+    `evaluate` raises MixedError with a mask over its group; `alone` gets those who cannot be
+    decided in a group, or whose evaluation fails (ArithmeticError, ValueError).
     """
     import numpy as np
 
@@ -128,10 +131,10 @@ def in_groups(size: int, evaluate: Callable[[Array], None], alone: Callable[[Arr
         group = waiting.pop()
         try:
             evaluate(group)
-        except Doubtful as doubt:
+        except DoubtfulError as doubt:
             alone(group[doubt.mask])
             waiting += [rest] if len(rest := group[~doubt.mask]) else []
-        except Mixed as mixed:
+        except MixedError as mixed:
             waiting += [group[mixed.mask], group[~mixed.mask]]
         except (ArithmeticError, ValueError):
             alone(group)

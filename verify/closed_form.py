@@ -45,8 +45,9 @@ def evaluate(
     first = digits + _GUARD + motion.lost + sum(2 * _length(x) for x in inputs)
     least = max(map(abs, start))
     while first <= MOST_DIGITS:
-        _check_end(motion, time, first)
-        values = [_state(motion, time, n) for n in (first, first + _MORE)]
+        contexts = [_context(n) for n in (first, first + _MORE)]
+        _check_end(motion, time, contexts[0])
+        values = [_state(motion, time, mp) for mp in contexts]
         if None not in values:
             found = _agreed(values, least, digits)
             if found:
@@ -61,18 +62,16 @@ def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
     return None if end is None else _exact(end)
 
 
-def _check_end(motion: Motion, time: Fraction, digits: int) -> None:
+def _check_end(motion: Motion, time: Fraction, mp: Context) -> None:
     """NoFlowError where the solution blows up before that time, or cannot be told not to."""
-    mp = _context(digits)
     end = motion.blow_up(mp, -1 if time < 0 else 1)
     if end is not None and number(mp, abs(time)) >= end * (1 - mp.ldexp(1, -mp.prec // 2)):
         sign = "−" if time < 0 else ""
         raise NoFlowError(f"the exact solution blows up at t = {sign}{mp.nstr(end, 12)}")
 
 
-def _state(motion: Motion, time: Fraction, digits: int) -> tuple[Any, Any] | None:
+def _state(motion: Motion, time: Fraction, mp: Context) -> tuple[Any, Any] | None:
     """(p, q) by one evaluation; None where it fails for want of digits."""
-    mp = _context(digits)
     try:
         p, q = motion.state(mp, number(mp, time))
     except (ArithmeticError, ValueError):

@@ -26,8 +26,8 @@ from verify.proof.exact_flow import NoFlowError
 Array = Any  # numpy.ndarray, which is imported where it is used
 _UNIT = 2.0**-53  # the rounding of a result, relative to it
 _SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
-_TRUSTED = 2.0**-36  # the most, of an orbit's scale, that float64 may be wrong for a point ...
-_TRUSTED_NUMERICAL = 1e-9  # ... and two numerical flows apart
+_TRUSTED = 2.0**-31  # the most, of an orbit's scale, that float64 may be wrong for a point ...
+_TRUSTED_NUMERICAL = 1e-8  # ... and two numerical flows apart
 _SAMPLE, _SAMPLE_NUMERICAL = 12, 3  # points held against `exact_solution`
 _DIGITS = 20
 _BEFORE = 1 - 1e-9  # of the time of a blow-up, up to which floats can tell
@@ -48,9 +48,7 @@ class Points:
     alone: tuple[int, ...] = ()
 
 
-def exact_points(
-    hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction]
-) -> Points:
+def exact_points(hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction]) -> Points:
     """φ_t of the points (p, q), two arrays of float64 of one length, for each time t.
 
     Raises InputError for a parameter without a value and for points that are not such arrays, and
@@ -82,7 +80,8 @@ class _Work:
     found: Array  # (2, times, points)
     error: Array  # (times, points)
     alone: set[int] = field(default_factory=set)
-    method: str = "the initial value itself"
+    method: str = "no points"
+    _largest: int = 0  # the group whose method is told
 
     @classmethod
     def of(cls, hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction]) -> "_Work":
@@ -105,12 +104,15 @@ class _Work:
 
         if WIDE.prec < FLOAT.prec + 10:
             self.alone.update(range(len(self.p)))
+            self.method = "closed form, point by point"
             return
         p, q = exact(self.p).values, exact(self.q).values
 
         def evaluate(group: Array) -> None:
-            known = closed_form(self.hamiltonian, Batch(p[group]), Batch(q[group]))
-            assert known is not None, "it depends on H alone"
+            start: list[Any] = [Batch(p[group]), Batch(q[group])]
+            known = closed_form(self.hamiltonian, *start)
+            if known is None:
+                raise ValueError("it has no closed form")
             self._move(group, known[0])
 
         with np.errstate(all="ignore"):  # what is not finite is followed alone
@@ -133,8 +135,8 @@ class _Work:
             scale = self._scale(k, group)
             late |= ~(apart <= _TRUSTED * scale)  # nan is not
             self.error[k, group] = apart * FLOAT.type(WIDE.eps / FLOAT.eps) + _UNIT * scale
-        if not motion.rest:
-            self.method = f"{motion.method}, in long double"
+        if len(group) > self._largest:
+            self._largest, self.method = len(group), f"{motion.method}, in long double"
         self._leave(group[late])
 
     def _late(self, group: Array, motion: Motion) -> Array:
@@ -170,7 +172,7 @@ class _Work:
             scale = self._scale(k, every)
             self._leave(every[~(apart <= _TRUSTED_NUMERICAL * scale)])
             self.error[k] = apart + _UNIT * scale
-        self.method = "numerical flow: Gragg's method, extrapolated, in float64"
+        self.method = "numerical flow: Gragg's method, extrapolated, in long double"
 
     # -- against the exact solution -----------------------------------------------------------
 
@@ -188,9 +190,8 @@ class _Work:
             return (float(found.p), float(found.q)), float(found.bound)
         except (NoFlowError, OverflowError) as error:
             said = "it is beyond float64" if isinstance(error, OverflowError) else error
-            raise NoFlowError(
-                f"point {i}, q = {self.q[i]:.6g}, p = {self.p[i]:.6g}, to t = {float(time):.6g}: {said}"
-            ) from None
+            where = f"point {i}, q = {self.q[i]:.6g}, p = {self.p[i]:.6g}"
+            raise NoFlowError(f"{where}, to t = {float(time):.6g}: {said}") from None
 
     def checked(self, most: int) -> Points:
         """What was found, where the sample's errors are no larger than they are estimated."""
@@ -209,7 +210,8 @@ class _Work:
                         f"where {estimated:.2g} was estimated"
                     )
         bound = max(estimated, _SAFETY * worst)
-        return Points(*self.found, bound, self.method, tuple(sorted(self.alone)))
+        p, q = self.found
+        return Points(p, q, bound, self.method, tuple(sorted(self.alone)))
 
     def _sample(self, most: int) -> list[int]:
         """Points found together: those with extreme p and q, and others evenly between."""

@@ -1,9 +1,11 @@
-"""The numerical flow of many points at once, in arrays of float64: Gragg's method, extrapolated.
+"""The numerical flow of many points at once, in arrays of floats: Gragg's method, extrapolated.
 
 As `verify.proof.exact_flow` follows one point with any number of digits; here all take the same
-steps, as long as the least accurate of them allows.
+steps, as long as the least accurate of them allows. They are in the C compiler's long double, which
+is not much slower here: in float64 what is lost grows with the time to 10⁻¹⁰ and more.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
@@ -11,18 +13,20 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic import float64
+from verify.float_context import WIDE
 from verify.hamiltonian import Hamiltonian
 from verify.number_system import Arithmetic, interpreted
 from verify.proof.exact_flow import LOST, NoFlowError, functions_at
 
 Array = Any  # numpy.ndarray, which is imported where it is used
-Slopes = Callable[[Array, Array], tuple[Array, Array]]
+Slopes = Callable[[Array, Array], tuple[Array, ...]]
 
-_TOLERANCE = 3e-14  # of the last two extrapolated values, relative to the orbit so far
+_TOLERANCE = 4096  # roundings: of the last two extrapolated values, relative to the orbit so far
 _EASY = 1e-2  # of the tolerance, below which a longer step is tried
 _LONGER, _SHORTER = 1.25, 0.7
 _SHORTEST = 2.0**-60  # of the first step
 _MOST_STEPS = 100_000
+_STEP_BITS = 12  # of a step, so that times are sums without rounding
 
 
 def follow(
@@ -35,7 +39,7 @@ def follow(
     """
     import numpy as np
 
-    start = np.array([p, q])
+    start = np.array([p, q], dtype=WIDE.type)
     found = np.empty((2, len(times), len(p)))
     with np.errstate(all="ignore"):
         slopes = _slopes(hamiltonian)
@@ -43,7 +47,7 @@ def follow(
             walk = _Walk(slopes, start, sign, columns)
             order = sorted((t for t in set(times) if sign * t > 0 or t == 0), key=abs)
             for time in order:
-                walk.to(float(abs(time)))
+                walk.to(WIDE.rational(abs(time)))
                 for k in (k for k, t in enumerate(times) if t == time):
                     found[:, k] = walk.z
     return found
@@ -52,12 +56,11 @@ def follow(
 def _slopes(hamiltonian: Hamiltonian) -> Slopes:
     field, _ = hamiltonian.field()
     elements = [(field.ring, -field.h_q), (field.ring, field.h_p)]
-    slopes: Slopes = functions_at(_arrays(), elements)  # type: ignore[assignment]
-    return slopes
+    return functions_at(_arrays(), elements)
 
 
 def _arrays() -> Arithmetic:
-    """float64 over arrays."""
+    """Long double over arrays."""
     import numpy as np
 
     def root(x: Array, n: int) -> Array:
@@ -69,12 +72,17 @@ def _arrays() -> Arithmetic:
         "atan": np.arctan,
         "sqrt": np.sqrt,
         "root": root,
-        "pi": np.pi,
+        "pi": WIDE.pi,
     }
     return replace(
-        float64.make(17), name="arrays", functions=functions, compile=interpreted,
-        context=nullcontext,
+        float64.make(17), name="arrays", bits=WIDE.prec, number=WIDE.rational,
+        functions=functions, compile=interpreted, context=nullcontext,
     )  # fmt: skip
+
+
+def _short(step: float) -> float:
+    mantissa, exponent = math.frexp(step)
+    return math.ldexp(math.floor(math.ldexp(mantissa, _STEP_BITS)), exponent - _STEP_BITS)
 
 
 class _Walk:
@@ -87,15 +95,16 @@ class _Walk:
         self._slopes = slopes
         self._sign = sign
         self._columns = columns
-        self._done = 0.0
+        self._done = WIDE.mpf(0)
+        self._tolerance = _TOLERANCE * float(WIDE.eps)
         self._scale = np.max(np.abs(start), axis=0)  # of each orbit, as far as it is known
         speed = np.max(np.abs(np.array(np.broadcast_arrays(*slopes(*start), start[0])[:2])), axis=0)
         size = np.where(self._scale > 0, self._scale, 1.0)
         fastest = float(np.max(speed / size, initial=0.0))
-        self._step = 1.0 / (1.0 + fastest) if np.isfinite(fastest) else 1.0
+        self._step = _short(1.0 / (1.0 + fastest)) if np.isfinite(fastest) else 1.0
         self._least = self._step * _SHORTEST
 
-    def to(self, goal: float) -> None:
+    def to(self, goal: Any) -> None:
         import numpy as np
 
         for _ in range(_MOST_STEPS):
@@ -107,13 +116,13 @@ class _Walk:
             size = np.maximum(self._scale, np.max(np.abs(self.z + moved), axis=0))
             ratio = error / np.where(size > 0, size, 1.0)
             worst = float(ratio.max(initial=0.0))
-            if worst <= _TOLERANCE:
+            if worst <= self._tolerance:
                 self.z, self._scale = self.z + moved, size
                 self._done = goal if last else self._done + step
-                if worst <= _EASY * _TOLERANCE and not last:
-                    self._step *= _LONGER
+                if worst <= _EASY * self._tolerance and not last:
+                    self._step = _short(self._step * _LONGER)
                 continue
-            self._step = step * _SHORTER
+            self._step = _short(float(step) * _SHORTER)
             if self._step < self._least or self._done + self._step == self._done:
                 raise NoFlowError(self._lost(ratio))
         raise NoFlowError(f"{_MOST_STEPS} steps lead only to t = {self._sign * self._done:.6g}")
@@ -124,7 +133,7 @@ class _Walk:
         i = int(np.argmax(np.where(np.isfinite(ratio), ratio, np.inf)))
         return f"point {i}: {LOST}, at about t = {self._sign * self._done:.6g}"
 
-    def _extrapolated(self, time: float) -> tuple[Array, Array]:
+    def _extrapolated(self, time: Any) -> tuple[Array, Array]:
         """How far the points move by Aitken and Neville's scheme, and its estimated error."""
         import numpy as np
 
@@ -132,15 +141,15 @@ class _Walk:
         for j in range(1, self._columns + 1):
             row = [self._midpoint(time, 2 * j)]
             for k, before in enumerate(above, start=1):
-                row.append(row[-1] + (row[-1] - before) * ((j - k) ** 2 / (j**2 - (j - k) ** 2)))
+                row.append(row[-1] + (row[-1] - before) * (j - k) ** 2 / (j**2 - (j - k) ** 2))
             above = row
         return above[-1], np.max(np.abs(above[-1] - above[-2]), axis=0)
 
-    def _midpoint(self, time: float, count: int) -> Array:
+    def _midpoint(self, time: Any, count: int) -> Array:
         """Gragg's rule with so many steps, smoothed at its end: what is added to z."""
         import numpy as np
 
-        h = time / count
+        h = WIDE.mpf(time) / count
         slopes, z = self._slopes, self.z
         before = np.zeros_like(z)
         at = np.empty_like(z)

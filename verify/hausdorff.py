@@ -148,7 +148,9 @@ def _along(
     """
     stack, parts, nears = work
     high, count = 0.0, 1
-    parts[0], nears[0, 0], nears[0, 1], nears[0, 2] = row, near[0], near[1], 0
+    for k in range(4):  # numba takes seconds over the assignment of a whole row
+        parts[0, k] = row[k]
+    nears[0, 0], nears[0, 1], nears[0, 2] = near[0], near[1], 0
     while count > 0:
         count -= 1
         x0, y0, x1, y1 = parts[count]

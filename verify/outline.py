@@ -7,6 +7,7 @@ An arc's formula is written once over `mp`, mpmath's context or one that takes a
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from math import comb
 
 from verify.motion import Context, Number, number
 
@@ -48,13 +49,15 @@ def angle(mp: Context, s: Number) -> Number:
     return 2 * mp.pi * (s - mp.mpf(1) / 2)
 
 
-def line(start: Point, end: Point) -> Arc:
-    """The straight arc between two points."""
+def bezier(*control: Point) -> Arc:
+    """The Bézier curve of these control points; of two, the line between them."""
+    degree = len(control) - 1
 
     def at(mp: Context, s: Number) -> tuple[Number, Number]:
-        x, y = (
-            number(mp, a) * (1 - s) + number(mp, b) * s for a, b in zip(start, end, strict=True)
-        )
+        x = y = mp.mpf(0)
+        for k, (a, b) in enumerate(control):
+            weight = comb(degree, k) * (1 - s) ** (degree - k) * s**k
+            x, y = x + weight * number(mp, a), y + weight * number(mp, b)
         return x, y
 
     return at

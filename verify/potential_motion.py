@@ -42,6 +42,8 @@ def motion(alpha: Fraction, potential: Sequence[Fraction], p: Fraction, q: Fract
 
     @cache
     def to(sign: int) -> Any:
+        if curve.b[4] < 0:
+            return 0  # V rises without end on both sides
         if isinstance(p, Batch):
             return destinations(alpha, potential, p, q, sign)
         return curve.destination(sign)

@@ -70,7 +70,7 @@ class Weierstrass:
         size = mp.sqrt(3 * r**2 - self.g2 / 4)
         k = mp.sqrt(size)
         sn, cn, dn = jacobi(mp, 2 * k * t, mp.mpf(1) / 2 - 3 * r / (4 * size))
-        if cn > 0 and sn == 0:
+        if sn == 0 and cn > 0:
             return None
         total = 1 + abs(cn)
         less = choose(cn > 0, sn**2 / total, total)  # 1 − cn, which cancels where cn > 0

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from verify import hausdorff as module
 from verify.errors import InputError
 from verify.hausdorff import RELATIVE, Distance, _one_way, hausdorff
 from verify.segment_tree import boxes, nearest, new_stack, segments, to_segment
@@ -119,6 +120,25 @@ def test_agreement_with_brute_force_on_curves_drawn_at_random() -> None:
         assert found.value >= true - 1e-12, case
         assert found.value <= true + max(lengths) / 2 + found.bound, case
         assert found.bound <= 2 * RELATIVE * found.value + 1e-12
+
+
+def test_the_distance_lies_in_its_enclosure_however_wide_that_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The loops as plain Python, with another accuracy."""
+    monkeypatch.setattr(module, "_compiled", lambda: module._directed)
+    random = np.random.default_rng(7)
+    missed = 0
+    for _ in range(40):
+        first, second = (segments([random.normal(size=(6, 2))]) for _ in range(2))
+        monkeypatch.setattr(module, "RELATIVE", 1e-12)
+        low, high = _one_way(first, second, 0.0, 1e-14)
+        monkeypatch.setattr(module, "RELATIVE", 0.2)
+        least, most = _one_way(first, second, 0.0, 1e-14)
+        assert least <= high
+        assert low <= most <= least * 1.2 + 1e-13
+        missed += least < low - 1e-6
+    assert missed > 3, "the lower end by itself would have been wrong"
 
 
 def test_the_nearest_segment_is_found_whatever_is_looked_at_first() -> None:
