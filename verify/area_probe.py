@@ -10,6 +10,7 @@ the panels' differences count without their signs. All curves are carried togeth
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -137,7 +138,7 @@ class Probe:
             count = -(-FIRST_PANELS // len(outline.arcs))
             ends = [Fraction(k, count) for k in range(count + 1)]
             for arc in range(len(outline.arcs)):
-                parts += [(index, arc, a, b) for a, b in zip(ends, ends[1:], strict=False)]
+                parts += [(index, arc, a, b) for a, b in pairwise(ends)]
         families = self._families(self._panels(parts))
         for _ in range(_MOST_ROUNDS):
             cut = self._to_cut(families)
