@@ -39,36 +39,25 @@ class SchemeView:
 
 
 @dataclass(frozen=True)
-class TableView:
-    """A table of the paper: the claim that holds it, and the picture of it."""
-
-    claim: ClaimView
-    plot: Plot | None
-
-
-@dataclass(frozen=True)
 class SceneView:
     result: SceneResult
     anchor: str
     symbols: tuple[str, ...]  # parameters without a value
     floors: str  # a sentence on the step sizes that do not divide the time
-    tables: tuple[TableView, ...]
+    claims: tuple[ClaimView, ...]  # that speak of it
     schemes: tuple[SchemeView, ...]
     work_precision: "WorkPrecisionView | None"
     stability: "StabilityView | None"
 
 
-def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> SceneView:
+def scene_view(scene: SceneResult, anchor: str, claims: Sequence[ClaimView]) -> SceneView:
     names = mathml.free_names(scene.hamiltonian)
     return SceneView(
         result=scene,
         anchor=anchor,
         symbols=tuple(n for n in names if n not in scene.parameters),
         floors=_floors(scene),
-        tables=tuple(
-            TableView(claim, plots.table(claim, name=f"table-{index}-of-{anchor}"))
-            for index, claim in enumerate(tables)
-        ),
+        claims=tuple(claims),
         schemes=tuple(
             _scheme_view(scene, proof, f"scheme-{index}-of-{anchor}")
             for index, proof in enumerate(scene.proofs)
