@@ -24,6 +24,11 @@ class ClaimView:
     plot: "Plot | None" = None
 
     @property
+    def name(self) -> str:
+        """What the page calls it."""
+        return self.result.source or self.result.id
+
+    @property
     def is_table(self) -> bool:
         details = self.result.details
         return (
@@ -45,12 +50,6 @@ class ClaimView:
     @property
     def computed(self) -> tuple[tuple[str, ...], ...]:
         return self.result.details[2:]
-
-    @property
-    def named(self) -> str:
-        """What the evidence says the printed row is, where it says so."""
-        match = re.search(r"the printed row is ([^;]+)", self.result.evidence)
-        return match[0] if match else ""
 
 
 def is_decimal(text: str) -> bool:

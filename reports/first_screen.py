@@ -75,15 +75,15 @@ def first_screen(
     plot, place = (told.claim.plot, told.claim.anchor) if told else (None, "")
     if plot is None:
         plot, place = _picture(scenes)
-    return FirstScreen(finding(report), tuple(_tiles(report)), told, plot, place)
+    return FirstScreen(finding(report, told), tuple(_tiles(report)), told, plot, place)
 
 
 # -- the finding in one sentence ------------------------------------------------------------------
 
 
-def finding(report: Report) -> str:
+def finding(report: Report, told: Refutation | None = None) -> str:
     if report.claims:
-        return _finding_of_claims([c.verdict for c in report.claims])
+        return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(told)}."
     proofs, judged = _proofs(report), _judged(report)
     if not proofs and not judged:
         return "The report holds no claim and no proof."
@@ -106,10 +106,18 @@ def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
     words = [(counted[v], v.lower()) for v in Verdict if counted[v]]
     if len(words) == 1:
         count, word = words[0]
-        return f"The one claim is {word}." if count == 1 else f"All {count} claims are {word}."
+        return f"The one claim is {word}" if count == 1 else f"All {count} claims are {word}"
     (count, word), *rest = words
     first = f"{count} {'is' if count == 1 else 'are'} {word}"
-    return f"Of {len(verdicts)} claims, {listed([first, *(f'{n} {w}' for n, w in rest)])}."
+    return f"Of {len(verdicts)} claims, {listed([first, *(f'{n} {w}' for n, w in rest)])}"
+
+
+def _worst(told: Refutation | None) -> str:
+    """How much of the refuted table is wrong, as its evidence begins."""
+    if told is None or not told.claim.is_table:
+        return ""
+    share = told.claim.result.evidence.partition(":")[0]
+    return f"; in {told.claim.name}, {share}"
 
 
 def _finding_of_proofs(proofs: Sequence[ProofResult]) -> str:
@@ -210,8 +218,12 @@ def _picture(scenes: Sequence[SceneView]) -> tuple[Plot | None, str]:
     if maps:
         _, plot, anchor = max(maps, key=lambda found: found[0])
         return plot, f"stability-of-{anchor}"
-    drawn = [(plot, scheme.anchor) for scene in scenes for scheme in scene.schemes
-             for plot in (*(scheme.separation.plots if scheme.separation else ()), *scheme.series)]
+    drawn = [
+        (plot, scheme.anchor)
+        for scene in scenes
+        for scheme in scene.schemes
+        for plot in (*(scheme.separation.plots if scheme.separation else ()), *scheme.series)
+    ]
     drawn += [(plot, scene.anchor) for scene in scenes if scene.work_precision
               for plot in scene.work_precision.plots]  # fmt: skip
     return drawn[0] if drawn else (None, "")

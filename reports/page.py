@@ -17,6 +17,7 @@ from verify.scene_results import Report
 PAGE, DATA = "index.html", "results.json"
 _TEMPLATES = Path(__file__).parent / "templates"
 
+
 def write(report: Report, folder: Path) -> Path:
     """Write `index.html` and `results.json` into the folder; the path of the page."""
     page = folder / PAGE

@@ -41,14 +41,17 @@ class PageView:
     grown: bool  # whether Λ was held against its growth law
     timed: bool  # whether error stands against run time
 
+    def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
+        """Those with a claim on this scene."""
+        return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
+
 
 def page_view(report: Report) -> PageView:
     anchors = Anchors()
     own = [anchors.take("system", scene.name) for scene in report.scenes]
     claims = _claims(report, own, anchors)
     scenes = tuple(
-        scene_view(scene, anchor, [c for c in claims if c.result.scene == scene.name])
-        for scene, anchor in zip(report.scenes, own, strict=True)
+        scene_view(scene, anchor) for scene, anchor in zip(report.scenes, own, strict=True)
     )
     return PageView(
         report=report,
