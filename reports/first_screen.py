@@ -4,7 +4,7 @@ A tile says what it says by its sign and its word; the colour only helps.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from reports.claim_view import ClaimView
@@ -58,23 +58,29 @@ class Refutation:
 
 
 @dataclass(frozen=True)
+class Place:
+    anchor: str
+    name: str
+
+
+@dataclass(frozen=True)
 class FirstScreen:
-    """`plot` stands here and nowhere else on the page; `place`: the anchor of what it is of."""
+    """`plot` stands here and nowhere else on the page; `place`: what it is of."""
 
     finding: str
     tiles: tuple[Tile, ...]
     refutation: Refutation | None
     plot: Plot | None
-    place: str
+    place: Place | None
 
 
 def first_screen(
     report: Report, claims: Sequence[ClaimView], scenes: Sequence[SceneView]
 ) -> FirstScreen:
     told = _refutation(claims)
-    plot, place = (told.claim.plot, told.claim.anchor) if told else (None, "")
+    plot, place = (told.claim.plot if told else None), None
     if plot is None:
-        plot, place = _picture(scenes)
+        plot, place = next(iter(_pictures(scenes)), (None, None))
     return FirstScreen(finding(report, told), tuple(_tiles(report)), told, plot, place)
 
 
@@ -169,14 +175,22 @@ def _tiles(report: Report) -> list[Tile]:
         ]
     proofs, judged = _proofs(report), _judged(report)
     if judged and len(proofs) > _FEW:
-        kinds = Counter(case.kind for case in judged)
-        signed = [(kind, *_RUN_SIGNS[kind]) for kind in KINDS if kinds[kind]]
-        return [Tile(v, s, whole(kinds[k]), k, weight=kinds[k]) for k, s, v in signed]
+        return _tiles_of_runs(judged)
     if len(proofs) > _FEW:
         return [
             Tile(v, SIGNS[v][0], whole(n), text, weight=n) for v, n, text in _proof_counts(proofs)
         ]
     return [_tile_of_proof(proof) for proof in proofs]
+
+
+def _tiles_of_runs(judged: Sequence[StabilityResult]) -> list[Tile]:
+    from reports.stability_view import MEANINGS
+
+    tiles = []
+    for kind, count in Counter(case.kind for case in judged).items():
+        sign, verdict = _RUN_SIGNS[kind]
+        tiles.append(Tile(verdict, sign, whole(count), kind, MEANINGS[kind], count))
+    return sorted(tiles, key=lambda tile: KINDS.index(tile.word))
 
 
 def _tile_of_proof(proof: ProofResult) -> Tile:
@@ -203,27 +217,21 @@ def _refutation(claims: Sequence[ClaimView]) -> Refutation | None:
     return Refutation(claim, tuple(same))
 
 
-def _picture(scenes: Sequence[SceneView]) -> tuple[Plot | None, str]:
-    """What a step size costs in area; else where schemes are stable; else what else is drawn."""
-    for scene in scenes:
-        for scheme in scene.schemes:
-            if scheme.plots:
-                return scheme.plots[0], scheme.anchor
+def _pictures(scenes: Sequence[SceneView]) -> Iterator[tuple[Plot, Place]]:
+    """The most telling first: what a step size costs in area, then where schemes are stable."""
+    schemes = [(s, Place(s.anchor, s.proof.scheme)) for scene in scenes for s in scene.schemes]
+    yield from ((plot, place) for scheme, place in schemes for plot in scheme.plots[:1])
     maps = [
-        (len(found.counted()), plot, scene.anchor)
+        (found, plot, Place(f"stability-of-{scene.anchor}", scene.result.title))
         for scene in scenes
         if scene.stability
         for found, plot in zip(scene.result.stability_maps, scene.stability.plots, strict=True)
     ]
-    if maps:
-        _, plot, anchor = max(maps, key=lambda found: found[0])
-        return plot, f"stability-of-{anchor}"
-    drawn = [
-        (plot, scheme.anchor)
-        for scene in scenes
-        for scheme in scene.schemes
-        for plot in (*(scheme.separation.plots if scheme.separation else ()), *scheme.series)
-    ]
-    drawn += [(plot, scene.anchor) for scene in scenes if scene.work_precision
-              for plot in scene.work_precision.plots]  # fmt: skip
-    return drawn[0] if drawn else (None, "")
+    for _, plot, place in sorted(maps, key=lambda each: -len(each[0].counted())):
+        yield plot, place
+    for scheme, place in schemes:
+        parted = scheme.separation.plots if scheme.separation else ()
+        yield from ((plot, place) for plot in (*parted, *scheme.series))
+    for scene in scenes:
+        timed = scene.work_precision.plots if scene.work_precision else ()
+        yield from ((plot, Place(f"work-of-{scene.anchor}", scene.result.title)) for plot in timed)

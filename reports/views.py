@@ -11,6 +11,7 @@ from reports.first_screen import FirstScreen, first_screen
 from reports.plots import Plot
 from reports.scene_view import SceneView, scene_view
 from verify.scene_results import Report
+from verify.stability_results import Kind
 from verify.verdict import Verdict
 
 _NUMBERED = re.compile(r"\d+(?:\.\d+)*(?=\D|$)")
@@ -36,6 +37,7 @@ class PageView:
     claims: tuple[ClaimView, ...]
     scenes: tuple[SceneView, ...]
     paper_figures: tuple[Plot, ...]
+    kinds: tuple[tuple[Kind, str], ...]  # verdicts on runs that occur, and what they mean
     ran: bool  # whether anything was run
     separated: bool
     grown: bool  # whether Λ was held against its growth law
@@ -60,6 +62,7 @@ def page_view(report: Report) -> PageView:
         claims=claims,
         scenes=scenes,
         paper_figures=(),
+        kinds=_kinds(scenes),
         ran=any(
             s.runs or s.series or s.separations or s.crossovers or s.work_precision
             for s in report.scenes
@@ -82,6 +85,15 @@ def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[Claim
     return tuple(found)
 
 
+def _kinds(scenes: Sequence[SceneView]) -> tuple[tuple[Kind, str], ...]:
+    if not any(scene.stability for scene in scenes):
+        return ()
+    from reports.stability_view import MEANINGS
+
+    seen = {kind for scene in scenes if scene.stability for kind in scene.stability.kinds}
+    return tuple((kind, meaning) for kind, meaning in MEANINGS.items() if kind in seen)
+
+
 # -- the sections of the paper --------------------------------------------------------------------
 
 
@@ -96,7 +108,7 @@ def groups(claims: Sequence[ClaimView], anchors: Anchors) -> list[ClaimGroup]:
         title = section or ("Other claims" if len(by_section) > 1 else "")
         counted = Counter(c.result.verdict for c in own)
         counts = tuple((v, counted[v]) for v in Verdict if counted[v])
-        found.append(ClaimGroup(title, anchors.take("section", title), tuple(own), counts))
+        found.append(ClaimGroup(title, anchors.take("section", title or "all"), tuple(own), counts))
     return found
 
 
