@@ -182,9 +182,8 @@ def table(claim: ClaimView, *, name: str) -> Plot | None:
     if len(printed.points) < 2 or not lines:
         return None
     lead = f"{source}: lg MSE against the step size h, printed and computed"
-    caption = " ".join([_gap(printed, lines), _named(claim)])
     svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
-    return Plot(svg, f"{lead}.", caption.strip())
+    return Plot(svg, f"{lead}.", _gap(printed, lines))
 
 
 def _gap(printed: "Line", lines: Sequence["Line"]) -> str:
@@ -197,7 +196,3 @@ def _gap(printed: "Line", lines: Sequence["Line"]) -> str:
         least, most = sorted((abs(low), abs(high)))
         return f"{row}; what was computed lies {least:.1f} to {most:.1f} decades {side} it."
     return f"{row}; what was computed differs from it by up to {max(-low, high):.1f} decades."
-
-
-def _named(claim: ClaimView) -> str:
-    return f"{claim.named[0].upper()}{claim.named[1:]}." if claim.named else ""

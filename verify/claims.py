@@ -21,6 +21,7 @@ _PRINTED = re.compile(r"-?\d{1,20}(\.\d{1,1000})?(e[+-]?\d{1,3})?", re.ASCII)
 class _Claim(Frozen):
     id: Annotated[str, Field(pattern=r"^[^\s\x00-\x1f]+$", max_length=80)]
     source: str = ""
+    section: str = ""
     statement: str = ""
     scene: str = ""
     scheme: str

@@ -263,13 +263,15 @@ class CriterionResult(Frozen):
 class ClaimResult(Frozen):
     """One claim with its verdict; `evidence` is one line, `details` a table of texts.
 
-    `scene` is empty where the claim speaks of every H.
+    `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
+    such as "4.1 The Duffing system"; a report groups its claims by it.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
     """
 
     id: str
     kind: str = ""
     source: str
+    section: str = ""
     statement: str
     scene: str
     verdict: Verdict

@@ -20,7 +20,7 @@ def figures(page: str) -> list[Any]:
 def test_figures_are_inline_images_that_follow_the_theme() -> None:
     found = figures(page_of("real"))
     # The highlight, the table, |Λ| and MSE/|Λ| over h, and one series.
-    assert len(found) == 5
+    assert len(found) == 4  # one each: table, |Λ|, ratio, series
     ids = [e.get("id") for svg in found for e in svg.iter() if e.get("id")]
     assert ids
     assert len(ids) == len(set(ids))
