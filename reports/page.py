@@ -15,7 +15,7 @@ from verify.verdict import Verdict
 PAGE, DATA = "index.html", "results.json"
 
 # Each verdict's sign and meaning; the sign and the word say it, the colour only helps.
-_SIGNS = {
+SIGNS = {
     Verdict.PROVED: ("✓", "exact algebra shows it"),
     Verdict.ENCLOSED: ("⊂", "a rigorous numeric enclosure shows it; its error bound is certain"),
     Verdict.MEASURED: ("≈", "numbers show it; their error bounds are estimates, not certificates"),
@@ -35,7 +35,7 @@ def write(report: Report, folder: Path) -> Path:
 
 def render(report: Report) -> str:
     """The whole page as text."""
-    return _environment().get_template("page.html").render(page=page_view(report), signs=_SIGNS)
+    return _environment().get_template("page.html").render(page=page_view(report), signs=SIGNS)
 
 
 @cache

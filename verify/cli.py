@@ -183,16 +183,27 @@ def plan(scene: str, as_json: bool) -> None:
 @cli.command()
 @click.argument("scene", metavar="SCENE")
 @click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
+@click.option(
+    "--format",
+    "formats",
+    type=click.Choice(["html", "md"]),
+    multiple=True,
+    default=["html"],
+    help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
+    "repository; given twice, both.",
+)
 @click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
-def report(scene: str, output: Path | None, workers: int | None, as_json: bool) -> None:
+def report(
+    scene: str, output: Path | None, formats: tuple[str, ...], workers: int | None, as_json: bool
+) -> None:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
     SCENE is a TOML file, `paper`, `stiff` or `extreme`.
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
-    from reports.page import write
+    from reports import markdown, page
     from verify.claim_plan import add_claims
     from verify.execute import Store, cost
     from verify.plan import plan_scenes
@@ -233,11 +244,11 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
                 err=True,
             )
             raise
-    page = write(made, folder)
+    written = [{"html": page, "md": markdown}[name].write(made, folder) for name in formats]
     if as_json:
         show.print_json(made.model_dump(mode="json"))
     else:
-        show.print_report(made, page)
+        show.print_report(made, *written)
 
 
 # -- entry ----------------------------------------------------------------------------------------
