@@ -3,7 +3,7 @@
 The same views as the page's: nothing is said here that they do not say.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
@@ -90,6 +90,11 @@ def _link(claim: ClaimView) -> Markdown:
     return Markdown(f"[{escaped(claim.result.source or claim.result.id)}](#{claim.anchor})")
 
 
+def _sentences(found: Iterable[object]) -> Markdown:
+    """One after the other; jinja's own `join` would forget which of them are markup."""
+    return Markdown(" ".join(map(markdown, found)))
+
+
 def _anchor(name: str) -> Markdown:
     """Where a link leads; `Anchors` makes names of letters, digits and a few marks only."""
     return Markdown(f'<a id="{name}"></a>')
@@ -118,6 +123,7 @@ def _environment() -> Environment:
     environment.filters.update(
         prose=typography.prose,
         sentence=typography.sentence,
+        sentences=_sentences,
         number=typography.number,
         whole=typography.whole,
         listed=typography.listed,

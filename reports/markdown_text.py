@@ -16,6 +16,7 @@ _AT_THE_START = re.compile(
 )  # a list, an underline, a table's alignment
 _ENTITIES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
 _KEPT = {"sub": "sub", "sup": "sup", "b": "b", "strong": "b", "em": "i", "i": "i", "code": "code"}
+_ASIDES = {"bound", "muted"}  # what the page sets smaller beside or below a number
 _SAFE_LINK = re.compile(r"#[A-Za-z0-9_.-]+|results\.json")
 
 
@@ -72,6 +73,8 @@ def _inline(node: Node | str) -> str:
         return f"<{_KEPT[node.tag]}>{inner}</{_KEPT[node.tag]}>"
     if node.tag == "a" and _SAFE_LINK.fullmatch(node.attributes.get("href", "")):
         return f"[{inner}]({node.attributes['href']})"
+    if node.attributes.get("class") in _ASIDES and not inner.startswith("±"):
+        return f"({inner})"
     return inner
 
 

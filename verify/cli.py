@@ -214,6 +214,7 @@ def report(
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
     writable(folder)
+    asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     total = sum(cost(task) for task in planned.tasks.values())
@@ -231,7 +232,7 @@ def report(
                 scenes,
                 claims,
                 Store(folder / "kept"),
-                command=f"verify report {scene} -o {folder.name}",
+                command=f"verify report {scene} -o {folder.name}{asked}",
                 claim_scenes=claim_scenes,
                 plan=planned,
                 workers=workers,

@@ -17,6 +17,7 @@ from reports import mathml
 from reports.markdown import render, write
 from reports.markdown_text import Markdown, escaped, markdown, table
 from reports.views import page_view
+from tests.unit.made_separations import CROSSING
 from tests.unit.test_report_page import (
     EVIL,
     REPORTS,
@@ -179,6 +180,13 @@ def test_refuted_claims_stand_before_all_claims() -> None:
     heads = re.findall(r"^## (.*)$", text, re.MULTILINE)
     assert heads[:3] == ["The most telling refutation: Table 9", "Refuted", "All claims"]
     assert "Refuted" not in render(report((scene(),)))[0]
+
+
+def test_the_views_own_markup_is_set_and_not_shown() -> None:
+    text, _ = render(report((scene(separations=(CROSSING,), runs=(run(),)),)))
+    assert "Truncation against rounding" in text
+    assert "<code>" in text
+    assert not re.search(r"&lt;/?(code|b|sub|span)", text)
 
 
 # -- figures --------------------------------------------------------------------------------------
