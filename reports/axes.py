@@ -40,7 +40,15 @@ def grid_lines(axes: Any, which: str = "y") -> None:
 def decades(axis: Any, *, most: int = 7) -> None:
     """Whole exponents of ten as ticks of an axis that shows logarithms."""
     axis.set_major_locator(MaxNLocator(most, integer=True, min_n_ticks=2))
-    axis.set_major_formatter(FuncFormatter(lambda x, _: f"10{superscript(round(x))}"))
+    axis.set_major_formatter(FuncFormatter(_power_of_ten))
+
+
+def _power_of_ten(exponent: float, _: object) -> str:
+    """10ⁿ; over less than a decade there are ticks between whole exponents, with a mantissa."""
+    n = floor(exponent + 1e-9)
+    scale = f"10{superscript(n)}"
+    mantissa = f"{10 ** (exponent - n):.2g}"
+    return scale if mantissa == "1" else f"{mantissa}·{scale}"
 
 
 def whole_numbers(axis: Any) -> None:

@@ -6,7 +6,8 @@ series colours are custom properties with the light theme's colour as their fall
 
 import io
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 from xml.etree import ElementTree
 
@@ -50,15 +51,22 @@ _RC: Any = {
 }
 
 
+@contextmanager
+def styled(**changes: object) -> Iterator[None]:
+    """matplotlib under this page's settings, and as it was before afterwards."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RC | changes)
+        yield
+
+
 def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
     """The figure that `draw` makes, as an inline SVG image.
 
     `name` prefixes every id, so it must be unique on the page; `label` is the text alternative.
     matplotlib's settings are as before afterwards.
     """
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC)
+    with styled():
         stream = io.StringIO()
         draw().savefig(stream, format="svg", metadata={"Date": None})
     root = ElementTree.fromstring(stream.getvalue())  # noqa: S314 - matplotlib's own output
