@@ -101,9 +101,12 @@ def plot_stability(over: StabilityMapResult) -> Figure:
 
 def _made(draw: Callable[[], Figure]) -> Figure:
     """The figure on white; what a title says is drawn stands at the vertical axis."""
+    # What the caller sets in place of our labels may be a formula between dollar signs.
     with styled(**{"figure.facecolor": "white", "axes.facecolor": "white"}):
         figure = draw()
         for axes in figure.axes:
+            for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
+                text.set_parse_math(True)
             named = axes.get_title(loc="left")
             if axes.get_ylabel():
                 continue

@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 import matplotlib
 from markupsafe import Markup
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 INK = "#010203"
 # Okabe and Ito's colours, darkened where they would fade on white; style.css has the dark theme's.
@@ -47,6 +48,7 @@ _RC: Any = {
     "legend.frameon": False,
     "mathtext.default": "regular",
     "text.usetex": False,
+    "text.parse_math": False,  # a name or a source with dollar signs stays text
     "path.simplify": False,
 }
 
@@ -68,9 +70,17 @@ def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
     """
     with styled():
         stream = io.StringIO()
-        draw().savefig(stream, format="svg", metadata={"Date": None})
+        figure = draw()
+        for text in figure.findobj(Text):
+            text.set_text(_printable(text.get_text()))
+        figure.savefig(stream, format="svg", metadata={"Date": None})
     root = ElementTree.fromstring(stream.getvalue())  # noqa: S314 - matplotlib's own output
-    return _inline(root, name, label)
+    return _inline(root, name, _printable(label))
+
+
+def _printable(text: str) -> str:
+    """Without control characters, which no XML may hold."""
+    return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
 def _inline(root: Any, name: str, label: str) -> Markup:

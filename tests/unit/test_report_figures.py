@@ -83,3 +83,15 @@ def test_a_tick_of_a_logarithmic_axis_says_where_it_stands(low: float, high: flo
         mantissa, _, power = label.rpartition("10")
         said = math.log10(float(mantissa.rstrip("·") or "1")) + int(power.translate(digits))
         assert said == pytest.approx(place, abs=0.03)
+
+
+@pytest.mark.parametrize("source", ["Table $\\frac$ 9", "$a_b$", "T\x01\x00", "<b>T</b> & 9"])
+def test_a_source_stays_text_in_a_figure(source: str) -> None:
+    made = real()
+    claims = tuple(
+        c.model_copy(update={"source": source}) if c.id == "table-9" else c for c in made.claims
+    )
+    shown = source.replace("\x01", "\ufffd").replace("\x00", "\ufffd")
+    first = figures(render(made.model_copy(update={"claims": claims})))[0]
+    assert f"printed: {shown}" in [e.text for e in first.iter() if e.tag == "text"]
+    assert first.get("aria-label", "").startswith(shown)
