@@ -3,6 +3,7 @@
 The same views as the page's: nothing is said here that they do not say.
 """
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
@@ -17,13 +18,13 @@ from reports.claim_view import ClaimView
 from reports.markdown_text import Markdown, escaped, markdown, table
 from reports.page import DATA, SIGNS
 from reports.plots import Plot
-from reports.svg import document
 from reports.views import page_view
 from verify.keeping import write_atomically
 from verify.scene_results import Report
 from verify.verdict import Verdict
 
 TEXT, FIGURES = "report.md", "figures"
+_OWN = re.compile(r"figure-[0-9]{2,}\.svg")  # the names of figures that `write` has written
 
 
 @dataclass
@@ -34,6 +35,8 @@ class _Figures:
 
     def show(self, plot: Plot, *, captioned: bool = True) -> Markdown:
         """The image, with its lead as the text alternative, and its caption."""
+        from reports.svg import document  # and with it matplotlib, where something is drawn
+
         path = f"{FIGURES}/figure-{len(self.files) + 1:02}.svg"
         self.files[path] = document([plot.svg])
         image = f"![{escaped(plot.lead)}]({path})"
@@ -51,6 +54,9 @@ def write(report: Report, folder: Path) -> Path:
     for path, svg in figures.items():
         write_atomically(folder / path, svg)
     write_atomically(folder / TEXT, text)
+    for file in (folder / FIGURES).glob("figure-*.svg"):
+        if _OWN.fullmatch(file.name) and f"{FIGURES}/{file.name}" not in figures:
+            file.unlink()  # of an earlier report, which had more of them
     return folder / TEXT
 
 

@@ -2,17 +2,20 @@
 no rows of headings inside."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from reports.claim_view import ClaimView, Contrast
-from reports.growth_view import GrowthView
 from reports.markdown_text import Markdown, escaped, table
 from reports.run_table import RunTable
-from reports.separation_view import SeparationView
-from reports.stability_view import StabilityView
 from reports.typography import cell, number, sentence
-from reports.work_precision_view import WorkPrecisionView
 from verify.results import CriterionResult
 from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from reports.growth_view import GrowthView
+    from reports.separation_view import SeparationView
+    from reports.stability_view import StabilityView
+    from reports.work_precision_view import WorkPrecisionView
 
 
 def counted(
@@ -51,7 +54,7 @@ def runs(view: RunTable) -> Markdown:
     )
 
 
-def growth_law(view: GrowthView) -> Markdown:
+def growth_law(view: "GrowthView") -> Markdown:
     heads = ("h", "N", "boundary", "secular", "Λ predicted", "Λ measured", "difference")
     return _joined(
         (f"{g.label} ({g.orbit})", table(heads, [(r.step_size, r.steps, *r.cells) for r in g.rows]))
@@ -59,7 +62,7 @@ def growth_law(view: GrowthView) -> Markdown:
     )
 
 
-def separation(view: SeparationView) -> Markdown:
+def separation(view: "SeparationView") -> Markdown:
     heads = ("h", "N", "truncation", "rounding, plain", "input", "trajectory", "determinant",
              "product", "rounding, closed form")  # fmt: skip
     found = []
@@ -72,7 +75,7 @@ def separation(view: SeparationView) -> Markdown:
     return _joined(found)
 
 
-def rounding_growth(view: SeparationView) -> Markdown:
+def rounding_growth(view: "SeparationView") -> Markdown:
     heads = ("h", "N", "the plain way", "closed form")
     return _joined(
         (g.label, table(heads, [(r.step_size, r.steps, *r.ways) for r in g.growth]))
@@ -81,18 +84,18 @@ def rounding_growth(view: SeparationView) -> Markdown:
     )
 
 
-def schemes(view: WorkPrecisionView) -> Markdown:
+def schemes(view: "WorkPrecisionView") -> Markdown:
     heads = ("scheme", "order claimed", "order of the error", "order of Λ", "operations",
              "gradient", "compilation, s")  # fmt: skip
     return table(heads, [(row.name, *row.cells) for row in view.schemes], "l")
 
 
-def systems(view: WorkPrecisionView) -> Markdown:
+def systems(view: "WorkPrecisionView") -> Markdown:
     heads = ("number system", "digits asked", "certified", "least, s", "median, s", "bound")
     return table(heads, [(row.name, *row.cells) for row in view.systems], "lrrrrl")
 
 
-def work(view: WorkPrecisionView) -> Markdown:
+def work(view: "WorkPrecisionView") -> Markdown:
     heads = ("h or tolerance", "N", "error", "its rounding part", "energy error", "Λ", "Λ, plain",
              "least, s", "median, s", "limited by")  # fmt: skip
     return _joined(
@@ -111,12 +114,12 @@ def work(view: WorkPrecisionView) -> Markdown:
     )
 
 
-def largest_steps(view: StabilityView) -> Markdown:
+def largest_steps(view: "StabilityView") -> Markdown:
     heads = ("scheme", "measured", "linear theory", "ratio")
     return table(heads, [(r.scheme, r.measured, r.linear, r.ratio) for r in view.largest], "l")
 
 
-def judged(view: StabilityView) -> Markdown:
+def judged(view: "StabilityView") -> Markdown:
     heads = ("case", "scheme", "h", "N", "verdict", "evidence")
     rows = [(r.name, r.scheme, r.step_size, r.steps, r.verdict, r.detail) for r in view.cases]
     return table(heads, rows, "llrrll")

@@ -203,7 +203,6 @@ def report(
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
-    from reports import markdown, page
     from verify.claim_plan import add_claims
     from verify.execute import Store, cost
     from verify.plan import plan_scenes
@@ -245,11 +244,22 @@ def report(
                 err=True,
             )
             raise
-    written = [{"html": page, "md": markdown}[name].write(made, folder) for name in formats]
+    written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
     if as_json:
         show.print_json(made.model_dump(mode="json"))
     else:
         show.print_report(made, *written)
+
+
+def _writer(name: str) -> Any:
+    """What writes a report in that format; only what is asked for is imported."""
+    if name == "md":
+        from reports.markdown import write as write_markdown
+
+        return write_markdown
+    from reports.page import write as write_page
+
+    return write_page
 
 
 # -- entry ----------------------------------------------------------------------------------------

@@ -4,6 +4,8 @@ It is read by a parser of Markdown that shares nothing with what writes it.
 """
 
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -205,6 +207,23 @@ def test_every_figure_is_a_file_with_a_text_alternative(tmp_path: Path) -> None:
     written = {str(f.relative_to(tmp_path)) for f in tmp_path.rglob("*") if f.is_file()}
     shown = {str(image.attrs["src"]) for image in images}
     assert written == {"report.md", "results.json"} | shown
+
+
+def test_figures_of_an_earlier_report_do_not_stay(tmp_path: Path) -> None:
+    write(real(), tmp_path)
+    users = tmp_path / "figures" / "figure-mine.svg"
+    users.write_text("mine")
+    write(report((scene(),)), tmp_path)
+    assert list((tmp_path / "figures").iterdir()) == [users]
+
+
+def test_a_proof_is_written_without_matplotlib() -> None:
+    code = (
+        "import sys; from reports.markdown import render;"
+        "from tests.unit.test_report_page import REPORTS; render(REPORTS['proof only']());"
+        "assert not {'matplotlib', 'reports.figures'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 def test_the_same_report_gives_the_same_text() -> None:
