@@ -131,7 +131,8 @@ def run_latex(run: "RunResult") -> str:
 def _number(text: str) -> str:
     """`-1.2e-05` → −1.2 · 10⁻⁵."""
     mantissa, _, exponent = text.lower().partition("e")
-    return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else mantissa
+    power = int(exponent or 0)
+    return rf"{mantissa} \cdot 10^{{{power}}}" if power else mantissa
 
 
 # -- separations ----------------------------------------------------------------------------------
