@@ -167,6 +167,19 @@ def table(claim: ClaimView, *, name: str) -> Plot | None:
     """lg MSE as printed and as computed; None where fewer than two step sizes can be drawn."""
     from reports import figures
 
+    source = claim.result.source
+    printed, lines = rows_of(claim)
+    if len(printed.points) < 2 or not lines:
+        return None
+    lead = f"{source}: lg MSE against the step size h, printed and computed"
+    svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
+    return Plot(svg, f"{lead}.", _gap(printed, lines))
+
+
+def rows_of(claim: ClaimView) -> "tuple[Line, list[Line]]":
+    """The printed row, and the computed ones of which two step sizes and more can be drawn."""
+    from reports import figures
+
     def line(label: str, cells: Sequence[str]) -> "Line":
         known = [
             (h, float(cell))
@@ -175,15 +188,9 @@ def table(claim: ClaimView, *, name: str) -> Plot | None:
         ]
         return figures.Line(label.replace("-", "−"), tuple(known))
 
-    source = claim.result.source
-    printed = line(f"printed: {source}", claim.printed)
-    lines = [line(row[0], row[1:]) for row in claim.computed]
-    lines = [each for each in lines if len(each.points) > 1]
-    if len(printed.points) < 2 or not lines:
-        return None
-    lead = f"{source}: lg MSE against the step size h, printed and computed"
-    svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
-    return Plot(svg, f"{lead}.", _gap(printed, lines))
+    computed = [line(row[0], row[1:]) for row in claim.computed]
+    printed = line(f"printed: {claim.result.source}", claim.printed)
+    return printed, [each for each in computed if len(each.points) > 1]
 
 
 def _gap(printed: "Line", lines: Sequence["Line"]) -> str:

@@ -143,18 +143,13 @@ def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[Plot]:
     """The drawing, and with it matplotlib, is imported only where there is a map."""
     if not maps:
         return
-    from reports.stability_figure import Plane, stability_plane
+    from reports.stability_figure import plane_of, stability_plane
 
     for index, over in enumerate(maps):
         lead = f"Stability of {over.scheme} over the step size h and {over.parameter}"
-        plane = Plane(
-            over.parameter,
-            over.values,
-            over.step_sizes,
-            [[cell.kind for cell in row] for row in over.cells],
-            over.linear,
+        svg = stability_plane(
+            plane_of(over), name=f"stability-{index}-of-{anchor}", label=f"{lead}."
         )
-        svg = stability_plane(plane, name=f"stability-{index}-of-{anchor}", label=f"{lead}.")
         yield Plot(svg, f"{lead}.", _caption(over))
 
 

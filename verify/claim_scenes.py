@@ -118,9 +118,8 @@ def _check_flows(claim: FlowClaim, name: str, scene: Scene) -> None:
     for source in claim.flows:
         if source not in known:
             allowed = ", ".join(known) or "none; give a [[flow]] its source"
-            raise InputError(
-                "flows", source, f"scene {name} has no such [[flow]]; it has {allowed}"
-            )
+            problem = f"scene {name} has no such [[flow]]; it has {allowed}"
+            raise InputError("flows", source, problem)
         maps = maps_of(scene, known[source])
         if claim.scheme not in maps:
             raise InputError("scheme", claim.scheme, f"is not in {source}: {', '.join(maps)}")

@@ -186,16 +186,26 @@ def plan(scene: str, as_json: bool) -> None:
 @cli.command()
 @click.argument("scene", metavar="SCENE")
 @click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
+@click.option(
+    "--format",
+    "formats",
+    type=click.Choice(["html", "md"]),
+    multiple=True,
+    default=["html"],
+    help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
+    "repository; given twice, both.",
+)
 @workers_option
 @json_option
-def report(scene: str, output: Path | None, workers: int | None, as_json: bool) -> None:
+def report(
+    scene: str, output: Path | None, formats: tuple[str, ...], workers: int | None, as_json: bool
+) -> None:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
     SCENE is a TOML file, `paper`, `stiff` or `extreme`.
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
-    from reports.page import write
     from verify.claim_plan import add_claims
     from verify.execute import Store
     from verify.plan import plan_scenes
@@ -205,6 +215,7 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
     writable(folder)
+    asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     with told(planned.tasks, folder / "kept") as done:
@@ -213,17 +224,28 @@ def report(scene: str, output: Path | None, workers: int | None, as_json: bool) 
             scenes,
             claims,
             Store(folder / "kept"),
-            command=f"verify report {scene} -o {folder.name}",
+            command=f"verify report {scene} -o {folder.name}{asked}",
             claim_scenes=claim_scenes,
             plan=planned,
             workers=workers,
             done=done,
         )
-    page = write(made, folder)
+    written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
     if as_json:
         show.print_json(made.model_dump(mode="json"))
     else:
-        show.print_report(made, page)
+        show.print_report(made, *written)
+
+
+def _writer(name: str) -> Any:
+    """What writes a report in that format; only what is asked for is imported."""
+    if name == "md":
+        from reports.markdown import write as write_markdown
+
+        return write_markdown
+    from reports.page import write as write_page
+
+    return write_page
 
 
 # -- entry ----------------------------------------------------------------------------------------

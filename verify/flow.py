@@ -37,8 +37,8 @@ _SHOWN = 12  # significant digits at most
 _LOST = 7  # digits
 # Of the region where the map changes area, and where it does not, and of the outlines inside it.
 _CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
-_UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**10))
-_DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**7))
+_UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
+_DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ _MORE = 1.5  # the arc between two points may be farther from its chord than its
 def dense(
     panels: Sequence[tuple[np.ndarray, np.ndarray]], points: int = _MOST_POINTS
 ) -> tuple[np.ndarray, float]:
-    """A closed curve's points (n, 2), about so many, from its panels' nodes, and how far it is from its chords.
+    """A closed curve's points (n, 2), about so many, and how far it is from its chords at most.
 
-    The distance is an estimate, by the points midway between those.
+    From the nodes of its panels. The distance is an estimate, by points midway between those.
     """
     least, most = _BETWEEN
     between = min(most, max(least, points // len(panels)))

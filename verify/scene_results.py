@@ -68,3 +68,8 @@ class Report(Frozen):
     scenes: tuple[SceneResult, ...]
     left_out: tuple[tuple[str, str], ...]
     provenance: Provenance
+
+    def _repr_html_(self) -> str:
+        from verify.notebook import report_html
+
+        return report_html(self)
