@@ -15,8 +15,8 @@ from markupsafe import Markup, escape
 
 from reports import markdown_tables, mathml, typography
 from reports.claim_view import ClaimView
-from reports.markdown_text import Markdown, escaped, markdown, table
 from reports.first_screen import SIGNS
+from reports.markdown_text import Markdown, escaped, markdown, table
 from reports.page import DATA
 from reports.plots import Plot
 from reports.views import page_view
