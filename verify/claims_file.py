@@ -14,7 +14,7 @@
     kind = "order"
     order = 3
 
-See `verify.claims` for the kinds, and `verify.claim_scenes` for what a claim may speak of. A scene
+See `verify.paper_figures` for `[[figure]]`, `verify.claims` for the kinds, and `verify.claim_scenes` for what a claim may speak of. A scene
 that a claim names is a `[[scene]]` of this file, or the file of that name beside it.
 """
 
@@ -44,10 +44,11 @@ from verify.every_claims import read_every_formula
 from verify.exact import text
 from verify.exact_claims import read_formulas
 from verify.growth_claims import growth_tasks
+from verify.paper_figures import PaperFigure
 from verify.scene import Scene, load_scene, one_line, read_toml, scene_from
 from verify.toml_lines import Lines, lines_of
 
-_ROOT = ("title", "defaults", "scene", "claim")
+_ROOT = ("title", "defaults", "scene", "claim", "figure")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
 _GROUPS = (
     SUBJECT_KEYS,
@@ -68,6 +69,7 @@ class ClaimsFile:
     title: str
     claims: list[Claim] = field(default_factory=list)
     scenes: dict[str, Scene] = field(default_factory=dict)
+    figures: list[PaperFigure] = field(default_factory=list)
     lines: Lines = field(default_factory=lambda: Lines({}))
 
     def located(self, index: int, claim: str, error: InputError) -> InputError:
@@ -112,7 +114,27 @@ def load_claims(path: Path) -> ClaimsFile:
             raise found.located(index, name, one_line(error, f"claim {name}")) from None
         except InputError as error:
             raise found.located(index, name, error) from None
+    _add_figures(found, data.get("figure", []), scenes)
     return found
+
+
+def _add_figures(file: ClaimsFile, tables: Any, scenes: "_Scenes") -> None:
+    """The figures to be made again, after the claims that they speak of."""
+    if not isinstance(tables, list):
+        raise InputError(f"{file.name}: figure", tables, "write [[figure]] tables")
+    ids = {claim.id for claim in file.claims}
+    for index, table in enumerate(tables):
+        where = f"{file.name}:{file.lines.of('figure', index)}: figure"
+        try:
+            figure = PaperFigure.model_validate(table)
+            if figure.label in {other.label for other in file.figures}:
+                raise InputError("label", figure.label, "stands twice")
+            figure.check(scenes.get(figure.scene), ids)
+        except ValidationError as error:
+            raise one_line(error, where) from None
+        except InputError as error:
+            raise InputError(f"{where}: {error.name}", error.value, error.problem) from None
+        file.figures.append(figure)
 
 
 def _defaults(file: ClaimsFile, table: Any) -> dict[str, Any]:

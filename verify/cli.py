@@ -226,6 +226,7 @@ def report(
             Store(folder / "kept"),
             command=f"verify report {scene} -o {folder.name}{asked}",
             claim_scenes=claim_scenes,
+            figures=file.figures if file else (),
             plan=planned,
             workers=workers,
             done=done,

@@ -35,6 +35,7 @@ _FLOAT_DIGITS = 17
 _DRAWN_POINTS = 20_000  # of a curve before it is thinned
 _SHOWN = 12  # significant digits at most
 _LOST = 7  # digits
+_SAFETY = 1.01  # for what lies between the points of dense curves
 # Of the region where the map changes area, and where it does not, and of the outlines inside it.
 _CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
 _UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
@@ -198,12 +199,25 @@ def _distance(
     images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
     greatest, bound = 0.0, 0.0
     for each in carried:
-        exact, exact_sagitta = dense([next(images) for _ in each.before])
-        own, own_sagitta = dense(each.after)
-        found = hausdorff([own], [exact], own_sagitta, exact_sagitta)
-        if found.value >= greatest:
-            greatest, bound = found.value, found.bound + float(plane.radius or 0)
+        true = [next(images) for _ in each.before]
+        found, error = _apart(each.after, true)
+        if found >= greatest:
+            greatest, bound = found, error + float(plane.radius or 0)
     return {
         "distance": _known(Fraction(greatest), Fraction(bound)),
         "distance_error": decimal(Fraction(bound), 2),
     }
+
+
+_Nodes = Sequence[tuple[np.ndarray, np.ndarray]]
+
+
+def _apart(own: _Nodes, exact: _Nodes) -> tuple[float, float]:
+    """The Hausdorff distance of two curves with its error, from the nodes of their panels.
+
+    It is at most the greatest distance of points that come from one and the same point.
+    """
+    (one, sagitta), (other, other_sagitta) = dense(own), dense(exact)
+    found = hausdorff([one], [other], sagitta, other_sagitta)
+    most = float(np.hypot(*(one - other).T).max()) * _SAFETY
+    return min(found.value, most), min(found.bound, max(most - found.value, found.value))

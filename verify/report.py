@@ -16,6 +16,7 @@ from verify.findings import Findings
 from verify.flow_findings import flows_of
 from verify.keeping import versions
 from verify.plan import plan_scenes, series_task
+from verify.paper_figures import PaperFigure
 from verify.planned import Plan
 from verify.results import EveryResult, GrowthLawResult, RunResult, SeparationGrid
 from verify.scene import Scene
@@ -35,6 +36,7 @@ def make_report(
     *,
     command: str,
     claim_scenes: Mapping[str, Scene] | None = None,
+    figures: Sequence[PaperFigure] = (),
     plan: Plan | None = None,
     workers: int | None = None,
     done: Done | None = None,
@@ -42,6 +44,7 @@ def make_report(
     """Compute what the scenes and claims need, and judge.
 
     A claim speaks of one of the scenes, or of `claim_scenes`, which the report does not show.
+    `figures` are passed on to what makes a page.
     """
     begun = time.perf_counter()
     plan = plan_scenes(list(scenes)) if plan is None else plan
@@ -57,6 +60,7 @@ def make_report(
         title=title,
         claims=tuple(check_claims(claims, of_claims)),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
+        figures=tuple(figures),
         left_out=tuple(plan.left_out),
         provenance=Provenance(
             command=command,

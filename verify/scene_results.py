@@ -1,6 +1,7 @@
 """What was found for a scene, and a whole report: results of all kinds put together."""
 
 from verify.flow_results import FlowResult
+from verify.paper_figures import PaperFigure
 from verify.results import (
     ClaimResult,
     CriterionResult,
@@ -61,11 +62,12 @@ class Provenance(Frozen):
 
 
 class Report(Frozen):
-    """A whole report; its JSON is `results.json`."""
+    """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again."""
 
     title: str
     claims: tuple[ClaimResult, ...]
     scenes: tuple[SceneResult, ...]
+    figures: tuple[PaperFigure, ...] = ()
     left_out: tuple[tuple[str, str], ...]
     provenance: Provenance
 
