@@ -14,8 +14,9 @@
     kind = "order"
     order = 3
 
-See `verify.paper_figures` for `[[figure]]`, `verify.claims` for the kinds, and `verify.claim_scenes` for what a claim may speak of. A scene
-that a claim names is a `[[scene]]` of this file, or the file of that name beside it.
+See `verify.claims` for the kinds, `verify.claim_scenes` for what a claim may speak of, and
+`verify.paper_figures` for `[[figure]]`. A scene that a claim names is a `[[scene]]` of this file,
+or the file of that name beside it.
 """
 
 import re

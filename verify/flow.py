@@ -147,7 +147,7 @@ def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list
     return [
         CarriedOutline(
             name=each.outline.name,
-            area=_known(each.measured.area, each.measured.area * each.measured.error),
+            area=_known(each.measured.area, abs(each.measured.area) * each.measured.error),
             area_change=_known(each.measured.change, each.measured.error),
             probe_error=decimal(each.measured.error, 2),
             nodes=each.measured.nodes,
@@ -175,10 +175,13 @@ def _known(value: Fraction, error: Fraction) -> str:
 
 
 def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, Any]:
-    centre = task.shape.centre
-    found: Mean = RegionMean(hamiltonian, task.map, task.step_size, task.steps).of(
-        region.outline, (float(centre.q), float(centre.p))
-    )
+    """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
+    x, y = (np.concatenate([z[i] for z in region.before]).mean() for i in (0, 1))
+    made = RegionMean(hamiltonian, task.map, task.step_size, task.steps)
+    try:
+        found: Mean = made.of(region.outline, (float(x), float(y)))
+    except LeftError:
+        return {}
     error = Fraction(found.error)
     value = Fraction(found.value)
     agree = abs(value - region.measured.change) <= error + region.measured.error

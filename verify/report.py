@@ -15,8 +15,8 @@ from verify.execute import Done, Store, execute
 from verify.findings import Findings
 from verify.flow_findings import flows_of
 from verify.keeping import versions
-from verify.plan import plan_scenes, series_task
 from verify.paper_figures import PaperFigure
+from verify.plan import plan_scenes, series_task
 from verify.planned import Plan
 from verify.results import EveryResult, GrowthLawResult, RunResult, SeparationGrid
 from verify.scene import Scene

@@ -3,12 +3,14 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from verify.generic import RungeKutta, StageEquations
+from verify.generic import RungeKutta
 from verify.kernel import Kernel
 from verify.lowering import Lowering
 from verify.proof.splitting_conditions import Splitting
 from verify.scheme import Scheme
 from verify.work_precision_results import CostResult
+
+_CALL = "call "  # before a function's name, among the kinds of operations
 
 
 def cost(kernel: Kernel, scheme: Scheme) -> CostResult:
@@ -17,40 +19,32 @@ def cost(kernel: Kernel, scheme: Scheme) -> CostResult:
     Adding the increments to p and q counts; a change of sign does not.
     """
     lowering, roots = kernel.lowering, [kernel.outputs["dp"], kernel.outputs["dq"]]
-    counted = _counted(lowering, roots, added=2)
-    loops = lowering.loops(lowering.live(roots))
-    turns = [
-        _counted(lowering.inner(loop), loop.updates, added=len(loop.updates)) for loop in loops
-    ]
-    turn = None if not turns else _sum(turns)
-    return counted.model_copy(update={"gradient": gradient(scheme), "turn": turn})
+    turn: Counter[str] = Counter()
+    for loop in lowering.loops(lowering.live(roots)):
+        turn += _counted(lowering.inner(loop), loop.updates) + Counter(add=len(loop.updates))
+    counted = _counted(lowering, roots) + Counter(add=2)
+    return _result(counted, gradient(scheme), _result(turn, None, None) if turn else None)
 
 
-def _counted(lowering: Lowering, roots: Sequence[int], added: int) -> CostResult:
+def _counted(lowering: Lowering, roots: Sequence[int]) -> "Counter[str]":
+    """Operations and functions by their names."""
     program = lowering.program
     inside = [index for index in lowering.live(roots) if not program.static[index]]
-    kinds = Counter(program.ops[index].kind for index in inside)
-    called = (lowering.function(index) for index in inside)
-    functions = Counter(name for name in called if name)
-    return CostResult(
-        additions=kinds["add"] + kinds["sub"] + added,
-        multiplications=kinds["mul"],
-        divisions=kinds["inverse"],
-        functions=dict(sorted(functions.items())),
-        gradient=None,
-    )
+    called = [name for index in inside if (name := lowering.function(index))]
+    return Counter(program.ops[i].kind for i in inside) + Counter(f"{_CALL}{f}" for f in called)
 
 
-def _sum(parts: Sequence[CostResult]) -> CostResult:
-    functions: Counter[str] = Counter()
-    for part in parts:
-        functions.update(part.functions)
+def _result(
+    counted: "Counter[str]", gradient: dict[str, int] | None, turn: CostResult | None
+) -> CostResult:
+    functions = {n.removeprefix(_CALL): k for n, k in counted.items() if n.startswith(_CALL)}
     return CostResult(
-        additions=sum(part.additions for part in parts),
-        multiplications=sum(part.multiplications for part in parts),
-        divisions=sum(part.divisions for part in parts),
+        additions=counted["add"] + counted["sub"],
+        multiplications=counted["mul"],
+        divisions=counted["inverse"],
         functions=dict(sorted(functions.items())),
-        gradient=None,
+        gradient=gradient,
+        turn=turn,
     )
 
 
@@ -62,9 +56,4 @@ def gradient(scheme: Scheme) -> dict[str, int] | None:
     if isinstance(generic, Splitting):
         kinds = Counter(kind for kind, _ in generic.parts)
         return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
-    if isinstance(generic, StageEquations) and scheme.explicit:
-        return {
-            "H_p": sum(stage.drift != 0 for stage in generic.stages),
-            "H_q": sum(stage.kick != 0 for stage in generic.stages),
-        }
     return None
