@@ -60,19 +60,27 @@ def _print(name: str, result: "FlowResult") -> None:
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
     where = f"{result.shape} at (q, p) = ({q}, {p}), scale {result.scale}"
     click.echo(f"{title}{where}, h = {result.step_size}")
-    for image in result.images:
-        click.echo(f"  {image.map}, N = {image.steps}, t = {image.time}: {_told(image)}")
+    rows = [_HEAD, *map(_row, result.images)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row, image in zip(rows, (None, *result.images), strict=True):
+        line = "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
+        click.echo(f"  {line.rstrip()}")
+        if image is not None and image.problem:
+            click.echo(f"    {image.problem}")
 
 
-def _told(image: "FlowImage") -> str:
-    if image.problem:
-        return image.problem
-    parts = [f"area changes by {image.area_change} ± {image.probe_error}"]
-    if image.area_preserving:
-        parts = [f"area unchanged by proof; measured {image.area_change} ± {image.probe_error}"]
-    if image.mean_lambda is not None:
-        same = "the same" if image.agree else "NOT the same"
-        parts.append(f"mean Λ {image.mean_lambda} ± {image.mean_lambda_error}, {same}")
-    if image.distance is not None:
-        parts.append(f"{image.distance} ± {image.distance_error} from the exact flow")
-    return "; ".join(parts)
+_HEAD = ("map", "N", "t", "area changes by", "mean of Λ", "from the exact flow")
+
+
+def _row(image: "FlowImage") -> tuple[str, ...]:
+    change = _with_error(image.area_change, image.probe_error)
+    if image.area_preserving and change:
+        change = f"0, proved ({change})"
+    mean = _with_error(image.mean_lambda, image.mean_lambda_error)
+    mean += "" if image.agree is not False else "  NOT THE SAME"
+    distance = _with_error(image.distance, image.distance_error)
+    return image.map, str(image.steps), image.time, change, mean, distance
+
+
+def _with_error(value: str | None, error: str | None) -> str:
+    return "" if value is None else f"{value} ± {error}"
