@@ -51,6 +51,12 @@ class ClaimView:
     def computed(self) -> tuple[tuple[str, ...], ...]:
         return self.result.details[2:]
 
+    @property
+    def by_step_size(self) -> list[tuple[str, tuple[str, ...]]]:
+        """Each step size with what is printed for it and, in the order of `computed`, computed."""
+        columns = zip(self.printed, *(row[1:] for row in self.computed), strict=True)
+        return list(zip(self.step_sizes, columns, strict=True))
+
 
 def is_decimal(text: str) -> bool:
     try:

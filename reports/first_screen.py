@@ -93,10 +93,10 @@ def finding(report: Report, told: Refutation | None = None) -> str:
     proofs, judged = _proofs(report), _judged(report)
     if not proofs and not judged:
         return "The report holds no claim and no proof."
-    parts = [_finding_of_runs(judged)] if judged else []
+    sentences = [_finding_of_runs(judged)] if judged else []
     if proofs and (len(proofs) <= _FEW or not judged):
-        parts = [_finding_of_proofs(proofs), *parts]
-    return " ".join(parts)
+        sentences = [_finding_of_proofs(proofs), *sentences]
+    return " ".join(sentences)
 
 
 def _proofs(report: Report) -> list[ProofResult]:

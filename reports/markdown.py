@@ -4,19 +4,17 @@ The same views as the page's: nothing is said here that they do not say.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
-from itertools import groupby
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup, escape
+from jinja2 import Environment
 
-from reports import markdown_tables, mathml, typography
-from reports.claim_view import ClaimView
+from reports import markdown_tables
+from reports.environment import environment
 from reports.first_screen import SIGNS
-from reports.markdown_text import Markdown, escaped, markdown, table
+from reports.markdown_text import Markdown, escaped, in_html, markdown, table
 from reports.page import DATA
 from reports.plots import Plot
 from reports.views import page_view
@@ -25,24 +23,34 @@ from verify.scene_results import Report
 from verify.verdict import Verdict
 
 TEXT, FIGURES = "report.md", "figures"
+FIRST = "telling"  # where the first picture stands
 _OWN = re.compile(r"figure-[0-9]{2,}\.svg")  # the names of figures that `write` has written
 
 
 @dataclass
 class _Figures:
-    """The figures in the order in which the text shows them, each under the name of its file."""
+    """The figures in the order in which the text shows them, each under the name of its file.
 
+    `first` stands on the first screen and nowhere else.
+    """
+
+    first: Plot | None
     files: dict[str, str] = field(default_factory=dict)
 
-    def show(self, plot: Plot, *, captioned: bool = True) -> Markdown:
-        """The image, with its lead as the text alternative, and its caption."""
+    def image(self, plot: Plot) -> Markdown:
+        """The image, with its lead as the text alternative."""
         from reports.svg import document  # and with it matplotlib, where something is drawn
 
         path = f"{FIGURES}/figure-{len(self.files) + 1:02}.svg"
         self.files[path] = document([plot.svg])
-        image = f"![{escaped(plot.lead)}]({path})"
-        said = f"\n\n<b>{escaped(plot.lead)}</b> {markdown(plot.caption)}" if captioned else ""
-        return Markdown(f"{image}{said}")
+        return Markdown(f"![{escaped(plot.lead)}]({path})")
+
+    def show(self, plot: Plot) -> Markdown:
+        """The image with its caption, or where it stands already."""
+        if plot is self.first:
+            return Markdown(f"Picture: [{escaped(plot.lead)}](#{FIRST})")
+        lead, caption = escaped(plot.lead), markdown(plot.caption)
+        return Markdown(f"{self.image(plot)}\n\n<b>{lead}</b> {caption}")
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -63,20 +71,14 @@ def write(report: Report, folder: Path) -> Path:
 
 def render(report: Report) -> tuple[str, dict[str, str]]:
     """The whole text, and the SVG documents that it shows by the paths at which it does."""
-    figures = _Figures()
     page = page_view(report)
+    figures = _Figures(page.first.plot)
     text = (
         _environment()
         .get_template("report.md")
-        .render(page=page, signs=SIGNS, figure=figures.show, groups=tuple(_groups(page.claims)))
+        .render(page=page, signs=SIGNS, image=figures.image, figure=figures.show, first_id=FIRST)
     )
     return _spaced(text), figures.files
-
-
-def _groups(claims: tuple[ClaimView, ...]) -> Iterator[tuple[str, tuple[ClaimView, ...]]]:
-    """The claims in the order of their source, neighbours of one scene together."""
-    for title, own in groupby(claims, key=lambda claim: claim.scene_title):
-        yield title or "In general", tuple(own)
 
 
 def _spaced(text: str) -> str:
@@ -93,8 +95,13 @@ def _badge(verdict: Verdict) -> Markdown:
     return Markdown(f"{SIGNS[verdict][0]} <b>{verdict}</b>")
 
 
-def _link(claim: ClaimView) -> Markdown:
-    return Markdown(f"[{escaped(claim.result.source or claim.result.id)}](#{claim.anchor})")
+def _tally(counts: Iterable[tuple[Verdict, int]]) -> Markdown:
+    """Verdicts counted."""
+    return Markdown(", ".join(f"{SIGNS[v][0]} {n} {v.lower()}" for v, n in counts))
+
+
+def _link(name: str, anchor: str) -> Markdown:
+    return Markdown(f"[{escaped(name)}](#{anchor})")
 
 
 def _sentences(found: Iterable[object]) -> Markdown:
@@ -107,43 +114,12 @@ def _anchor(name: str) -> Markdown:
     return Markdown(f'<a id="{name}"></a>')
 
 
-def _summary(text: str) -> Markdown:
-    """What stands in a <summary>: HTML, in which Markdown's marks mean nothing."""
-    return Markdown(escape(" ".join(text.split())).replace("$", "<span>$</span>"))
-
-
-def _equation(left: str, text: str) -> Markup:
-    return mathml.equation(mathml.NAMED[left], text)
-
-
 @cache
 def _environment() -> Environment:
     # Not HTML, so nothing is escaped for it: `finalize` sets everything that an expression gives.
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates", encoding="utf-8"),
-        autoescape=False,  # noqa: S701 - see above
-        finalize=markdown,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    made = environment(autoescape=False, finalize=markdown)
+    made.filters.update(sentences=_sentences, summary=in_html)
+    made.globals.update(
+        anchor=_anchor, badge=_badge, tally=_tally, link=_link, table=table, tables=markdown_tables
     )
-    environment.filters.update(
-        prose=typography.prose,
-        sentence=typography.sentence,
-        sentences=_sentences,
-        number=typography.number,
-        whole=typography.whole,
-        listed=typography.listed,
-        name=mathml.name,
-        plain=mathml.plain,
-    )
-    environment.globals.update(
-        anchor=_anchor,
-        equation=_equation,
-        badge=_badge,
-        link=_link,
-        summary=_summary,
-        table=table,
-        tables=markdown_tables,
-    )
-    return environment
+    return made

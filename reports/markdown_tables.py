@@ -1,13 +1,13 @@
 """The views' tables as Markdown: one table an initial value or a scheme, since a Markdown table has
 no rows of headings inside."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from reports.claim_view import ClaimView, Contrast
+from reports.claim_view import ClaimView
 from reports.markdown_text import Markdown, escaped, table
 from reports.run_table import RunTable
-from reports.typography import cell, number, sentence
+from reports.typography import cell, sentence
 from verify.results import CriterionResult
 from verify.verdict import Verdict
 
@@ -16,13 +16,6 @@ if TYPE_CHECKING:
     from reports.separation_view import SeparationView
     from reports.stability_view import StabilityView
     from reports.work_precision_view import WorkPrecisionView
-
-
-def counted(
-    counts: Sequence[tuple[Verdict, int]], signs: Mapping[Verdict, tuple[str, str]]
-) -> list[tuple[str, ...]]:
-    """Each verdict with its sign, how many claims have it, and what it means."""
-    return [(f"{signs[v][0]} {v}", str(n), signs[v][1]) for v, n in counts]
 
 
 def criteria(
@@ -39,11 +32,10 @@ def details(claim: ClaimView) -> Markdown:
     return table(heads, [[cell(entry) for entry in row] for row in rows], "l")
 
 
-def contrasts(found: Sequence[Contrast]) -> Markdown:
-    rows = [
-        (c.step_size, number(c.printed), f"{number(c.least)} … {number(c.greatest)}") for c in found
-    ]
-    return table(("h", "printed", "computed"), rows)
+def printed_and_computed(claim: ClaimView) -> Markdown:
+    """A printed table: each printed number beside those computed for it."""
+    heads = ("h", "printed", *(cell(row[0]) for row in claim.computed))
+    return table(heads, [(h, *map(cell, entries)) for h, entries in claim.by_step_size])
 
 
 def runs(view: RunTable) -> Markdown:

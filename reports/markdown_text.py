@@ -7,8 +7,11 @@ same in a table, beside any letter and around any text.
 import re
 from collections.abc import Iterable, Sequence
 
+from markupsafe import escape
+
 from reports.markup import Node, tree
 from reports.tex import tex
+from reports.typography import prose
 
 _MARKS = re.compile(r"[\\`*_\[\]|~#]")
 _AT_THE_START = re.compile(
@@ -39,6 +42,24 @@ def escaped(text: str) -> Markdown:
     """The text in one line, with no character that means anything to Markdown or to HTML."""
     line = " ".join(re.split(r"[\s\x00-\x1f]+", text.replace("\u00a0", "\ue000"))).strip()
     return Markdown(_started(_quoted(line).replace("\ue000", "\u00a0")))
+
+
+def in_html(text: str) -> Markdown:
+    """A sentence as HTML, for a <summary>, in which Markdown's marks mean nothing.
+
+    A formula could not be set there: a text that holds one is given as it is.
+    """
+    set_out = tree(prose(text))
+    plain = "math" in {child.tag for child in set_out.children if isinstance(child, Node)}
+    return Markdown(_html(text if plain else set_out).strip())
+
+
+def _html(node: Node | str) -> str:
+    if isinstance(node, str):
+        return escape(re.sub(r"[\s\x00-\x1f]+", " ", node)).replace("$", "<span>$</span>")
+    inner = "".join(_html(child) for child in node.children)
+    kept = _KEPT.get(node.tag)
+    return f"<{kept}>{inner}</{kept}>" if kept else inner
 
 
 def _started(line: str) -> str:

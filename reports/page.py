@@ -5,17 +5,16 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
-from reports import mathml, typography
+from reports.environment import TEMPLATES, environment
 from reports.first_screen import SIGNS
 from reports.views import page_view
 from verify.keeping import write_atomically
 from verify.scene_results import Report
 
 PAGE, DATA = "index.html", "results.json"
-_TEMPLATES = Path(__file__).parent / "templates"
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -29,7 +28,7 @@ def write(report: Report, folder: Path) -> Path:
 
 def render(report: Report) -> str:
     """The whole page as text."""
-    script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
+    script = (TEMPLATES / "page.js").read_text(encoding="utf-8")
     return (
         _environment()
         .get_template("page.html")
@@ -44,29 +43,4 @@ def _digest(script: str) -> str:
 
 @cache
 def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES, encoding="utf-8"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=False,
-    )
-    environment.filters.update(
-        prose=typography.prose,
-        sentence=typography.sentence,
-        cell=typography.cell,
-        is_number=typography.is_number,
-        number=typography.number,
-        whole=typography.whole,
-        listed=typography.listed,
-        formula=mathml.formula,
-        name=mathml.name,
-        plain=mathml.plain,
-    )
-    environment.globals.update(equation=_equation)
-    return environment
-
-
-def _equation(left: str, text: str) -> Markup:
-    return mathml.equation(mathml.NAMED[left], text)
+    return environment()

@@ -79,7 +79,7 @@ def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
 
 def plot_table(claim: ClaimResult) -> Figure:
     """A table's lg MSE as it is printed and as it is computed, against the step size."""
-    view = ClaimView(claim, "", "", "")
+    view = ClaimView(claim, anchor="", scene_anchor="", scene_title="")
     printed, computed = rows_of(view) if view.is_table else (figures.Line("", ()), [])
     if len(printed.points) < 2 or not computed:
         raise InputError("claim", claim.id, "is no table with two step sizes to draw")

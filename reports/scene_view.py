@@ -9,7 +9,7 @@ from markupsafe import Markup
 from reports import mathml, plots
 from reports.plots import Plot
 from reports.run_table import RunTable, run_table
-from reports.typography import listed, whole
+from reports.typography import listed, prose, sentence, whole
 from verify.criteria import NAMES
 from verify.results import CriterionResult, EveryResult, ProofResult
 from verify.scene_results import SceneResult
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from reports.work_precision_view import WorkPrecisionView
 
 
+_LONGEST_POTENTIAL = 200  # characters of a G that stands in a sentence
+
+
 @dataclass(frozen=True)
 class SchemeView:
     proof: ProofResult
@@ -29,6 +32,7 @@ class SchemeView:
     matrix: Markup | None
     leading: Markup | None
     every: EveryResult | None  # what holds for every H
+    every_finding: Markup  # and that in sentences
     plots: tuple[Plot, ...]
     series: tuple[Plot, ...]
     runs: RunTable | None
@@ -79,6 +83,7 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         matrix=mathml.matrix(mathml.NAMED["J"], proof.jacobian) if proof.jacobian else None,
         leading=leading,
         every=every,
+        every_finding=_every_finding(every) if every else Markup(""),
         plots=tuple(plots.against_step_size(runs, scene, proof, name=anchor)),
         series=tuple(
             plots.over_time(run, name=f"time-{index}-of-{anchor}")
@@ -88,6 +93,20 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         separation=_separation(scene, proof.scheme, anchor),
         growth=_growth(scene, proof.scheme, anchor),
     )
+
+
+def _every_finding(every: EveryResult) -> Markup:
+    found = [sentence(every.reason)]
+    if every.formula:
+        found.append(sentence(f"It is {every.formula}"))
+    if every.telescopes:
+        found.append(Markup("Along an orbit it telescopes, for it is X·G with"))
+        if every.potential and len(every.potential) < _LONGEST_POTENTIAL:
+            found.append(prose(f"G = {every.potential}") + ":")
+        found.append(sentence(every.why))
+    elif every.telescopes is False:
+        found.append(Markup("It does not telescope: {}").format(sentence(every.why)))
+    return Markup(" ").join(found)
 
 
 def _separation(scene: SceneResult, scheme: str, anchor: str) -> "SeparationView | None":

@@ -5,7 +5,9 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from reports import plots
+from markupsafe import Markup
+
+from reports import plots, words
 from reports.claim_view import Anchors, ClaimView
 from reports.first_screen import FirstScreen, first_screen
 from reports.plots import Plot
@@ -38,10 +40,7 @@ class PageView:
     scenes: tuple[SceneView, ...]
     paper_figures: tuple[Plot, ...]
     kinds: tuple[tuple[Kind, str], ...]  # verdicts on runs that occur, and what they mean
-    ran: bool  # whether anything was run
-    separated: bool
-    grown: bool  # whether Λ was held against its growth law
-    timed: bool  # whether error stands against run time
+    terms: tuple[tuple[str, Markup], ...]  # those that its results need
 
     def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
         """Those with a claim on this scene."""
@@ -63,13 +62,7 @@ def page_view(report: Report) -> PageView:
         scenes=scenes,
         paper_figures=(),
         kinds=_kinds(scenes),
-        ran=any(
-            s.runs or s.series or s.separations or s.crossovers or s.work_precision
-            for s in report.scenes
-        ),
-        separated=any(s.separations or s.crossovers for s in report.scenes),
-        grown=any(s.growth_laws for s in report.scenes),
-        timed=any(s.work_precision for s in report.scenes),
+        terms=tuple(words.terms(report.scenes)),
     )
 
 

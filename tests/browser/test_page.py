@@ -181,7 +181,9 @@ CONTROLS: dict[str, tuple[str, bool, Callable[[Opened], list[str]]]] = {
     ),
     "a wide element": ("<div style='width: 3000px'>wide</div>", True, Opened.sideways),
     "a figure without size": ("<svg width='0' height='0'></svg>", True, Opened.without_size),
-    "a formula that is hidden": ("<math style='display: none'></math>", True, Opened.without_size),
+    "a formula that is hidden": (
+        "<math style='display: none'><mi>x</mi></math>", True, Opened.without_size,
+    ),
     "faint text": (
         "<p style='color: #aaa; background: #fff'>faint</p>", True, Opened.violations,
     ),

@@ -95,3 +95,8 @@ def test_a_source_stays_text_in_a_figure(source: str) -> None:
     first = figures(render(made.model_copy(update={"claims": claims})))[0]
     assert f"printed: {shown}" in [e.text for e in first.iter() if e.tag == "text"]
     assert first.get("aria-label", "").startswith(shown)
+
+
+def test_a_numbers_own_blanks_stay_in_legends_and_text_alternatives() -> None:
+    assert "\ufffd" not in page_of("real")
+    assert "q₀\xa0=\xa01, p₀\xa0=\xa00</text>" in page_of("real")

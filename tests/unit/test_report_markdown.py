@@ -6,7 +6,8 @@ It is read by a parser of Markdown that shares nothing with what writes it.
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -18,8 +19,12 @@ from markupsafe import Markup
 from reports import mathml
 from reports.markdown import render, write
 from reports.markdown_text import Markdown, escaped, markdown, table
+from reports.page import render as page_as_html
 from reports.views import page_view
+from tests.unit.made_growth import TWO
 from tests.unit.made_separations import CROSSING
+from tests.unit.made_stability import MAP, case
+from tests.unit.made_work import ladder, result
 from tests.unit.test_report_page import (
     EVIL,
     REPORTS,
@@ -158,7 +163,7 @@ def test_the_finding_and_every_claim_are_the_pages(name: str) -> None:
     made = REPORTS[name]()
     page = page_view(made)
     text, _ = render(made)
-    assert seen(text.split("\n")[2]) == wanted(page.finding.replace("\xa0", " "))
+    assert seen(text.split("\n")[2]) == wanted(page.first.finding.replace("\xa0", " "))
     ids = re.findall(r'<a id="([^"]+)"></a>', text)
     assert len(ids) == len(set(ids))
     assert {c.anchor for c in page.claims} <= set(ids)
@@ -166,7 +171,7 @@ def test_the_finding_and_every_claim_are_the_pages(name: str) -> None:
         target = str(token.attrs.get("href", ""))
         assert not target.startswith("#") or target[1:] in ids
     for c in page.claims:
-        assert f"<code>{c.result.id}</code></summary>" in text
+        assert seen(text).count(f" {c.result.id} · system: ") or not c.scene_anchor
 
 
 def test_its_numbers_are_those_of_the_runs() -> None:
@@ -177,11 +182,82 @@ def test_its_numbers_are_those_of_the_runs() -> None:
             assert bound.partition("e")[0] in text
 
 
-def test_refuted_claims_stand_before_all_claims() -> None:
-    text, _ = render(real())
-    heads = re.findall(r"^## (.*)$", text, re.MULTILINE)
-    assert heads[:3] == ["The most telling refutation: Table 9", "Refuted", "All claims"]
-    assert "Refuted" not in render(report((scene(),)))[0]
+def stability() -> Report:
+    return report((scene(stability=(case(),), stability_maps=(MAP,)),))
+
+
+def sections() -> Report:
+    told = claim(section="4.2 B", verdict=Verdict.REFUTED)
+    return report((scene(),), claims=(told, claim(id="b", section="4.1 A"), claim(id="c")))
+
+
+def everything_of_a_scheme() -> Report:
+    return report((scene(separations=(CROSSING,), growth_laws=(TWO,), runs=(run(),)),))
+
+
+SHOWN: dict[str, Callable[[], Report]] = {
+    **REPORTS,
+    "stability": stability,
+    "sections": sections,
+    "separation and growth": everything_of_a_scheme,
+    "work": lambda: report((scene(work_precision=result(ladder())),)),
+}
+
+
+def outline_of_the_page(made: Report) -> tuple[list[str], list[str]]:
+    """Headings and figures in their order."""
+    page = page_as_html(made)
+    heads = re.findall(r"(?s)<h[1-4][^>]*>(.*?)</h[1-4]>", page)
+    names = [seen(head.partition('<span class="tally">')[0]) for head in heads]
+    labels = re.findall(r'<svg[^>]* aria-label="([^"]*)"', page)
+    return names, [wanted(label) for label in labels]
+
+
+def outline_of_the_text(made: Report) -> tuple[list[str], list[str]]:
+    tokens = parsed(render(made)[0])
+    heads = [b for a, b in pairwise(tokens) if a.type == "heading_open"]
+    return [seen(t.content) for t in heads], [seen(t.content) for t in tokens if t.type == "image"]
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_it_shows_what_the_page_shows_in_the_same_order(name: str) -> None:
+    heads, figures = outline_of_the_page(SHOWN[name]())
+    own_heads, own_figures = outline_of_the_text(SHOWN[name]())
+    assert own_heads == heads
+    assert [f.rstrip(".") for f in own_figures] == [f.rstrip(".") for f in figures]
+
+
+def test_the_outlines_differ_where_the_reports_do() -> None:
+    assert outline_of_the_text(sections()) != outline_of_the_page(report((scene(),)))
+    swapped = real().model_copy(update={"scenes": (), "claims": real().claims})
+    assert outline_of_the_text(real()) != outline_of_the_page(swapped)
+
+
+def test_the_first_picture_stands_once_and_is_pointed_to() -> None:
+    text, figures = render(real())
+    told = page_view(real()).first.plot
+    assert told is not None
+    assert text.count(f"![{escaped(told.lead)}]") == 1
+    assert f"Picture: [{escaped(told.lead)}](#telling)" in text
+    assert len(figures) == text.count("![")
+
+
+def test_the_tiles_and_the_counts_of_a_section_are_the_pages() -> None:
+    text, _ = render(sections())
+    assert "- ✓ <b>2</b> proved: exact algebra shows it\n- ✗ <b>1</b> refuted: " in text
+    assert "### 4.2 B\n\n✗ 1 refuted\n" in text
+
+
+def test_a_claim_that_is_closed_shows_its_statement() -> None:
+    for statement, shown in (
+        ("ΔJ = O(h^n), *a*", "ΔJ = O(h<sup>n</sup>), *a*"),
+        ("It is 3*p**2*q.", "It is 3*p**2*q."),  # a formula cannot be set in a <summary>
+        (f"{EVIL} $x$", "&lt;script&gt;"),
+    ):
+        text, _ = render(report(claims=(claim(statement=statement),)))
+        (summary,) = re.findall(r"<summary>(.*)</summary>", text)
+        assert shown in summary
+        assert "<script" not in text
 
 
 def test_the_views_own_markup_is_set_and_not_shown() -> None:
@@ -198,7 +274,7 @@ def test_every_figure_is_a_file_with_a_text_alternative(tmp_path: Path) -> None:
     path = write(real(), tmp_path)
     assert path == tmp_path / "report.md"
     images = [t for t in parsed(path.read_text(encoding="utf-8")) if t.type == "image"]
-    assert len(images) == 5
+    assert len(images) == 4
     for image in images:
         assert image.content
         root = ElementTree.fromstring((tmp_path / str(image.attrs["src"])).read_text())  # noqa: S314
