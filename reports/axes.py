@@ -38,9 +38,31 @@ def grid_lines(axes: Any, which: str = "y") -> None:
 
 
 def decades(axis: Any, *, most: int = 7) -> None:
-    """Whole exponents of ten as ticks of an axis that shows logarithms."""
-    axis.set_major_locator(MaxNLocator(most, integer=True, min_n_ticks=2))
-    axis.set_major_formatter(FuncFormatter(lambda x, _: f"10{superscript(round(x))}"))
+    """Powers of ten as ticks of an axis that shows logarithms."""
+    axis.set_major_locator(_Decades(most, integer=True, min_n_ticks=2))
+    axis.set_major_formatter(FuncFormatter(_power_of_ten))
+
+
+class _Decades(MaxNLocator):
+    """Whole exponents; 1, 2 and 5 times powers of ten, or 1 … 9, where fewer than two are seen."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        low, high = min(vmin, vmax), max(vmin, vmax)
+        for mantissas in ((1,), (1, 2, 5), range(1, 10)):
+            whole = range(floor(low), floor(high) + 1)
+            places = [n + log10(m) for n in whole for m in mantissas]
+            seen = [x for x in places if low <= x <= high]
+            if len(seen) > 1:
+                return super().tick_values(vmin, vmax) if len(mantissas) == 1 else seen
+        return super().tick_values(vmin, vmax)
+
+
+def _power_of_ten(exponent: float, _: object) -> str:
+    """10ⁿ, or a mantissa with it."""
+    n = floor(exponent + 1e-9)
+    scale = f"10{superscript(n)}"
+    mantissa = f"{10 ** (exponent - n):.2g}"
+    return scale if mantissa == "1" else f"{mantissa}·{scale}"
 
 
 def whole_numbers(axis: Any) -> None:

@@ -1,23 +1,32 @@
 """A claim as the page shows it: its anchor, and its table's printed row where it has one."""
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
+from typing import TYPE_CHECKING
 
 from verify.results import ClaimResult
+
+if TYPE_CHECKING:
+    from reports.plots import Plot
 
 _PRINTED = "printed"  # how the printed row of a table claim's details begins
 
 
 @dataclass(frozen=True)
 class ClaimView:
-    """A claim with its place on the page; `row`: the table's printed row, where it is a table."""
+    """A claim with its place on the page; `plot`: its table's picture, where it is a table."""
 
     result: ClaimResult
     anchor: str
     scene_anchor: str
     scene_title: str
+    plot: "Plot | None" = None
+
+    @property
+    def name(self) -> str:
+        """What the page calls it."""
+        return self.result.source or self.result.id
 
     @property
     def is_table(self) -> bool:
@@ -41,30 +50,6 @@ class ClaimView:
     @property
     def computed(self) -> tuple[tuple[str, ...], ...]:
         return self.result.details[2:]
-
-    @property
-    def named(self) -> str:
-        """What the evidence says the printed row is, where it says so."""
-        match = re.search(r"the printed row is ([^;]+)", self.result.evidence)
-        return match[0] if match else ""
-
-
-@dataclass(frozen=True)
-class Contrast:
-    """A printed number beside the least and greatest computed for it."""
-
-    step_size: str
-    printed: str
-    least: str
-    greatest: str
-
-
-def contrasts(claim: ClaimView) -> Iterator[Contrast]:
-    """Each printed number with the range computed for it over the table's rows."""
-    for column, (h, printed) in enumerate(zip(claim.step_sizes, claim.printed, strict=True), 1):
-        known = [row[column] for row in claim.computed if is_decimal(row[column])]
-        if known:
-            yield Contrast(h, printed, min(known, key=Decimal), max(known, key=Decimal))
 
 
 def is_decimal(text: str) -> bool:

@@ -6,11 +6,15 @@ from math import isfinite
 from typing import Any
 
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
 from reports.axes import decades, grid_lines, line_style
 from reports.figures import Line, canvas, plot_line
 from reports.logarithm import lg
+from reports.separation_caption import WAYS, short, ways_of
 from reports.svg import INK, drawn
+from reports.typography import NBSP
+from verify.results import SeparationGrid
 
 _HEIGHT = 350
 _LINE = 0.075  # of the axes: the height of one line of text
@@ -31,26 +35,37 @@ def line(label: str, points: Sequence[tuple[str, str]]) -> Line:
     return Line(label, tuple((h, place) for h, place in placed if isfinite(place)))
 
 
+def contents(grid: SeparationGrid) -> tuple[list[Line], list[Mark]]:
+    """The lines of two points and more, and the crossovers that were found."""
+    lines = [line(label, points) for label, points in ways_of(grid)]
+    marks = [
+        Mark(found.step_size, f"h* ≈{NBSP}{short(found.step_size)}, {of}")
+        for way, of in WAYS.items()
+        if (found := getattr(grid, way)).step_size is not None
+    ]
+    return [each for each in lines if len(each.points) > 1], marks
+
+
 def truncation_against_rounding(
     plotted: Sequence[Line], marks: Sequence[Mark], *, name: str, label: str
 ) -> Markup:
     """The lines on logarithmic axes; a dashed vertical line, labelled above them, for each mark."""
+    return drawn(lambda: draw_truncation_against_rounding(plotted, marks), name=name, label=label)
 
-    def draw() -> Any:
-        figure, axes = canvas(_HEIGHT)
-        for index, each in enumerate(plotted):
-            plot_line(axes, each, line_style(index, len(plotted)))
-        axes.margins(x=0.05, y=0.06)
-        _mark(axes, marks)
-        grid_lines(axes)
-        decades(axes.xaxis, most=7)
-        decades(axes.yaxis)
-        axes.set_xlabel("step size h (logarithmic)")
-        axes.set_title("greatest |part of Λ|")
-        figure.legend(loc="outside lower center", ncols=1, handlelength=3.2)
-        return figure
 
-    return drawn(draw, name=name, label=label)
+def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Mark]) -> Figure:
+    figure, axes = canvas(_HEIGHT)
+    for index, each in enumerate(plotted):
+        plot_line(axes, each, line_style(index, len(plotted)))
+    axes.margins(x=0.05, y=0.06)
+    _mark(axes, marks)
+    grid_lines(axes)
+    decades(axes.xaxis, most=7)
+    decades(axes.yaxis)
+    axes.set_xlabel("step size h (logarithmic)")
+    axes.set_title("greatest |part of Λ|")
+    figure.legend(loc="outside lower center", ncols=1, handlelength=3.2)
+    return figure
 
 
 def _mark(axes: Any, marks: Sequence[Mark]) -> None:

@@ -24,6 +24,7 @@ from reports.axes import (
     time_axis,
     whole_numbers,
 )
+from reports.drawing import Drawing
 from reports.logarithm import lg
 from reports.svg import INK, SERIES, drawn
 from reports.typography import start, superscript
@@ -71,40 +72,40 @@ def against_step_size(
     plotted: Sequence[Line], *, quantity: str, guides: Sequence[int], name: str, label: str
 ) -> Markup:
     """The lines on logarithmic axes, with a grey guide for each slope in `guides`."""
+    return drawn(lambda: draw_against_step_size(plotted, quantity, guides), name=name, label=label)
 
-    def draw() -> Figure:
-        figure, axes = canvas(330 if len(plotted) <= MOST_STYLES else 280)
-        for index, line in enumerate(plotted):
-            plot_line(axes, line, line_style(index, len(plotted)))
-        _guides(axes, plotted, guides)
-        _finish(figure, axes, plotted)
-        decades(axes.yaxis)
-        axes.set_title(quantity)
-        return figure
 
-    return drawn(draw, name=name, label=label)
+def draw_against_step_size(plotted: Sequence[Line], quantity: str, guides: Sequence[int]) -> Figure:
+    figure, axes = canvas(330 if len(plotted) <= MOST_STYLES else 280)
+    for index, line in enumerate(plotted):
+        plot_line(axes, line, line_style(index, len(plotted)))
+    _guides(axes, plotted, guides)
+    _finish(figure, axes, plotted)
+    decades(axes.yaxis)
+    axes.set_title(quantity)
+    return figure
 
 
 def printed_against_computed(
     computed: Sequence[Line], printed: Line, *, name: str, label: str
 ) -> Markup:
     """lg MSE as it is printed and as it is computed."""
+    return drawn(lambda: draw_printed_against_computed(computed, printed), name=name, label=label)
 
-    def draw() -> Figure:
-        figure, axes = canvas(350)
-        plot_line(axes, printed, {"color": INK, "linewidth": 3})
-        for index, line in enumerate(computed):
-            plot_line(axes, line, line_style(index, len(computed)))
-        _finish(figure, axes, [printed, *computed])
-        whole_numbers(axes.yaxis)
-        axes.set_title("lg MSE")
-        return figure
 
-    return drawn(draw, name=name, label=label)
+def draw_printed_against_computed(computed: Sequence[Line], printed: Line) -> Figure:
+    figure, axes = canvas(350)
+    plot_line(axes, printed, {"color": INK, "linewidth": 3})
+    for index, line in enumerate(computed):
+        plot_line(axes, line, line_style(index, len(computed)))
+    _finish(figure, axes, [printed, *computed])
+    whole_numbers(axes.yaxis)
+    axes.set_title("lg MSE")
+    return figure
 
 
 def canvas(height: float) -> tuple[Figure, Any]:
-    figure = Figure(figsize=(_WIDTH * _POINT, height * _POINT), layout="constrained")
+    figure = Drawing(figsize=(_WIDTH * _POINT, height * _POINT), layout="constrained")
     return figure, figure.add_subplot()
 
 
@@ -154,26 +155,24 @@ def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
 
 def over_time(run: RunResult, *, name: str, label: str) -> Markup:
     """det J, ΔJ and Λ over t, each as the band between its least and greatest in a bucket."""
+    return drawn(lambda: draw_over_time(run), name=name, label=label)
+
+
+def draw_over_time(run: RunResult) -> Figure:
     points = merged(run.series)
     h = float(Fraction(run.step_size))
     edges = [(points[0].first - 1) * h, *(point.last * h for point in points)]
     delta_j = [_band(p.delta_j) for p in points]
     lam = [_band(p.lam) for p in points]
     panels = [("det J", delta_j, True), ("ΔJ", delta_j, False), ("Λ", lam, False)]
-
-    def draw() -> Figure:
-        figure = Figure(figsize=(_WIDTH * _POINT, 400 * _POINT), layout="constrained")
-        all_axes = figure.subplots(len(panels), 1, sharex=True)
-        for index, (axes, (title, band, around_one)) in enumerate(
-            zip(all_axes, panels, strict=True)
-        ):
-            _panel(axes, edges, band, SERIES[2 if title == "Λ" else 0], around_one)
-            axes.set_title(f"({'abc'[index]}) {title}")
-        axes.set_xlim(edges[0], edges[-1])
-        time_axis(axes)
-        return figure
-
-    return drawn(draw, name=name, label=label)
+    figure = Drawing(figsize=(_WIDTH * _POINT, 400 * _POINT), layout="constrained")
+    all_axes = figure.subplots(len(panels), 1, sharex=True)
+    for index, (axes, (title, band, around_one)) in enumerate(zip(all_axes, panels, strict=True)):
+        _panel(axes, edges, band, SERIES[2 if title == "Λ" else 0], around_one)
+        axes.set_title(f"({'abc'[index]}) {title}")
+    axes.set_xlim(edges[0], edges[-1])
+    time_axis(axes)
+    return figure
 
 
 def _band(ends: tuple[str, str]) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from reports.axes import MOST_STYLES, decades, grid_lines, line_style, step_sizes
+from reports.drawing import Drawing
 from reports.figures import Line, plot_line
 from reports.logarithm import lg
 from reports.svg import INK, drawn
@@ -29,30 +30,28 @@ class Orbit:
 
 def predicted_against_measured(orbits: Sequence[Orbit], *, name: str, label: str) -> Markup:
     """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
+    return drawn(lambda: draw_predicted_against_measured(orbits), name=name, label=label)
 
-    def draw() -> Figure:
-        figure = Figure(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
-        above, below = figure.subplots(2, 1, sharex=True)
-        for index, orbit in enumerate(orbits):
-            style = line_style(index, len(orbits))
-            _prediction(above, orbit, style)
-            plot_line(below, orbit.difference, style)
-        _guide(below, [orbit.difference for orbit in orbits])
-        for axes in (above, below):
-            grid_lines(axes)
-            axes.margins(y=0.08)
-            decades(axes.yaxis, most=6)
-        step_sizes(below, [h for orbit in orbits for h, _ in orbit.measured.points])
-        above.set_title("(a) |Λ|: points measured, lines predicted")
-        below.set_title("(b) |predicted − measured| / |measured|")
-        if len(orbits) <= MOST_STYLES:
-            handles, labels = above.get_legend_handles_labels()
-            figure.legend(
-                handles, labels, loc="outside lower center", ncols=_LEGEND, handlelength=3.2
-            )
-        return figure
 
-    return drawn(draw, name=name, label=label)
+def draw_predicted_against_measured(orbits: Sequence[Orbit]) -> Figure:
+    figure = Drawing(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    for index, orbit in enumerate(orbits):
+        style = line_style(index, len(orbits))
+        _prediction(above, orbit, style)
+        plot_line(below, orbit.difference, style)
+    _guide(below, [orbit.difference for orbit in orbits])
+    for axes in (above, below):
+        grid_lines(axes)
+        axes.margins(y=0.08)
+        decades(axes.yaxis, most=6)
+    step_sizes(below, [h for orbit in orbits for h, _ in orbit.measured.points])
+    above.set_title("(a) |Λ|: points measured, lines predicted")
+    below.set_title("(b) |predicted − measured| / |measured|")
+    if len(orbits) <= MOST_STYLES:
+        handles, labels = above.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=_LEGEND, handlelength=3.2)
+    return figure
 
 
 def _prediction(axes: Any, orbit: Orbit, style: dict[str, Any]) -> None:

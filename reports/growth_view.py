@@ -167,9 +167,15 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     from reports import growth_figure
 
     lead = "Λ as the growth law predicts it and as measured, against the step size h"
-    orbits = [_orbit(each) for each in drawable]
-    svg = growth_figure.predicted_against_measured(orbits, name=f"growth-of-{name}", label=lead)
+    svg = growth_figure.predicted_against_measured(
+        orbits(laws), name=f"growth-of-{name}", label=lead
+    )
     yield Plot(svg, f"{lead}.", _caption(drawable[0].law))
+
+
+def orbits(laws: Sequence[GrowthLawResult]) -> "list[Orbit]":
+    """Those along which two step sizes and more can be drawn."""
+    return [_orbit(each) for each in laws if len(_drawn(each)) > 1]
 
 
 def _caption(law: AverageResult) -> str:

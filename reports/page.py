@@ -1,5 +1,7 @@
 """A Report → one self-contained page, and the same results as JSON beside it."""
 
+import base64
+import hashlib
 from functools import cache
 from pathlib import Path
 
@@ -7,21 +9,13 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from reports import mathml, typography
+from reports.first_screen import SIGNS
 from reports.views import page_view
 from verify.keeping import write_atomically
 from verify.scene_results import Report
-from verify.verdict import Verdict
 
 PAGE, DATA = "index.html", "results.json"
-
-# Each verdict's sign and meaning; the sign and the word say it, the colour only helps.
-_SIGNS = {
-    Verdict.PROVED: ("✓", "exact algebra shows it"),
-    Verdict.ENCLOSED: ("⊂", "a rigorous numeric enclosure shows it; its error bound is certain"),
-    Verdict.MEASURED: ("≈", "numbers show it; their error bounds are estimates, not certificates"),
-    Verdict.REFUTED: ("✗", "a counterexample, or the proof of the contrary, contradicts it"),
-    Verdict.UNDECIDED: ("?", "neither shown nor contradicted by what was computed"),
-}
+_TEMPLATES = Path(__file__).parent / "templates"
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -35,13 +29,23 @@ def write(report: Report, folder: Path) -> Path:
 
 def render(report: Report) -> str:
     """The whole page as text."""
-    return _environment().get_template("page.html").render(page=page_view(report), signs=_SIGNS)
+    script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
+    return (
+        _environment()
+        .get_template("page.html")
+        .render(page=page_view(report), signs=SIGNS, script=Markup(script), digest=_digest(script))  # noqa: S704
+    )
+
+
+def _digest(script: str) -> str:
+    """What the page's policy names its one script by: no other may run."""
+    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
 
 
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates", encoding="utf-8"),
+        loader=FileSystemLoader(_TEMPLATES, encoding="utf-8"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

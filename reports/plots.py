@@ -167,6 +167,19 @@ def table(claim: ClaimView, *, name: str) -> Plot | None:
     """lg MSE as printed and as computed; None where fewer than two step sizes can be drawn."""
     from reports import figures
 
+    source = claim.result.source
+    printed, lines = rows_of(claim)
+    if len(printed.points) < 2 or not lines:
+        return None
+    lead = f"{source}: lg MSE against the step size h, printed and computed"
+    svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
+    return Plot(svg, f"{lead}.", _gap(printed, lines))
+
+
+def rows_of(claim: ClaimView) -> "tuple[Line, list[Line]]":
+    """The printed row, and the computed ones of which two step sizes and more can be drawn."""
+    from reports import figures
+
     def line(label: str, cells: Sequence[str]) -> "Line":
         known = [
             (h, float(cell))
@@ -175,16 +188,9 @@ def table(claim: ClaimView, *, name: str) -> Plot | None:
         ]
         return figures.Line(label.replace("-", "−"), tuple(known))
 
-    source = claim.result.source
-    printed = line(f"printed: {source}", claim.printed)
-    lines = [line(row[0], row[1:]) for row in claim.computed]
-    lines = [each for each in lines if len(each.points) > 1]
-    if len(printed.points) < 2 or not lines:
-        return None
-    lead = f"{source}: lg MSE against the step size h, printed and computed"
-    caption = " ".join([_gap(printed, lines), _named(claim)])
-    svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
-    return Plot(svg, f"{lead}.", caption.strip())
+    computed = [line(row[0], row[1:]) for row in claim.computed]
+    printed = line(f"printed: {claim.result.source}", claim.printed)
+    return printed, [each for each in computed if len(each.points) > 1]
 
 
 def _gap(printed: "Line", lines: Sequence["Line"]) -> str:
@@ -197,7 +203,3 @@ def _gap(printed: "Line", lines: Sequence["Line"]) -> str:
         least, most = sorted((abs(low), abs(high)))
         return f"{row}; what was computed lies {least:.1f} to {most:.1f} decades {side} it."
     return f"{row}; what was computed differs from it by up to {max(-low, high):.1f} decades."
-
-
-def _named(claim: ClaimView) -> str:
-    return f"{claim.named[0].upper()}{claim.named[1:]}." if claim.named else ""

@@ -1,6 +1,5 @@
 """A scene as the page shows it: its schemes, each with proof, criteria, figures and runs."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -8,7 +7,6 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from reports import mathml, plots
-from reports.claim_view import ClaimView
 from reports.plots import Plot
 from reports.run_table import RunTable, run_table
 from reports.typography import listed, whole
@@ -39,36 +37,23 @@ class SchemeView:
 
 
 @dataclass(frozen=True)
-class TableView:
-    """A table of the paper: the claim that holds it, and the picture of it."""
-
-    claim: ClaimView
-    plot: Plot | None
-
-
-@dataclass(frozen=True)
 class SceneView:
     result: SceneResult
     anchor: str
     symbols: tuple[str, ...]  # parameters without a value
     floors: str  # a sentence on the step sizes that do not divide the time
-    tables: tuple[TableView, ...]
     schemes: tuple[SchemeView, ...]
     work_precision: "WorkPrecisionView | None"
     stability: "StabilityView | None"
 
 
-def scene_view(scene: SceneResult, anchor: str, tables: Sequence[ClaimView]) -> SceneView:
+def scene_view(scene: SceneResult, anchor: str) -> SceneView:
     names = mathml.free_names(scene.hamiltonian)
     return SceneView(
         result=scene,
         anchor=anchor,
         symbols=tuple(n for n in names if n not in scene.parameters),
         floors=_floors(scene),
-        tables=tuple(
-            TableView(claim, plots.table(claim, name=f"table-{index}-of-{anchor}"))
-            for index, claim in enumerate(tables)
-        ),
         schemes=tuple(
             _scheme_view(scene, proof, f"scheme-{index}-of-{anchor}")
             for index, proof in enumerate(scene.proofs)

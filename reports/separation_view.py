@@ -8,7 +8,7 @@ from fractions import Fraction
 from markupsafe import Markup
 
 from reports.plots import Plot, few
-from reports.separation_caption import WAYS, caption, end_of, short, ways_of
+from reports.separation_caption import WAYS, caption, end_of
 from reports.separation_finding import (
     PARTS,
     computed,
@@ -96,19 +96,9 @@ def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
     from reports import crossover_figure
 
     for index, grid in enumerate(grids):
-        lines = [
-            crossover_figure.line(label, points)
-            for label, points in ways_of(grid)
-            if len(points) > 1
-        ]
-        lines = [each for each in lines if len(each.points) > 1]
+        lines, marks = crossover_figure.contents(grid)
         if len(lines) < 2:
             continue
-        marks = [
-            crossover_figure.Mark(found.step_size, f"h* ≈{NBSP}{short(found.step_size)}, {of}")
-            for way, of in WAYS.items()
-            if (found := getattr(grid, way)).step_size is not None
-        ]
         first = grid.points[0]
         lead = f"Truncation and rounding in Λ against h, from {start(first)}{end_of(grid.points)}"
         svg = crossover_figure.truncation_against_rounding(

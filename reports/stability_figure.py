@@ -8,9 +8,10 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from reports.axes import decades, grid_lines
+from reports.drawing import Drawing
 from reports.logarithm import lg
 from reports.svg import INK, SERIES, drawn
-from verify.stability_results import Kind
+from verify.stability_results import Kind, StabilityMapResult
 
 _POINT = 1 / 72
 _WIDTH, _HEIGHT = 370, 380
@@ -41,31 +42,36 @@ class Plane:
     linear: Sequence[str | None]
 
 
+def plane_of(over: StabilityMapResult) -> Plane:
+    kinds = [[cell.kind for cell in row] for row in over.cells]
+    return Plane(over.parameter, over.values, over.step_sizes, kinds, over.linear)
+
+
 def stability_plane(plane: Plane, *, name: str, label: str) -> Markup:
     """Each cell by its verdict's mark; the line is linear theory's step size."""
+    return drawn(lambda: draw_plane(plane), name=name, label=label)
 
-    def draw() -> Figure:
-        figure = Figure(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
-        axes = figure.subplots()
-        xs, ys = [lg(h) for h in plane.step_sizes], [lg(v) for v in plane.values]
-        for kind, mark in _MARKS.items():
-            cells = [
-                (xs[j], ys[i])
-                for i, row in enumerate(plane.kinds)
-                for j, found in enumerate(row)
-                if found == kind
-            ]
-            if cells:
-                axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **mark)
-        limits = [(lg(h), y) for h, y in zip(plane.linear, ys, strict=True) if h and float(h) > 0]
-        if limits:
-            ends = zip(*limits, strict=True)
-            axes.plot(*ends, color=INK, linewidth=1.4, label="limit of linear theory")
-        _frame(axes, xs, ys, plane.parameter)
-        figure.legend(loc="outside lower center", ncols=_LEGEND, handlelength=1.6)
-        return figure
 
-    return drawn(draw, name=name, label=label)
+def draw_plane(plane: Plane) -> Figure:
+    figure = Drawing(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
+    axes = figure.subplots()
+    xs, ys = [lg(h) for h in plane.step_sizes], [lg(v) for v in plane.values]
+    for kind, mark in _MARKS.items():
+        cells = [
+            (xs[j], ys[i])
+            for i, row in enumerate(plane.kinds)
+            for j, found in enumerate(row)
+            if found == kind
+        ]
+        if cells:
+            axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **mark)
+    limits = [(lg(h), y) for h, y in zip(plane.linear, ys, strict=True) if h and float(h) > 0]
+    if limits:
+        ends = zip(*limits, strict=True)
+        axes.plot(*ends, color=INK, linewidth=1.4, label="limit of linear theory")
+    _frame(axes, xs, ys, plane.parameter)
+    figure.legend(loc="outside lower center", ncols=_LEGEND, handlelength=1.6)
+    return figure
 
 
 def _frame(axes: Any, xs: Sequence[float], ys: Sequence[float], parameter: str) -> None:

@@ -11,12 +11,13 @@ from verify.exact import plain, short
 from verify.scene_results import SceneResult
 from verify.stability_results import (
     KINDS,
+    Kind,
     LargestStepResult,
     StabilityMapResult,
     StabilityResult,
 )
 
-_MEANINGS = {
+MEANINGS: dict[Kind, str] = {
     "stable": "stays within the exact orbit’s bounds, and no drift of its energy is seen",
     "drifts": "stays within them, but its energy moves on in one direction",
     "unstable: scheme": "leaves them with 40 and with 80 digits too: the scheme’s doing",
@@ -48,10 +49,10 @@ class LargestRow:
 
 @dataclass(frozen=True)
 class StabilityView:
-    """`meanings`: what the verdicts that occur mean; `bound`: over which time steps are bounded."""
+    """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded."""
 
     finding: tuple[str, ...]
-    meanings: tuple[tuple[str, str], ...]
+    kinds: tuple[Kind, ...]
     cases: tuple[CaseRow, ...]
     largest: tuple[LargestRow, ...]
     bound: str
@@ -63,7 +64,7 @@ def stability_view(scene: SceneResult, anchor: str) -> StabilityView:
     seen = {case.kind for case in cases} | {kind for over in maps for kind in over.counted()}
     return StabilityView(
         finding=tuple(_finding(cases, steps)),
-        meanings=tuple((kind, _MEANINGS[kind]) for kind in KINDS if kind in seen),
+        kinds=tuple(kind for kind in KINDS if kind in seen),
         cases=tuple(map(_case, cases)),
         largest=tuple(map(_largest, steps)),
         bound=_bound(steps),
@@ -142,18 +143,13 @@ def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[Plot]:
     """The drawing, and with it matplotlib, is imported only where there is a map."""
     if not maps:
         return
-    from reports.stability_figure import Plane, stability_plane
+    from reports.stability_figure import plane_of, stability_plane
 
     for index, over in enumerate(maps):
         lead = f"Stability of {over.scheme} over the step size h and {over.parameter}"
-        plane = Plane(
-            over.parameter,
-            over.values,
-            over.step_sizes,
-            [[cell.kind for cell in row] for row in over.cells],
-            over.linear,
+        svg = stability_plane(
+            plane_of(over), name=f"stability-{index}-of-{anchor}", label=f"{lead}."
         )
-        svg = stability_plane(plane, name=f"stability-{index}-of-{anchor}", label=f"{lead}.")
         yield Plot(svg, f"{lead}.", _caption(over))
 
 

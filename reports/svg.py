@@ -6,13 +6,15 @@ series colours are custom properties with the light theme's colour as their fall
 
 import io
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
 from markupsafe import Markup
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 INK = "#010203"
 # Okabe and Ito's colours, darkened where they would fade on white; style.css has the dark theme's.
@@ -46,8 +48,18 @@ _RC: Any = {
     "legend.frameon": False,
     "mathtext.default": "regular",
     "text.usetex": False,
+    "text.parse_math": False,  # a name or a source with dollar signs stays text
     "path.simplify": False,
 }
+
+
+@contextmanager
+def styled(**changes: object) -> Iterator[None]:
+    """matplotlib under this page's settings, and as it was before afterwards."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RC | changes)
+        yield
 
 
 def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
@@ -56,13 +68,19 @@ def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
     `name` prefixes every id, so it must be unique on the page; `label` is the text alternative.
     matplotlib's settings are as before afterwards.
     """
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC)
+    with styled():
         stream = io.StringIO()
-        draw().savefig(stream, format="svg", metadata={"Date": None})
+        figure = draw()
+        for text in figure.findobj(Text):
+            text.set_text(_printable(text.get_text()))
+        figure.savefig(stream, format="svg", metadata={"Date": None})
     root = ElementTree.fromstring(stream.getvalue())  # noqa: S314 - matplotlib's own output
-    return _inline(root, name, label)
+    return _inline(root, name, _printable(label))
+
+
+def _printable(text: str) -> str:
+    """Without control characters, which no XML may hold."""
+    return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
 def _inline(root: Any, name: str, label: str) -> Markup:

@@ -1,59 +1,68 @@
 """Report → what the page's templates show: anchors, groups, sentences. Nothing is computed anew."""
 
+import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from reports import plots
-from reports.claim_view import Anchors, ClaimView, Contrast, contrasts
+from reports.claim_view import Anchors, ClaimView
+from reports.first_screen import FirstScreen, first_screen
 from reports.plots import Plot
 from reports.scene_view import SceneView, scene_view
-from reports.typography import listed, superscript
-from verify.results import ProofResult
 from verify.scene_results import Report
+from verify.stability_results import Kind
 from verify.verdict import Verdict
+
+_NUMBERED = re.compile(r"\d+(?:\.\d+)*(?=\D|$)")
 
 
 @dataclass(frozen=True)
-class Highlight:
-    """The most telling refutation."""
+class ClaimGroup:
+    """The claims of one section of the paper; `title` is empty where no claim names a section."""
 
-    claim: ClaimView
-    plot: Plot | None
-    contrasts: tuple[Contrast, ...]
-    same_row: tuple[ClaimView, ...]  # other refuted tables that print the very same row
+    title: str
+    anchor: str
+    claims: tuple[ClaimView, ...]
+    counts: tuple[tuple[Verdict, int], ...]
 
 
 @dataclass(frozen=True)
 class PageView:
+    """`paper_figures`: the paper's figures, made again; a template of its own shows them."""
+
     report: Report
-    finding: str
-    counts: tuple[tuple[Verdict, int], ...]
+    first: FirstScreen
+    groups: tuple[ClaimGroup, ...]
     claims: tuple[ClaimView, ...]
-    refuted: tuple[ClaimView, ...]
-    highlight: Highlight | None
     scenes: tuple[SceneView, ...]
+    paper_figures: tuple[Plot, ...]
+    kinds: tuple[tuple[Kind, str], ...]  # verdicts on runs that occur, and what they mean
     ran: bool  # whether anything was run
     separated: bool
     grown: bool  # whether Λ was held against its growth law
     timed: bool  # whether error stands against run time
 
+    def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
+        """Those with a claim on this scene."""
+        return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
+
 
 def page_view(report: Report) -> PageView:
     anchors = Anchors()
     own = [anchors.take("system", scene.name) for scene in report.scenes]
-    scene_anchors = {s.name: anchor for s, anchor in zip(report.scenes, own, strict=True)}
-    titles = {s.name: s.title for s in report.scenes}
-    claims = tuple(
-        ClaimView(
-            c, anchors.take("claim", c.id), scene_anchors.get(c.scene, ""), titles.get(c.scene, "")
-        )
-        for c in report.claims
+    claims = _claims(report, own, anchors)
+    scenes = tuple(
+        scene_view(scene, anchor) for scene, anchor in zip(report.scenes, own, strict=True)
     )
-    refuted = tuple(c for c in claims if c.result.verdict is Verdict.REFUTED)
-    counted = Counter(c.verdict for c in report.claims)
     return PageView(
         report=report,
+        first=first_screen(report, claims, scenes),
+        groups=tuple(groups(claims, anchors)),
+        claims=claims,
+        scenes=scenes,
+        paper_figures=(),
+        kinds=_kinds(scenes),
         ran=any(
             s.runs or s.series or s.separations or s.crossovers or s.work_precision
             for s in report.scenes
@@ -61,68 +70,50 @@ def page_view(report: Report) -> PageView:
         separated=any(s.separations or s.crossovers for s in report.scenes),
         grown=any(s.growth_laws for s in report.scenes),
         timed=any(s.work_precision for s in report.scenes),
-        finding=finding(report),
-        counts=tuple((v, counted[v]) for v in Verdict if counted[v]),
-        claims=claims,
-        refuted=refuted,
-        highlight=_highlight(refuted),
-        scenes=tuple(
-            scene_view(
-                scene, anchor, [c for c in claims if c.result.scene == scene.name and c.is_table]
-            )
-            for scene, anchor in zip(report.scenes, own, strict=True)
-        ),
     )
 
 
-# -- the finding in one sentence ------------------------------------------------------------------
+def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[ClaimView, ...]:
+    scenes = {s.name: (anchor, s.title) for s, anchor in zip(report.scenes, own, strict=True)}
+    found = []
+    for result in report.claims:
+        anchor = anchors.take("claim", result.id)
+        claim = ClaimView(result, anchor, *scenes.get(result.scene, ("", "")))
+        if claim.is_table:
+            claim = replace(claim, plot=plots.table(claim, name=f"table-of-{anchor}"))
+        found.append(claim)
+    return tuple(found)
 
 
-def finding(report: Report) -> str:
-    if report.claims:
-        return _finding_of_claims([c.verdict for c in report.claims])
-    proofs = [proof for scene in report.scenes for proof in scene.proofs]
-    if not proofs:
-        return "The report holds no claim and no proof."
-    if len(proofs) <= 4:
-        return "; ".join(_finding_of_proof(p) for p in proofs) + "."
-    preserving = sum(p.area_preserving is True for p in proofs)
-    ordered = sum(p.order is not None for p in proofs)
-    parts = [(preserving, "with det J ≡ 1"), (ordered, "with a ΔJ of a proved order in h")]
-    parts.append((len(proofs) - preserving - ordered, "undecided"))
-    shown = listed(f"{n} {text}" for n, text in parts if n)
-    return f"{len(proofs)} step maps were examined: {shown}."
+def _kinds(scenes: Sequence[SceneView]) -> tuple[tuple[Kind, str], ...]:
+    if not any(scene.stability for scene in scenes):
+        return ()
+    from reports.stability_view import MEANINGS
+
+    seen = {kind for scene in scenes if scene.stability for kind in scene.stability.kinds}
+    return tuple((kind, meaning) for kind, meaning in MEANINGS.items() if kind in seen)
 
 
-def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
-    counted = Counter(verdicts)
-    words = [(counted[v], v.lower()) for v in Verdict if counted[v]]
-    if len(words) == 1:
-        count, word = words[0]
-        return f"The one claim is {word}." if count == 1 else f"All {count} claims are {word}."
-    (count, word), *rest = words
-    first = f"{count} {'is' if count == 1 else 'are'} {word}"
-    return f"Of {len(verdicts)} claims, {listed([first, *(f'{n} {w}' for n, w in rest)])}."
+# -- the sections of the paper --------------------------------------------------------------------
 
 
-def _finding_of_proof(proof: ProofResult) -> str:
-    if proof.area_preserving:
-        return f"{proof.scheme} preserves area exactly (det J ≡ 1)"
-    if proof.order is not None:
-        return f"ΔJ of {proof.scheme} is of order h{superscript(proof.order)}"
-    return f"the order of ΔJ of {proof.scheme} is undecided"
+def groups(claims: Sequence[ClaimView], anchors: Anchors) -> list[ClaimGroup]:
+    """The claims by section, sections in the order of their numbers, those without one last."""
+    by_section: dict[str, list[ClaimView]] = {}
+    for claim in claims:
+        by_section.setdefault(claim.result.section, []).append(claim)
+    found = []
+    for section in sorted(by_section, key=_place):
+        own = by_section[section]
+        title = section or ("Other claims" if len(by_section) > 1 else "")
+        counted = Counter(c.result.verdict for c in own)
+        counts = tuple((v, counted[v]) for v in Verdict if counted[v])
+        found.append(ClaimGroup(title, anchors.take("section", title or "all"), tuple(own), counts))
+    return found
 
 
-# -- the most telling refutation ------------------------------------------------------------------
-
-
-def _highlight(refuted: Sequence[ClaimView]) -> Highlight | None:
-    """A refuted table if there is one, since it sets numbers against numbers; else the first."""
-    if not refuted:
-        return None
-    tables = [c for c in refuted if c.is_table]
-    claim = next(iter(tables), refuted[0])
-    same = tuple(c for c in tables if c is not claim and c.printed == claim.printed)
-    if not claim.is_table:
-        return Highlight(claim, None, (), ())
-    return Highlight(claim, plots.table(claim, name="highlight"), tuple(contrasts(claim)), same)
+def _place(section: str) -> tuple[int, list[int]]:
+    """Sorts 4.2 before 4.10, then sections without a number, then what names none."""
+    if match := _NUMBERED.match(section):
+        return 0, [int(n) for n in match[0].split(".")]
+    return (1 if section else 2), []

@@ -19,6 +19,7 @@ from matplotlib.markers import CARETUPBASE, MarkerStyle
 from matplotlib.transforms import Bbox
 
 from reports.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
+from reports.drawing import Drawing
 from reports.svg import INK, SERIES, drawn
 
 _POINT = 1 / 72
@@ -76,26 +77,28 @@ class Panel:
 
 def panels(shown: Sequence[Panel], *, name: str, label: str) -> Markup:
     """The panels below one another, with one legend for all: the labels of the first."""
+    return drawn(lambda: draw_panels(shown), name=name, label=label)
 
-    def draw() -> Figure:
-        count = len(shown[0].lines) + _keys(shown)
-        height = _PANEL * len(shown) + _LEGEND_ROW * (count + 1) // 2 + 12
-        figure = Figure(figsize=(_WIDTH * _POINT, height * _POINT), dpi=72, layout="constrained")
-        FigureCanvasAgg(figure)
-        engine: Any = figure.get_layout_engine()
-        engine.set(hspace=0.04)
-        all_axes: Any = figure.subplots(len(shown), 1, squeeze=False)
-        for axes, panel in zip(all_axes[:, 0], shown, strict=True):
-            _panel(axes, panel)
-        _legend(figure, shown)
-        # The layout is made once, so that labels can be placed where nothing else is.
-        figure.canvas.draw()
-        figure.set_layout_engine("none")
-        for axes, panel in zip(all_axes[:, 0], shown, strict=True):
-            _place_labels(axes, panel)
-        return figure
 
-    return drawn(draw, name=name, label=label)
+def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
+    """`quantity`: what stands at all vertical axes, where the titles do not suffice."""
+    count = len(shown[0].lines) + _keys(shown)
+    height = _PANEL * len(shown) + _LEGEND_ROW * (count + 1) // 2 + 12
+    figure = Drawing(figsize=(_WIDTH * _POINT, height * _POINT), dpi=72, layout="constrained")
+    FigureCanvasAgg(figure)
+    engine: Any = figure.get_layout_engine()
+    engine.set(hspace=0.04)
+    all_axes: Any = figure.subplots(len(shown), 1, squeeze=False)
+    for axes, panel in zip(all_axes[:, 0], shown, strict=True):
+        _panel(axes, panel)
+        axes.set_ylabel(quantity)
+    _legend(figure, shown)
+    # The layout is made once, so that labels can be placed where nothing else is.
+    figure.canvas.draw()
+    figure.set_layout_engine("none")
+    for axes, panel in zip(all_axes[:, 0], shown, strict=True):
+        _place_labels(axes, panel)
+    return figure
 
 
 def style(line: Drawn) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from verify.results import Value
 from verify.work_precision_results import WorkLine, WorkPoint, WorkPrecisionResult
 
 if TYPE_CHECKING:
-    from reports.work_precision_figure import Mark
+    from reports.work_precision_figure import Mark, Panel
 
 
 def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
@@ -32,9 +32,17 @@ def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
 def _errors(found: WorkPrecisionResult, name: str) -> Plot:
     from reports import work_precision_figure as figure
 
+    lead = f"Solution error at T = {found.time} against run time, and against the step size h"
+    svg = figure.panels(error_panels(found), name=f"work-of-{name}", label=f"{lead}.")
+    return Plot(svg, f"{lead}.", _caption([x for x in found.lines if _timed(x) and not x.peer]))
+
+
+def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
+    """Solution error against run time and, of the schemes, against the step size."""
+    from reports import work_precision_figure as figure
+
     lines = [line for line in found.lines if _timed(line)]
     own = [line for line in lines if not line.peer]
-    lead = f"Solution error at T = {found.time} against run time, and against the step size h"
     against_time = figure.Panel(
         "(a) error against run time",
         f"run time over [0, {found.time}] in seconds",
@@ -52,9 +60,7 @@ def _errors(found: WorkPrecisionResult, name: str) -> Plot:
         tuple(figure.Drawn(line.name, tuple(_by_step(line)), _place(found, line)) for line in own),
         tuple(_floor(own, by_step=True)),
     )
-    shown = [against_time, against_h] if own else [against_time]
-    svg = figure.panels(shown, name=f"work-of-{name}", label=f"{lead}.")
-    return Plot(svg, f"{lead}.", _caption(own))
+    return [against_time, against_h] if own else [against_time]
 
 
 def _areas(found: WorkPrecisionResult, name: str) -> Plot:

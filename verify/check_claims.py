@@ -2,7 +2,14 @@
 
 from collections.abc import Sequence
 
-from verify import area_claims, exact_claims, growth_claims, measured_claims, printed_claims
+from verify import (
+    area_claims,
+    exact_claims,
+    flow_claims,
+    growth_claims,
+    measured_claims,
+    printed_claims,
+)
 from verify.claims import Claim, CriteriaClaim, TheoremClaim
 from verify.every_claims import check_every
 from verify.findings import Checks, Findings, result
@@ -50,4 +57,5 @@ _CHECKS: Checks = {
     **measured_claims.CHECKS,
     **printed_claims.CHECKS,
     **growth_claims.CHECKS,
+    **flow_claims.CHECKS,
 }

@@ -7,7 +7,8 @@ that run is not made.
 from collections.abc import Mapping, Sequence
 
 from verify.claim_scenes import ON_RUNS
-from verify.claims import Claim, CriteriaClaim, GrowthClaim
+from verify.claims import Claim, CriteriaClaim, FlowClaim, GrowthClaim
+from verify.flow_claims import flow_tasks_of
 from verify.growth_claims import growth_tasks
 from verify.hamiltonian import Hamiltonian
 from verify.perform import Result
@@ -37,6 +38,9 @@ def add_claims(
             elif name not in plan.tasks:
                 known[name] = found
                 plan.leave_out(f"the run of claim {claim.id}", "a proof gives what it asks for")
+        if isinstance(claim, FlowClaim) and claim.scene in scenes:
+            for of_flow in flow_tasks_of(claim, scenes[claim.scene]):
+                plan.need(of_flow, f"claim {claim.id}")
         if isinstance(claim, CriteriaClaim) and claim.scene in scenes:
             task_of_proof = proof_task(scenes[claim.scene], claim.scheme)
             plan.need(task_of_proof, f"claim {claim.id}")

@@ -16,6 +16,7 @@ from verify.claims import (
     BoundedClaim,
     Claim,
     CriteriaClaim,
+    FlowClaim,
     GrowthClaim,
     LessClaim,
     MagnitudeClaim,
@@ -25,6 +26,7 @@ from verify.claims import (
     ValueClaim,
 )
 from verify.errors import InputError
+from verify.flow_plan import maps_of
 from verify.results import Frozen
 from verify.runs import AUTO, CLOSED_FORM
 from verify.scene import Grid, Scene
@@ -81,6 +83,8 @@ def scene_for(
         given = " and ".join(name for name in SUBJECTS if name in subject)
         raise InputError(given or "scene", "", f"give one of {', '.join(SUBJECTS)}")
     if "scene" not in subject:
+        if isinstance(claim, FlowClaim):
+            raise InputError("scene", "", "is missing: a [[flow]] of a scene is spoken of")
         own = Subject.model_validate(subject)
         scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=_slug(claim.id))
         return _with_grid(claim, own.system or "own", scene, None, runs)
@@ -88,6 +92,9 @@ def scene_for(
         raise InputError("parameters", "", "stand in the scene's own file")
     name = subject["scene"]
     found = named(name)
+    if isinstance(claim, FlowClaim):
+        _check_flows(claim, name, found)
+        return name, found
     if claim.scheme not in found.schemes and not (isinstance(claim, ON_RUNS) and runs):
         known = ", ".join(found.schemes)
         raise InputError("scheme", claim.scheme, f"is not in scene {name}: {known}")
@@ -103,6 +110,19 @@ def scene_for(
 
 
 _ALWAYS_OWN = (ValueClaim, BoundedClaim, GrowthClaim)  # certified runs, whatever the scene has
+
+
+def _check_flows(claim: FlowClaim, name: str, scene: Scene) -> None:
+    """Whether the scene carries a region so, and by that map."""
+    known = {flow.source: flow for flow in scene.flow if flow.source}
+    for source in claim.flows:
+        if source not in known:
+            allowed = ", ".join(known) or "none; give a [[flow]] its source"
+            problem = f"scene {name} has no such [[flow]]; it has {allowed}"
+            raise InputError("flows", source, problem)
+        maps = maps_of(scene, known[source])
+        if claim.scheme not in maps:
+            raise InputError("scheme", claim.scheme, f"is not in {source}: {', '.join(maps)}")
 
 
 def _own_keys(claim: Claim) -> set[str]:

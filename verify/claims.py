@@ -21,6 +21,7 @@ _PRINTED = re.compile(r"-?\d{1,20}(\.\d{1,1000})?(e[+-]?\d{1,3})?", re.ASCII)
 class _Claim(Frozen):
     id: Annotated[str, Field(pattern=r"^[^\s\x00-\x1f]+$", max_length=80)]
     source: str = ""
+    section: str = ""
     statement: str = ""
     scene: str = ""
     scheme: str
@@ -208,6 +209,26 @@ class CriteriaClaim(_Claim):
     ]
 
 
+class FlowClaim(_Claim):
+    """Of images by a scheme, or by the `exact flow`, in the scene's `[[flow]]` of these sources."""
+
+    flows: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+
+
+class FlowAreaClaim(FlowClaim):
+    """The map preserves the region's area: exactly, or changes it by this part of it at most."""
+
+    kind: Literal["flow_area"]
+    within: Annotated[Number, Field(gt=0)] | None = None
+
+
+class FlowDistanceClaim(FlowClaim):
+    """The images' outlines lie so close to those by the exact flow (Hausdorff distance)."""
+
+    kind: Literal["flow_distance"]
+    within: Annotated[Number, Field(gt=0)]
+
+
 class TheoremClaim(_Claim):
     """What a paper says in words, judged by the function of that `name` in `verify.theorems`."""
 
@@ -232,6 +253,8 @@ Claim = (
     | BoundedClaim
     | GrowthClaim
     | CriteriaClaim
+    | FlowAreaClaim
+    | FlowDistanceClaim
     | TheoremClaim
 )
 KINDS: dict[str, type[Claim]] = {

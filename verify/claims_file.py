@@ -8,7 +8,8 @@
 
     [[claim]]
     id = "eq-3"
-    source = "Eq. 3"                # these two may be left out
+    source = "Eq. 3"                # these three may be left out
+    section = "2 The scheme"         # a report groups the claims by it
     statement = "ΔJ is of order h³."
     kind = "order"
     order = 3

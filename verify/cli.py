@@ -10,9 +10,11 @@ import click
 from verify import show
 from verify.cli_bench import bench
 from verify.cli_check import check
+from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
 from verify.cli_stability import stability
+from verify.cli_tasks import json_option, told, workers_option
 from verify.errors import InputError
 from verify.show_plan import print_plan
 
@@ -44,6 +46,7 @@ def cli(context: click.Context) -> None:
 
 cli.add_command(prove)
 cli.add_command(certificate)
+cli.add_command(flow)
 cli.add_command(stability)
 cli.add_command(check)
 cli.add_command(bench)
@@ -183,61 +186,66 @@ def plan(scene: str, as_json: bool) -> None:
 @cli.command()
 @click.argument("scene", metavar="SCENE")
 @click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
-@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
-def report(scene: str, output: Path | None, workers: int | None, as_json: bool) -> None:
+@click.option(
+    "--format",
+    "formats",
+    type=click.Choice(["html", "md"]),
+    multiple=True,
+    default=["html"],
+    help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
+    "repository; given twice, both.",
+)
+@workers_option
+@json_option
+def report(
+    scene: str, output: Path | None, formats: tuple[str, ...], workers: int | None, as_json: bool
+) -> None:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
     SCENE is a TOML file, `paper`, `stiff` or `extreme`.
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
     """
-    from reports.page import write
     from verify.claim_plan import add_claims
-    from verify.execute import Store, cost
+    from verify.execute import Store
     from verify.plan import plan_scenes
-    from verify.progress import progress_bar
     from verify.report import make_report
 
     title, scenes, file = target(scene)
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
     writable(folder)
+    asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
-    total = sum(cost(task) for task in planned.tasks.values())
-    finished = 0
-    with progress_bar(f"{len(planned.tasks)} tasks", total, unit="") as advance:
-
-        def done(name: str, _: object) -> None:
-            nonlocal finished
-            finished += 1
-            advance(cost(planned.tasks[name]))
-
-        try:
-            made = make_report(
-                title,
-                scenes,
-                claims,
-                Store(folder / "kept"),
-                command=f"verify report {scene} -o {folder.name}",
-                claim_scenes=claim_scenes,
-                plan=planned,
-                workers=workers,
-                done=done,
-            )
-        except KeyboardInterrupt:
-            click.echo(
-                f"interrupted: {finished} of {len(planned.tasks)} tasks are kept in "
-                f"{folder / 'kept'}; the same command goes on from there",
-                err=True,
-            )
-            raise
-    page = write(made, folder)
+    with told(planned.tasks, folder / "kept") as done:
+        made = make_report(
+            title,
+            scenes,
+            claims,
+            Store(folder / "kept"),
+            command=f"verify report {scene} -o {folder.name}{asked}",
+            claim_scenes=claim_scenes,
+            plan=planned,
+            workers=workers,
+            done=done,
+        )
+    written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
     if as_json:
         show.print_json(made.model_dump(mode="json"))
     else:
-        show.print_report(made, page)
+        show.print_report(made, *written)
+
+
+def _writer(name: str) -> Any:
+    """What writes a report in that format; only what is asked for is imported."""
+    if name == "md":
+        from reports.markdown import write as write_markdown
+
+        return write_markdown
+    from reports.page import write as write_page
+
+    return write_page
 
 
 # -- entry ----------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ import click
 
 from verify import show
 from verify.cli_input import paper_folder, writable
+from verify.cli_tasks import told, with_tasks
 
 if TYPE_CHECKING:
     from verify.results import ClaimResult
@@ -20,14 +21,7 @@ REFUTED = 1  # exit status
 @click.option(
     "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
 )
-@click.option(
-    "--keep",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Keep what is finished there; the same command goes on from it.",
-)
-@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@with_tasks
 def check(
     claims: str, only: tuple[str, ...], keep: Path | None, workers: int | None, as_json: bool
 ) -> None:
@@ -69,29 +63,14 @@ def check(
     """
     from verify.check import prepare
     from verify.claims_file import load_claims
-    from verify.execute import Store, cost
-    from verify.progress import progress_bar
+    from verify.execute import Store
 
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)
     if keep is not None:
         writable(keep)
-    tasks = prepared.plan.tasks
-    finished = 0
-    with progress_bar(f"{len(tasks)} tasks", sum(map(cost, tasks.values())), unit="") as advance:
-
-        def done(name: str, _: object) -> None:
-            nonlocal finished
-            finished += 1
-            advance(cost(tasks[name]))
-
-        try:
-            found = prepared.run(Store(keep), workers=workers, done=done)
-        except KeyboardInterrupt:
-            if keep is not None:
-                kept = f"interrupted: {finished} of {len(tasks)} tasks are kept in {keep}"
-                click.echo(f"{kept}; the same command goes on from there", err=True)
-            raise
+    with told(prepared.plan.tasks, keep) as done:
+        found = prepared.run(Store(keep), workers=workers, done=done)
     if as_json:
         keys = {"id", "kind", "source", "statement", "verdict", "evidence"}
         show.print_json({"claims": [c.model_dump(mode="json", include=keys) for c in found]})

@@ -8,6 +8,7 @@ import click
 
 from verify import show
 from verify.cli_input import target, writable
+from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,14 +23,7 @@ _WIDTH, _IN = 100, " " * 6
 @click.argument("scene", required=False, metavar="[SCENE]")
 @click.option("--linear", is_flag=True, help="On the harmonic oscillator, by exact algebra.")
 @click.option("--scheme", help="With --linear: lie1, lie2, …, stormer-verlet, rk4, …")
-@click.option(
-    "--keep",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Keep what is finished there; the same command goes on from it.",
-)
-@click.option("--workers", type=click.IntRange(1, 256), help="Processes; by the work there is.")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@with_tasks
 def stability(
     scene: str | None,
     linear: bool,
@@ -65,7 +59,6 @@ def _of_scenes(
     given: str, scenes: "list[Scene]", keep: Path | None, workers: int | None, as_json: bool
 ) -> None:
     from verify.execute import Store, execute
-    from verify.progress import progress_bar
     from verify.stability_findings import findings_of
     from verify.stability_plan import plan_stability
 
@@ -75,8 +68,8 @@ def _of_scenes(
         raise InputError("SCENE", given, problem)
     if keep is not None:
         writable(keep)
-    with progress_bar(f"{len(plan.tasks)} tasks", len(plan.tasks), unit="") as advance:
-        results = execute(plan, Store(keep), workers=workers, done=lambda *_: advance(1))
+    with told(plan.tasks, keep) as done:
+        results = execute(plan, Store(keep), workers=workers, done=done)
     found = findings_of(scenes, results)
     if as_json:
         show.print_json(found.as_json())

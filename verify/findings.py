@@ -101,6 +101,7 @@ def result(
         id=claim.id,
         kind=claim.kind,
         source=claim.source,
+        section=claim.section,
         statement=claim.statement,
         scene=claim.scene,
         verdict=verdict,

@@ -41,9 +41,10 @@ CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
+LOOP = "    for k in range(steps):"  # what is before this line is the same for every k
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Kernel:
     """`function(steps, h, *parameters, *scales, *limits, *carried)` → (steps done, *carried).
 
@@ -51,7 +52,8 @@ class Kernel:
     `kinds` says of each what it is (see `verify.wide.translate`), `start` has the initial values,
     p and q apart; "p" and "q" there are those in float64. An arithmetic of absolute precision has
     `scales` and `limits`, the numbers that the loop's guard compares with, and `power` is the r of
-    κ. `lowering` and `outputs` are what is computed: the program and the indices of its results.
+    κ. `lowering` and `outputs` are what is computed: the program and the indices of its results;
+    `names` what the source's names stand for.
     """
 
     function: Callable[..., tuple[Any, ...]]
@@ -66,6 +68,7 @@ class Kernel:
     outputs: Mapping[str, int]
     tangent: tangent.Tangent | None
     source: str
+    names: Mapping[str, Any]
 
     @property
     def roots(self) -> list[int]:
@@ -145,6 +148,7 @@ class Writer:
             outputs=outputs,
             tangent=self.tangent,
             source=source,
+            names=scope,
         )
 
     def check(self, needed: Sequence[int]) -> None:
@@ -297,7 +301,7 @@ class Writer:
             [
                 f"def kernel({arguments}):",
                 *(f"    {line}" for line in static),
-                "    for k in range(steps):",
+                LOOP,
                 *(f"        {line}" for line in [*dynamic, *statements]),
                 *([f"        if not ({guard}): return k, {names}"] if guard else []),
                 f"    return steps, {names}",

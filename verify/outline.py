@@ -7,11 +7,15 @@ An arc's formula is written once over `mp`, mpmath's context or one that takes a
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from math import comb
 
 from verify.motion import Context, Number, number
 
 Arc = Callable[[Context, Number], tuple[Number, Number]]
 """(mp, s) ↦ (x, y), smooth on 0 ≤ s ≤ 1; x is drawn to the right (q), y upwards (p)."""
+
+Point = tuple[Fraction, Fraction]
+"""x, y."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,25 @@ class Shape:
 
     def placed(self, q: Fraction, p: Fraction, scale: Fraction) -> "Shape":
         return Shape(self.name, tuple(each.placed(q, p, scale) for each in self.outlines))
+
+
+def angle(mp: Context, s: Number) -> Number:
+    """Once around, from −π to π: in float64 its rounding is half of that from 0 to 2π."""
+    return 2 * mp.pi * (s - mp.mpf(1) / 2)
+
+
+def bezier(*control: Point) -> Arc:
+    """The Bézier curve of these control points; of two, the line between them."""
+    degree = len(control) - 1
+
+    def at(mp: Context, s: Number) -> tuple[Number, Number]:
+        x = y = mp.mpf(0)
+        for k, (a, b) in enumerate(control):
+            weight = comb(degree, k) * (1 - s) ** (degree - k) * s**k
+            x, y = x + weight * number(mp, a), y + weight * number(mp, b)
+        return x, y
+
+    return at
 
 
 def _placed(arc: Arc, q: Fraction, p: Fraction, scale: Fraction) -> Arc:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from verify.exact import text
+from verify.flow_results import FlowImage
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
@@ -18,6 +19,7 @@ from verify.stability_results import LargestStepResult, StabilityMapResult, Stab
 from verify.step_map import grouped
 from verify.tasks import (
     EveryTask,
+    FlowTask,
     GrowthTask,
     LargestStepTask,
     ProofTask,
@@ -40,6 +42,7 @@ Result = (
     | StabilityResult
     | LargestStepResult
     | StabilityMapResult
+    | FlowImage
 )
 
 
@@ -96,6 +99,12 @@ def _work_precision(task: WorkPrecisionTask, _: Keeper) -> WorkPrecisionResult:
     from verify.work_precision import work_precision
 
     return work_precision(_given(task), task)
+
+
+def _flow(task: FlowTask, _: Keeper) -> FlowImage:
+    from verify.flow import carry
+
+    return carry(_given(task), task)
 
 
 def _stability(task: StabilityTask, _: Keeper) -> StabilityResult:
@@ -171,5 +180,6 @@ KINDS: dict[str, Kind] = {
     "stability": Kind(_stability, StabilityResult),
     "largest_step": Kind(_largest_step, LargestStepResult),
     "stability_map": Kind(_stability_map, StabilityMapResult),
+    "flow": Kind(_flow, FlowImage),
     "work_precision": Kind(_work_precision, WorkPrecisionResult),
 }

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from verify.exact import text
+from verify.flow_plan import need_flows
 from verify.planned import Plan
 from verify.runs import CLOSED_FORM
 from verify.scene import Grid, Scene
@@ -101,6 +102,7 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
         plan.need(task, f"{name}: error against run time")
         for peer, why in task.peers_left_out:
             plan.leave_out(f"{name}: {peer} beside the schemes", why)
+    need_flows(plan, scene)
     need_stability(plan, scene)
     for what, why, asked in _SECTIONS:
         if not asked(scene):
@@ -135,6 +137,11 @@ _SECTIONS: tuple[tuple[str, str, Callable[[Scene], object]], ...] = (
         "error against run time",
         "the scene has no [work_precision]",
         lambda scene: scene.work_precision,
+    ),
+    (
+        "regions carried by maps, and their areas",
+        "the scene has no [[flow]]",
+        lambda scene: scene.flow,
     ),
     (
         "stability, and whose fault it is where there is none",

@@ -13,6 +13,7 @@ from verify.claims import Claim
 from verify.exact import text
 from verify.execute import Done, Store, execute
 from verify.findings import Findings
+from verify.flow_findings import flows_of
 from verify.keeping import versions
 from verify.plan import plan_scenes, series_task
 from verify.planned import Plan
@@ -90,6 +91,7 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         growth_laws=_growth_laws(scene, findings),
         growth_explains=scene.grid.growth_explains if scene.grid else "",
         work_precision=_work_precision(scene, findings),
+        flows=flows_of(scene, findings.results),
         stability=judged_cases(scene, findings.results),
         largest_steps=largest_steps(scene, findings.results),
         stability_maps=stability_maps(scene, findings.results),

@@ -108,6 +108,16 @@ class RunResult(Frozen):
     seconds: Seconds
     source: str = ""
 
+    def _repr_html_(self) -> str:
+        from verify.notebook import run_html
+
+        return run_html(self)
+
+    def _repr_latex_(self) -> str:
+        from verify.notebook import run_latex
+
+        return run_latex(self)
+
 
 class Parts(Frozen):
     """truncation + input + trajectory + determinant + product = lambda_working (one equation of
@@ -184,6 +194,11 @@ class SeparationResult(Frozen):
     error_method: str
     seconds: Seconds
 
+    def _repr_html_(self) -> str:
+        from verify.notebook import separation_html
+
+        return separation_html(self)
+
 
 class CrossoverResult(Frozen):
     """A `verify.separation_growth.Crossover`."""
@@ -199,6 +214,11 @@ class SeparationGrid(Frozen):
     points: tuple[SeparationResult, ...]
     plain: CrossoverResult
     closed_form: CrossoverResult
+
+    def _repr_html_(self) -> str:
+        from verify.notebook import grid_html
+
+        return grid_html(self)
 
 
 class AverageResult(Frozen):
@@ -263,13 +283,15 @@ class CriterionResult(Frozen):
 class ClaimResult(Frozen):
     """One claim with its verdict; `evidence` is one line, `details` a table of texts.
 
-    `scene` is empty where the claim speaks of every H.
+    `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
+    such as "4.1 The Duffing system"; a report groups its claims by it.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
     """
 
     id: str
     kind: str = ""
     source: str
+    section: str = ""
     statement: str
     scene: str
     verdict: Verdict

@@ -31,6 +31,13 @@
     step_sizes = [0.1, 0.05, 0.025]
     initial_value = { q = 1.5, p = 0 }
 
+    [[flow]]                               # a region carried by maps; see verify.flow_sections
+    shape = "cat"
+    centre = { q = 1, p = 0 }
+    scale = 0.5
+    step_size = 0.01
+    steps = [5000, 20000]
+
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
@@ -46,6 +53,7 @@ from verify import schemes as scheme_catalogue
 from verify import systems
 from verify.errors import InputError
 from verify.exact import text
+from verify.flow_sections import Flow
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
@@ -180,6 +188,7 @@ class Scene(Frozen):
     separation: tuple[SeparationOver, ...] = ()
     series: tuple[Series, ...] = ()
     work_precision: WorkPrecision | None = None
+    flow: tuple[Flow, ...] = ()
     stability: tuple[Stability, ...] = ()
     largest_step: tuple[LargestStepOver, ...] = ()
     stability_map: tuple[StabilityMap, ...] = ()
@@ -192,11 +201,12 @@ class Scene(Frozen):
         of_stability = *self.stability, *self.largest_step, *self.stability_map
         also = [name for section in of_stability for name in section.schemes]
         also += self.work_precision.schemes if self.work_precision else ()
+        also += [name for section in self.flow for name in section.schemes]
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
-        runs = self.grid, self.series, self.separation, self.work_precision, self.stability
+        runs = self.grid, self.series, self.separation, self.work_precision, self.flow
         free = set(exact.symbols)
-        if not any((*runs, self.largest_step)):
+        if not any((*runs, self.stability, self.largest_step)):
             free -= {over.parameter for over in self.stability_map}
         if any((*runs, *of_stability)) and free:
             raise InputError("parameter", min(free), "has no value; a run needs one")

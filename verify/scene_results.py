@@ -1,5 +1,6 @@
 """What was found for a scene, and a whole report: results of all kinds put together."""
 
+from verify.flow_results import FlowResult
 from verify.results import (
     ClaimResult,
     CriterionResult,
@@ -21,7 +22,8 @@ class SceneResult(Frozen):
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
     scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
     `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
-    proved of its schemes for every H, `work_precision` error against run time;
+    proved of its schemes for every H, `work_precision` error against run time,
+    `flows` what maps do to regions;
     `stability`, `largest_steps` and `stability_maps` how stable they are.
     """
 
@@ -41,6 +43,7 @@ class SceneResult(Frozen):
     growth_explains: str = ""
     every: tuple[EveryResult, ...] = ()
     work_precision: WorkPrecisionResult | None = None
+    flows: tuple[FlowResult, ...] = ()
     stability: tuple[StabilityResult, ...] = ()
     largest_steps: tuple[LargestStepResult, ...] = ()
     stability_maps: tuple[StabilityMapResult, ...] = ()
@@ -65,3 +68,8 @@ class Report(Frozen):
     scenes: tuple[SceneResult, ...]
     left_out: tuple[tuple[str, str], ...]
     provenance: Provenance
+
+    def _repr_html_(self) -> str:
+        from verify.notebook import report_html
+
+        return report_html(self)

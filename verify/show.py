@@ -215,10 +215,10 @@ def _crossed(way: "CrossoverResult") -> str:
     return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
 
 
-def print_report(made: "Report", page: Path) -> None:
+def print_report(made: "Report", *pages: Path) -> None:
     for claim in made.claims:
         click.echo(f"{claim.verdict:9}  {claim.source}: {claim.evidence}")
     for scene in made.scenes:
         for c in scene.criteria:
             click.echo(f"{c.verdict:9}  {scene.name}, {c.scheme}, criterion {c.number}")
-    click.echo(f"{page} ({made.provenance.seconds:.3g} s)")
+    click.echo(f"{', '.join(map(str, pages))} ({made.provenance.seconds:.3g} s)")

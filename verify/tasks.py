@@ -4,6 +4,7 @@ import hashlib
 import json
 from typing import ClassVar, Literal
 
+from verify.flow_sections import ShapeGiven
 from verify.results import Frozen
 from verify.scene_values import Number, StepSize
 
@@ -120,6 +121,19 @@ class StabilityMapTask(_FromPoint):
     steps: int
 
 
+class FlowTask(_OfHamiltonian):
+    """Carry a shape by `steps` steps of a map: a scheme's, or the exact flow's."""
+
+    kind: Literal["flow"] = "flow"
+    map: str
+    shape: ShapeGiven
+    step_size: StepSize
+    steps: int
+    digits: int
+    mean_lambda: bool
+    distance: bool
+
+
 Task = (
     ProofTask
     | RunTask
@@ -130,6 +144,7 @@ Task = (
     | StabilityTask
     | LargestStepTask
     | StabilityMapTask
+    | FlowTask
 )
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -69,6 +70,27 @@ def test_a_report_of_a_users_scene_is_a_page_and_its_results(
     assert len(found.proofs) == 2
     assert (len(found.runs), len(found.series), len(found.criteria)) == (8, 1, 8)
     assert len(kept(folder)) == report.provenance.computed == 2 + 8 + 1
+
+
+def test_a_report_for_a_repository_is_markdown_with_its_figures(
+    capsys: pytest.CaptureFixture[str], scene: str, tmp_path: Path
+) -> None:
+    folder = tmp_path / "out"
+    status, out, err = here(capsys, "report", scene, "-o", str(folder), "--format", "md")
+    assert (status, err) == (0, "")
+    assert str(folder / "report.md") in out
+    assert {f.name for f in folder.iterdir()} == {"report.md", "figures", "results.json", "kept"}
+    text = (folder / "report.md").read_text(encoding="utf-8")
+    assert "<script>" not in text
+    paths = set(re.findall(r"\]\((figures/[^)]+)\)", text))
+    assert paths == {f"figures/{f.name}" for f in (folder / "figures").iterdir()}
+    assert provenance(folder).command.endswith("-o out --format md")
+    both = ("--format", "html", "--format", "md")
+    assert here(capsys, "report", scene, "-o", str(folder), *both)[0] == 0
+    assert (folder / "index.html").exists()
+    status, _, err = here(capsys, "report", scene, "-o", str(folder), "--format", "pdf")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "pdf" in err
 
 
 def test_a_report_in_json_is_one_object_with_its_claims(

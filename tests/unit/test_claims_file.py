@@ -181,3 +181,17 @@ def test_two_claims_of_one_id_are_refused(tmp_path: Path) -> None:
     path.write_text((HEAD + 'kind = "criteria"\nnumbers = [1]\n') * 2)
     with pytest.raises(InputError, match="mine"):
         load_claims(path)
+
+
+def test_a_claims_section_is_carried_to_its_result(tmp_path: Path) -> None:
+    path = tmp_path / "claims.toml"
+    path.write_text(
+        '[defaults]\nkind = "area_preserving"\nscheme = "lie2"\nevery = "hamiltonian"\n'
+        'area_preserving = true\nsection = "2 Area"\n'
+        '[[claim]]\nid = "a"\n[[claim]]\nid = "b"\nsection = "3.1 More"\n'
+    )
+    found = check_claims(load_claims(path).claims, Findings({}))
+    assert [c.section for c in found] == ["2 Area", "3.1 More"]
+    path.write_text(path.read_text().replace('section = "2 Area"\n', ""))
+    found = check_claims(load_claims(path).claims, Findings({}))
+    assert [c.section for c in found] == ["", "3.1 More"]

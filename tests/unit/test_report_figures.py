@@ -1,11 +1,15 @@
 """The page's figures: inline, themed, told apart without colour, and nothing left behind."""
 
+import math
 import re
 from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib as mpl
+import pytest
+from matplotlib.figure import Figure
 
+from reports.axes import decades
 from reports.figures import merged
 from reports.page import render
 from tests.unit.test_report_page import page_of, real
@@ -20,7 +24,7 @@ def figures(page: str) -> list[Any]:
 def test_figures_are_inline_images_that_follow_the_theme() -> None:
     found = figures(page_of("real"))
     # The highlight, the table, |Λ| and MSE/|Λ| over h, and one series.
-    assert len(found) == 5
+    assert len(found) == 4  # one each: table, |Λ|, ratio, series
     ids = [e.get("id") for svg in found for e in svg.iter() if e.get("id")]
     assert ids
     assert len(ids) == len(set(ids))
@@ -62,3 +66,32 @@ def test_neighbouring_buckets_are_put_together_with_their_extremes() -> None:
     assert merged(points, 5) == points
     whole = merged(points, 1)
     assert whole == [SeriesPoint(first=1, last=5, delta_j=("-5e-9", "5e-9"), lam=("0", "5"))]
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(-7.0, 3.0), (-1.7, -0.9), (-2.2, -2.0), (-400.5, -400.1)]
+)
+def test_a_tick_of_a_logarithmic_axis_says_where_it_stands(low: float, high: float) -> None:
+    axes = Figure().subplots()
+    axes.set_ylim(low, high)
+    decades(axes.yaxis)
+    axes.figure.canvas.draw()
+    digits = {ord(a): b for a, b in zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-", strict=True)}
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert len(set(labels)) == len(labels) >= 2
+    for place, label in zip(axes.get_yticks(), labels, strict=True):
+        mantissa, _, power = label.rpartition("10")
+        said = math.log10(float(mantissa.rstrip("·") or "1")) + int(power.translate(digits))
+        assert said == pytest.approx(place, abs=0.03)
+
+
+@pytest.mark.parametrize("source", ["Table $\\frac$ 9", "$a_b$", "T\x01\x00", "<b>T</b> & 9"])
+def test_a_source_stays_text_in_a_figure(source: str) -> None:
+    made = real()
+    claims = tuple(
+        c.model_copy(update={"source": source}) if c.id == "table-9" else c for c in made.claims
+    )
+    shown = source.replace("\x01", "\ufffd").replace("\x00", "\ufffd")
+    first = figures(render(made.model_copy(update={"claims": claims})))[0]
+    assert f"printed: {shown}" in [e.text for e in first.iter() if e.tag == "text"]
+    assert first.get("aria-label", "").startswith(shown)

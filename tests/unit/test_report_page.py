@@ -1,5 +1,7 @@
 """The page: well-formed, escaped, self-contained, the same each time, and without empty parts."""
 
+import base64
+import hashlib
 import re
 import subprocess
 import sys
@@ -12,8 +14,11 @@ from typing import Any
 
 import pytest
 
+import reports
+from reports.claim_view import Anchors
 from reports.page import render, write
 from reports.typography import number
+from reports.views import groups, page_view
 from verify.claims import Claim, MonotoneClaim, TableClaim
 from verify.execute import Store
 from verify.report import make_report
@@ -23,6 +28,7 @@ from verify.scene_results import Provenance, Report, SceneResult
 from verify.verdict import Verdict
 
 EVIL = '<script>alert("x")</script>'
+SCRIPT = (Path(reports.__file__).parent / "templates" / "page.js").read_text(encoding="utf-8")
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 
 # -- small reports --------------------------------------------------------------------------------
@@ -124,6 +130,7 @@ class Reader(HTMLParser):
         self.open: list[str] = []
         self.elements: list[tuple[str, dict[str, str | None]]] = []
         self.texts: list[str] = []
+        self.scripts: list[str] = []
         self.feed(page)
         self.close()
         assert not self.open, self.open
@@ -133,6 +140,8 @@ class Reader(HTMLParser):
         assert len(attrs) == len(dict(attrs)), f"an attribute twice: {attrs}"
         if tag not in VOID:
             self.open.append(tag)
+        if tag == "script":
+            self.scripts.append("")
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.elements.append((tag, dict(attrs)))
@@ -143,6 +152,8 @@ class Reader(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         self.texts.append(data)
+        if self.open and self.open[-1] == "script":
+            self.scripts[-1] += data
 
     def all(self, name: str) -> list[str]:
         return [a[name] or "" for _, a in self.elements if name in a]
@@ -192,12 +203,21 @@ def test_the_page_needs_nothing_from_outside(name: str) -> None:
     page = page_of(name)
     reader = Reader(page)
     for tag, attributes in reader.elements:
-        assert tag not in ("script", "link", "img", "iframe", "object", "embed")
+        assert tag not in ("link", "img", "iframe", "object", "embed")
         for key, text in attributes.items():
             assert not re.search(r"https?:|//", text or ""), (tag, key, text)
             assert not key.startswith("on")
+    assert reader.scripts == [SCRIPT]
     assert "@import" not in page
     assert not re.search(r"url\((?!#)", page)
+
+
+def test_the_pages_policy_lets_its_own_script_run_and_no_other() -> None:
+    (script,) = Reader(page_of("real")).scripts
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    (policy,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', page_of("real"))
+    assert f"script-src 'sha256-{digest}';" in policy
+    assert "default-src 'none';" in policy
 
 
 def test_what_others_wrote_stays_text() -> None:
@@ -216,7 +236,7 @@ def test_what_others_wrote_stays_text() -> None:
         left_out=((EVIL, EVIL),),
     )  # fmt: skip
     reader = Reader(render(evil))
-    assert "script" not in {tag for tag, _ in reader.elements}
+    assert reader.scripts == [SCRIPT]
     assert "".join(reader.texts).count(EVIL) > 15
 
 
@@ -239,8 +259,9 @@ def test_the_same_report_gives_the_same_page(tmp_path: Path) -> None:
 def test_what_a_report_lacks_is_not_shown() -> None:
     page = render(report((scene(),)))
     ids = Reader(page).all("id")
-    assert not {"verdicts", "evidence", "left-out", "refuted"} & set(ids)
-    assert not re.search(r"<svg|<table|<details|Parameters:|T =", page)
+    assert not {"claims", "left-out", "telling", "kinds"} & set(ids)
+    assert not re.search(r"<svg|<table|Parameters:|T =", page)
+    assert page.count("<details") == 1, "the contents"
 
 
 def test_a_proof_is_shown_without_matplotlib() -> None:
@@ -251,12 +272,49 @@ def test_a_proof_is_shown_without_matplotlib() -> None:
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
+# -- claims by section ----------------------------------------------------------------------------
+
+
+def sections_of(*sections: str) -> list[tuple[str, list[str]]]:
+    given = tuple(claim(id=str(i), section=name) for i, name in enumerate(sections))
+    found = groups(page_view(report(claims=given)).claims, Anchors())
+    return [(g.title, [c.result.id for c in g.claims]) for g in found]
+
+
+def test_claims_stand_by_section_in_the_order_of_the_papers_numbers() -> None:
+    assert sections_of("4.10 Z", "4.2 B", "", "4.2 B", "Appendix", "3 A", "10 C") == [
+        ("3 A", ["5"]), ("4.2 B", ["1", "3"]), ("4.10 Z", ["0"]), ("10 C", ["6"]),
+        ("Appendix", ["4"]), ("Other claims", ["2"]),
+    ]  # fmt: skip
+    assert sections_of("", "") == [("", ["0", "1"])], "one group without a title"
+
+
+def test_a_section_has_its_heading_its_counts_and_its_place_in_the_contents() -> None:
+    given = (
+        claim(section="4.1 D"), claim(id="b", section="4.1 D", verdict=Verdict.REFUTED),
+        claim(id="c", section="3 A"),
+    )  # fmt: skip
+    page = render(report(claims=given))
+    assert page.index('id="section-3-A"') < page.index('id="section-4.1-D"')
+    assert page.count('href="#section-4.1-D"') == 2, "contents and mark"
+    assert re.search(r'4\.1 D</a> <span class="tally">.*1 proved.*1 refuted', page)
+    assert "<h3" not in render(report(claims=(claim(),))), "nor is there one without sections"
+
+
+def test_no_evidence_and_no_picture_stands_twice() -> None:
+    page = page_of("real")
+    assert page.count("4 of 4 entries are wrong: computed") == 2, "the first screen and its claim"
+    assert page.count("MSE increases between all") == 1
+    labels = re.findall(r'<svg[^>]* aria-label="([^"]*)"', page)
+    assert len(labels) == len(set(labels)) == 4
+
+
 # -- what the page says ---------------------------------------------------------------------------
 
 
 def test_the_page_of_a_real_scene_says_what_was_found() -> None:
     text = " ".join(" ".join(Reader(page_of("real")).texts).replace("\xa0", " ").split())
-    assert "Of 2 claims, 1 is enclosed and 1 refuted." in text
+    assert "Of 2 claims, 1 is enclosed and 1 refuted; in Table 9, 4 of 4 entries are wrong." in text
     assert "The most telling refutation: Table 9" in text
     assert "h = 0.03 gives N = 6" in text  # 0.2/0.03 is not whole
     assert "Computed in float64 with N = 6 … 20 steps" in text
@@ -310,3 +368,42 @@ def test_the_finding_counts_the_verdicts(verdicts: str, sentence: str) -> None:
     letters = {v[0]: v for v in Verdict}
     claims = tuple(claim(id=str(i), verdict=letters[v]) for i, v in enumerate(verdicts))
     assert sentence in render(report((), claims=claims))
+
+
+def test_tiles_say_by_sign_and_word_what_was_found() -> None:
+    page = render(report(claims=(claim(), claim(id="b", verdict=Verdict.REFUTED))))
+    tiles = re.findall(r'<li class="tile.*?</li>', page)
+    assert [re.sub(r"<[^>]*>", "", t).split()[:2] for t in tiles] == [
+        ["✓1", "proved"],
+        ["✗1", "refuted"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said", "tile"),
+    [
+        ({}, "ΔJ of lie2 is of order h³.", "ΔJ ∼ h³"),
+        ({"order": None, "area_preserving": True}, "lie2 preserves area exactly", "ΔJ ≡ 0"),
+        (
+            {"order": None, "area_preserving": None, "verdict": Verdict.UNDECIDED},
+            "the order of ΔJ of lie2 is undecided", "its order is undecided",
+        ),
+    ],
+)  # fmt: skip
+def test_without_claims_the_first_screen_answers_with_the_proofs(
+    changes: dict[str, Any], said: str, tile: str
+) -> None:
+    page = render(report((scene(proofs=(proof(**changes),)),)))
+    first = page[page.index("<h1>") : page.index("</header>")]
+    assert said in first
+    assert tile in first
+
+
+def test_without_a_refutation_the_picture_is_a_scenes_own() -> None:
+    steps = [run(step_size=h, values={"lambda": Value(value=v, bound="1e-9")})
+             for h, v in (("0.01", "-1.23e-05"), ("0.02", "-4.9e-05"))]  # fmt: skip
+    page = render(report((scene(runs=tuple(steps)),), claims=(claim(),)))
+    telling = page[page.index('id="telling"') : page.index('id="claims"')]
+    assert "Cumulative total error |Λ|" in telling
+    assert "<svg" in telling
+    assert "refutation" not in page

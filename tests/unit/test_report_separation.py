@@ -12,7 +12,7 @@ from reports.page import render
 from reports.typography import grouped, step
 from tests.unit.made_separations import BELOW, BOTH, CROSSING, PARTS, evaluation, grid, point
 from tests.unit.test_report_figures import figures
-from tests.unit.test_report_page import EVIL, Reader, proof, report, run, scene
+from tests.unit.test_report_page import EVIL, SCRIPT, Reader, proof, report, run, scene
 from verify.results import SeparationGrid, SeriesPoint, Value
 from verify.scene_results import SceneResult
 from verify.separation import as_grid
@@ -110,7 +110,7 @@ def test_what_others_wrote_in_a_separation_stays_text() -> None:
                  arithmetic=EVIL)  # fmt: skip
     page = page_of(as_grid([evil, fine]), proofs=(proof(scheme=EVIL),))
     reader = Reader(page)
-    assert "script" not in {tag for tag, _ in reader.elements}
+    assert reader.scripts == [SCRIPT]
     assert "".join(reader.texts).count(EVIL) > 4
 
 

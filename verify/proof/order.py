@@ -62,6 +62,16 @@ class Proof:
     def consistent(self) -> bool:
         return self.convergence_order is None or self.convergence_order >= 1
 
+    def _repr_html_(self) -> str:
+        from verify.notebook import proof_html
+
+        return proof_html(self)
+
+    def _repr_latex_(self) -> str:
+        from verify.notebook import proof_latex
+
+        return proof_latex(self)
+
 
 @dataclass(frozen=True)
 class Leading:

@@ -1,0 +1,88 @@
+"""Small pages made by the real code: a paper's claims, a user's scene; both with hostile text."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from reports.page import render
+from verify.claims import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
+from verify.execute import Store
+from verify.report import make_report
+from verify.scene import scene_from
+from verify.scene_results import Report
+
+EVIL = "<script>window.planted = 1</script><img src=x onerror='window.planted = 2'>"
+
+_GRID: dict[str, Any] = {
+    "time": "0.2", "step_sizes": ["0.01", "0.02", "0.03"], "separate": True,
+    "initial_values": [{"q": "1", "p": "0"}, {"q": "0", "p": "-1.5"}],
+    "observables": ["delta_j_max", "mse", "lambda", "lambda_plain"],
+}  # fmt: skip
+
+
+def paper() -> Report:
+    """Claims by section, among them a refuted table and an argument on paper; runs, separated."""
+    scene = scene_from(
+        {
+            "name": "duffing", "title": f"Duffing {EVIL}", "system": "duffing",
+            "parameters": {"delta": 1}, "schemes": ["lie2", "symplectic-euler"],
+            "criteria": [1, 2, 3, 4], "grid": _GRID,
+            "series": [{"step_size": "0.01", "time": "1", "initial_value": {"q": "1", "p": "0"}}],
+        },
+        "duffing",
+    )  # fmt: skip
+    common = {"section": "4.1 The Duffing system", "scene": "duffing", "scheme": "lie2"}
+    claims: list[Claim] = [
+        TableClaim.model_validate(
+            common | {"id": "table-9", "source": "Table 9", "statement": f"A table. {EVIL}",
+                      "kind": "table", "step_sizes": ["0.01", "0.02"],
+                      "printed": ["-1.3010", "-1.0000"]}
+        ),
+        DeltaJClaim.model_validate(
+            common | {"id": "eq-21", "source": "Eq. 21", "statement": "ΔJ = 3h³δpq + O(h⁴).",
+                      "kind": "delta_j", "formula": "3*h**3*delta*p*q", "up_to": 4}
+        ),
+        MonotoneClaim.model_validate(
+            common | {"id": "grows", "source": "Figure 9", "kind": "monotone", "quantity": "mse",
+                      "direction": "increases", "statement": "MSE increases."}
+        ),
+        TheoremClaim(id="eq-3", source="Eq. 3", section="2.1 Discretization", kind="theorem",
+                     statement="L_{H_p}(p_k) = H_p.", name="eq-3"),
+    ]  # fmt: skip
+    return _report(f"A paper {EVIL}", scene, claims)
+
+
+def own_scene() -> Report:
+    """No claims: proofs, runs and stability; the formula is one that no parser would let pass."""
+    scene = scene_from(
+        {
+            "name": "mine", "title": "A quartic oscillator", "hamiltonian": "p**2/2 + a*q**4",
+            "parameters": {"a": "1/3"}, "schemes": ["lie2", "symplectic-euler"],
+            "criteria": [1, 2, 3, 4], "grid": _GRID,
+            "stability": [{"steps": 100, "step_sizes": ["0.01", "2"],
+                           "initial_values": [{"q": "1", "p": "0"}]}],
+        },
+        "mine.toml",
+    )  # fmt: skip
+    made = _report("My oscillator", scene, [])
+    (found,) = made.scenes
+    return made.model_copy(update={"scenes": (found.model_copy(update={"hamiltonian": EVIL}),)})
+
+
+def _report(title: str, scene: Any, claims: list[Claim]) -> Report:
+    return make_report(title, [scene], claims, Store(None), command="verify report", workers=1)
+
+
+_MADE: dict[str, Callable[[], Report]] = {"paper": paper, "own scene": own_scene}
+NAMES = tuple(_MADE)
+
+
+@cache
+def page_of(name: str) -> str:
+    return render(_MADE[name]())
+
+
+def planted(name: str, text: str, *, policy: bool = True) -> str:
+    """The page with a piece of HTML at the end of its content, and without its policy on demand."""
+    page = page_of(name).replace("</main>", f"{text}</main>")
+    return page if policy else page.replace("Content-Security-Policy", "x-none")

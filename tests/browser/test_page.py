@@ -1,0 +1,198 @@
+"""The page in a real browser: quiet, closed to the outside, seen in full, and open to everyone."""
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+
+from tests.browser.checks import Opened, opened
+from tests.browser.made_pages import EVIL, NAMES, page_of, planted
+
+PHONE, DESK = 360, 1280
+A4 = 680  # px: 210 mm without the margins
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Chromium as it is installed; where tests must not be left out, its absence is a failure."""
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        if os.environ.get("CI"):
+            pytest.fail("chromium is not installed")
+        pytest.skip("chromium is not installed")
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium)
+        yield started
+        started.close()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("pages")
+
+
+def file_of(folder: Path, page: str) -> Path:
+    path = folder / "index.html"
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+# -- what each page is held to --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [PHONE, DESK])
+@pytest.mark.parametrize("name", NAMES)
+def test_the_page_is_quiet_closed_and_seen_in_full(
+    browser: Browser, folder: Path, name: str, width: int, scheme: str
+) -> None:
+    path = file_of(folder, page_of(name))
+    with opened(browser, path, width=width, scheme=scheme) as found:
+        assert found.sideways() == []
+        found.open_all()
+        assert found.sideways() == []
+        assert found.without_size() == []
+        assert found.page.locator("svg").count() > 1
+        assert found.page.locator("math").count() > 5
+        assert found.console_errors() == []
+        assert found.outside() == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [PHONE, DESK])
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_serious_keeps_anyone_from_reading_it(
+    browser: Browser, folder: Path, name: str, width: int, scheme: str
+) -> None:
+    with opened(browser, file_of(folder, page_of(name)), width=width, scheme=scheme) as found:
+        assert found.violations() == []
+        assert found.open_all().violations() == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_others_wrote_stays_text(browser: Browser, folder: Path, name: str) -> None:
+    with opened(browser, file_of(folder, page_of(name))) as found:
+        assert EVIL in found.open_all().page.inner_text("body")
+        assert found.page.evaluate("window.planted") is None
+        assert found.page.locator("script").count() == 1
+        assert found.page.locator("img").count() == 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_answer_and_its_picture_are_on_the_first_screen(
+    browser: Browser, folder: Path, name: str
+) -> None:
+    with opened(browser, file_of(folder, page_of(name))) as found:
+        for part in ("h1", ".finding", ".tiles", "#telling svg", "#telling .seen"):
+            box = found.page.locator(part).bounding_box()
+            assert box is not None
+            assert box["y"] + box["height"] <= 800, part
+
+
+# -- ways through the page ------------------------------------------------------------------------
+
+
+def test_an_anchor_opens_its_claim(browser: Browser, folder: Path) -> None:
+    path = file_of(folder, page_of("paper"))
+    with opened(browser, path, fragment="#claim-eq-3") as found:
+        assert found.page.locator("#claim-eq-3 .evidence").is_visible()
+        assert (
+            found.page.evaluate("document.querySelectorAll('.claim > details[open]').length") == 1
+        )
+        found.page.click("#telling .jump a")
+        evidence = found.page.locator("#claim-table-9 .evidence")
+        evidence.wait_for(state="visible", timeout=2000)
+        found.page.click("#claim-table-9 > details > summary")
+        assert not evidence.is_visible()
+        found.page.click("#claim-table-9 > .mark")
+        assert evidence.is_visible(), "the same link again"
+
+
+def test_without_scripts_a_claim_opens_by_hand(browser: Browser, folder: Path) -> None:
+    with opened(browser, file_of(folder, page_of("paper")), script=False) as found:
+        evidence = found.page.locator("#claim-table-9 .evidence")
+        assert not evidence.is_visible()
+        found.page.click("#claim-table-9 > details > summary")
+        assert evidence.is_visible()
+
+
+def test_the_keyboard_reaches_the_content_and_opens_a_claim(browser: Browser, folder: Path) -> None:
+    with opened(browser, file_of(folder, page_of("paper"))) as found:
+        page = found.page
+        page.keyboard.press("Tab")
+        skip = page.locator(".skip:focus").bounding_box()
+        assert skip is not None
+        assert skip["x"] >= 0
+        page.keyboard.press("Enter")
+        assert page.evaluate("document.activeElement.id") == "content"
+        page.locator("#claim-eq-3 summary").focus()
+        outline = "getComputedStyle(document.activeElement).outlineStyle"
+        page.keyboard.press("Enter")
+        assert page.evaluate(outline) == "solid"
+        assert page.locator("#claim-eq-3 .evidence").is_visible()
+
+
+def test_the_contents_stand_at_the_side_and_fold_on_a_phone(browser: Browser, folder: Path) -> None:
+    path = file_of(folder, page_of("paper"))
+    link = ".contents a[href='#terms']"
+    with opened(browser, path) as found:
+        assert found.page.locator(link).is_visible()
+        found.page.click(link)
+        assert found.page.locator(link).is_visible(), "it stays beside what it led to"
+    with opened(browser, path, width=PHONE) as found:
+        assert not found.page.locator(link).is_visible()
+        found.page.click(".contents summary")
+        assert found.page.locator(link).is_visible()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_on_paper_all_is_unfolded_and_nothing_is_cut(
+    browser: Browser, folder: Path, name: str
+) -> None:
+    with opened(browser, file_of(folder, page_of(name)), width=A4, scheme="dark") as found:
+        page = found.page
+        page.emulate_media(media="print", color_scheme="dark")
+        assert page.evaluate("document.querySelectorAll('main details[open]').length") == 0
+        assert all(each.is_visible() for each in page.locator("main details table").all())
+        assert all(each.is_visible() for each in page.locator(".evidence").all())
+        assert not page.locator(".contents").is_visible()
+        assert found.sideways() == []
+        assert (
+            page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+        )
+        assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
+
+
+# -- planted errors -------------------------------------------------------------------------------
+
+CONTROLS: dict[str, tuple[str, bool, Callable[[Opened], list[str]]]] = {
+    "an error on the console": (
+        "<script>console.error('planted')</script>", False, Opened.console_errors,
+    ),
+    "a script that the policy stops": (
+        "<script>console.log('planted')</script>", True, Opened.console_errors,
+    ),
+    "an image from outside": ("<img src='https://x.invalid/a.png' alt='a'>", False, Opened.outside),
+    "an image that the policy stops": (
+        "<img src='https://x.invalid/a.png' alt='a'>", True, Opened.console_errors,
+    ),
+    "a wide element": ("<div style='width: 3000px'>wide</div>", True, Opened.sideways),
+    "a figure without size": ("<svg width='0' height='0'></svg>", True, Opened.without_size),
+    "a formula that is hidden": ("<math style='display: none'><mi>x</mi></math>", True, Opened.without_size),
+    "faint text": (
+        "<p style='color: #aaa; background: #fff'>faint</p>", True, Opened.violations,
+    ),
+    "a picture without words": ("<svg role='img'></svg>", True, Opened.violations),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("error", CONTROLS)
+def test_a_planted_error_is_seen(browser: Browser, folder: Path, error: str) -> None:
+    text, policy, check = CONTROLS[error]
+    with opened(browser, file_of(folder, planted("paper", text, policy=policy))) as found:
+        assert check(found.open_all())
+    with opened(browser, file_of(folder, planted("paper", "", policy=policy))) as found:
+        assert check(found.open_all()) == [], "its twin"

@@ -1,0 +1,53 @@
+"""What commands that do a plan's tasks share: options, the progress shown, what is kept."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from verify.execute import Done
+    from verify.tasks import Task
+
+keep_option = click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep what is finished there; the same command goes on from it.",
+)
+workers_option = click.option(
+    "--workers", type=click.IntRange(1, 256), help="Processes; by the work there is."
+)
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="One JSON object on standard output."
+)
+
+
+def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with --keep, --workers and --json."""
+    return keep_option(workers_option(json_option(command)))
+
+
+@contextmanager
+def told(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[Done]":
+    """Yields what is called with each finished task; an interruption says what is kept where."""
+    from verify.execute import cost
+    from verify.progress import progress_bar
+
+    finished = 0
+    with progress_bar(f"{len(tasks)} tasks", sum(map(cost, tasks.values())), unit="") as advance:
+
+        def done(name: str, _: object) -> None:
+            nonlocal finished
+            finished += 1
+            advance(cost(tasks[name]))
+
+        try:
+            yield done
+        except KeyboardInterrupt:
+            if kept is not None:
+                text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {kept}"
+                click.echo(f"{text}; the same command goes on from there", err=True)
+            raise

@@ -1,0 +1,173 @@
+"""Points of outlines in one number system, and the maps that carry them.
+
+A scheme's map in float64 is held against the same steps with compensated sums, in wider number
+systems against a still wider one. The exact flow comes with its own bound.
+"""
+
+import contextlib
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from mpmath.ctx_mp import MPContext
+
+from verify import arithmetic as number_systems
+from verify.arithmetic import float64
+from verify.exact_points import exact_points
+from verify.float_context import FLOAT
+from verify.hamiltonian import Hamiltonian
+from verify.many_points import PointMap
+from verify.number_system import Arithmetic, UnsupportedError, bits_for
+from verify.outline import Outline
+
+_FLOAT_GRID = 80  # bits after the point that are kept of a float64
+_WIDER = 19  # digits that the finer arithmetic has more: one limb
+_FASTEST = ("fixed", "mpfr")
+_SAMPLED = 8  # panels that are carried in it
+
+
+class _Floats:
+    """Points in float64."""
+
+    bits, grid = 53, _FLOAT_GRID
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+        at = np.array([float(x) for x in s])
+        x, y = outline.arcs[arc](FLOAT, at)
+        return np.broadcast_to(x, at.shape).copy(), np.broadcast_to(y, at.shape).copy()
+
+    def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
+        return points
+
+    def whole(self, x: np.ndarray) -> np.ndarray:
+        return np.array([int(v) for v in np.ldexp(x, self.grid)], dtype=object)
+
+
+class FloatPlane(_Floats):
+    """A scheme's steps in float64."""
+
+    sampled = 1 << 30  # all
+    radius: Fraction | None = None
+    name, digits = float64.NAME, 17
+    method = "float64; its rounding by the same steps with compensated sums"
+
+    def __init__(self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int) -> None:
+        self._maps = [
+            PointMap(
+                hamiltonian, scheme, step_size=h, steps=steps,
+                arithmetic=number_systems.get(float64.NAME, 17), compensated=compensated,
+            )
+            for compensated in (False, True)
+        ]  # fmt: skip
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        return _image(self._maps[0], x, y)
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        return _image(self._maps[1], x, y)
+
+
+class ExactPlane(_Floats):
+    """The exact flow for a time, in float64; `radius` bounds the error of all points so far."""
+
+    sampled = 0
+    name, digits = float64.NAME, 17
+
+    def __init__(self, hamiltonian: Hamiltonian, time: Fraction) -> None:
+        self._hamiltonian, self._time = hamiltonian, time
+        self.radius: Fraction | None = Fraction(0)
+        self.method = ""
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        found = exact_points(self._hamiltonian, y, x, [self._time])
+        self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
+        self.method = found.method
+        return found.q[0], found.p[0]
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        raise NotImplementedError("the exact flow's error is known")
+
+
+class WidePlane:
+    """A scheme's steps in a number system of so many digits."""
+
+    sampled = _SAMPLED
+    radius: Fraction | None = None
+
+    def __init__(
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, name: str, digits: int
+    ) -> None:
+        self._given = hamiltonian, scheme, h, steps, name
+        self.name, self.digits = name, digits
+        self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
+        self.bits = self.grid = bits_for(digits)
+        self._map, self.arithmetic = self._made(digits)
+
+    @classmethod
+    def of(
+        cls, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, digits: int
+    ) -> "WidePlane":
+        """In the fastest number system that can do it."""
+        for name in _FASTEST:
+            with contextlib.suppress(UnsupportedError):
+                return cls(hamiltonian, scheme, h, steps, name, digits)
+        raise UnsupportedError(f"no number system of {digits} digits can do {scheme}")
+
+    def _made(self, digits: int) -> tuple[PointMap, Arithmetic]:
+        hamiltonian, scheme, h, steps, name = self._given
+        arithmetic = number_systems.get(name, digits)
+        made = PointMap(hamiltonian, scheme, step_size=h, steps=steps, arithmetic=arithmetic)
+        return made, arithmetic
+
+    @cached_property
+    def _wider(self) -> tuple[PointMap, Arithmetic]:
+        return self._made(self.digits + _WIDER)
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+        mp = MPContext()
+        mp.prec = self.bits + 20
+        at = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
+        number = self.arithmetic.number
+        x, y = ([number(_exact(mp, z[i])) for z in at] for i in (0, 1))
+        return _objects(x), _objects(y)
+
+    def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
+        x, y = (np.array([float(self.arithmetic.exact(v)) for v in z]) for z in points)
+        return x, y
+
+    def whole(self, x: Any) -> np.ndarray:
+        exact, size = self.arithmetic.exact, 1 << self.grid
+        return _objects([round(exact(v) * size) for v in x])
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        q, p = _image(self._map, x, y)
+        return _objects(q), _objects(p)
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        wider, arithmetic = self._wider
+        exact, own = self.arithmetic.exact, self.arithmetic.number
+        q, p = _image(wider, *([arithmetic.number(exact(v)) for v in z] for z in (x, y)))
+        q, p = (_objects([own(arithmetic.exact(v)) for v in z]) for z in (q, p))
+        return q, p
+
+
+def _image(point_map: PointMap, x: Any, y: Any) -> tuple[Any, Any]:
+    found = point_map(p=y, q=x)
+    return found["q"], found["p"]
+
+
+def _objects(values: Sequence[Any]) -> np.ndarray:
+    made = np.empty(len(values), dtype=object)
+    made[:] = values
+    return made
+
+
+def _exact(mp: Any, x: Any) -> Fraction:
+    sign, mantissa, exponent, _ = mp.mpf(x)._mpf_
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return -size if sign else size
+
+
+SchemePlane = FloatPlane | WidePlane
