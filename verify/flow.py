@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.area_probe import Goal, Measured, Probe
-from verify.exact import decimal, text
+from verify.area_probe import Goal, Measured, NoAreaError, Probe
+from verify.exact import decimal, known_digits, text
 from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
 from verify.hausdorff import hausdorff
@@ -65,7 +65,7 @@ def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
             found |= _mean(hamiltonian, task, carried[0])
         if task.distance:
             found |= _distance(hamiltonian, span, carried)
-    except (LeftError, NoFlowError) as error:
+    except (LeftError, NoFlowError, NoAreaError) as error:
         found = {"problem": str(error)}
     return FlowImage(
         map=task.map,
@@ -130,10 +130,11 @@ def _areas(
             f"of area {decimal(region.change, 2)}"
         )
     curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
+    change, error = known_digits(region.change, region.error, _SHOWN)
     return {
         "problem": problem,
-        "area_change": None if problem else _known(region.change, region.error),
-        "probe_error": decimal(region.error, 2),
+        "area_change": None if problem else change,
+        "probe_error": decimal(region.error, 2) if problem else error,
         "arithmetic": plane.name,
         "digits": plane.digits,
         "method": plane.method,
@@ -143,49 +144,40 @@ def _areas(
 
 def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list[CarriedOutline]:
     fine = _extent(curves) / DRAWN
-    return [
-        CarriedOutline(
-            name=each.outline.name,
-            area=_known(each.measured.area, each.measured.area * each.measured.error),
-            area_change=_known(each.measured.change, each.measured.error),
-            probe_error=decimal(each.measured.error, 2),
-            nodes=each.measured.nodes,
-            points=points_text(thinned(curve, fine)),
-        )
-        for each, curve in zip(carried, curves, strict=True)
-    ]
+    return [_outline(each, curve, fine) for each, curve in zip(carried, curves, strict=True)]
+
+
+def _outline(carried: _Carried, curve: np.ndarray, fine: float) -> CarriedOutline:
+    measured = carried.measured
+    area = abs(measured.area)  # of a curve that runs clockwise it has a sign
+    change, error = known_digits(measured.change, measured.error, _SHOWN)
+    return CarriedOutline(
+        name=carried.outline.name,
+        area=known_digits(area, area * measured.error, _SHOWN)[0],
+        area_change=change,
+        probe_error=error,
+        nodes=measured.nodes,
+        points=points_text(thinned(curve, fine)),
+    )
 
 
 def _extent(curves: Sequence[np.ndarray]) -> float:
     return float(np.ptp(np.concatenate(curves), axis=0).max())
 
 
-def _known(value: Fraction, error: Fraction) -> str:
-    """The digits that are known, the last by one unit or so; one digit of what is not known."""
-    if not value or abs(value) <= error:
-        return decimal(value, 1)
-    known = 1
-    while known < _SHOWN and error * 10 ** (known + 1) < abs(value):
-        known += 1
-    return decimal(value, known)
-
-
 # -- beside the areas -----------------------------------------------------------------------------
 
 
 def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, Any]:
-    centre = task.shape.centre
+    # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
+    centre = np.mean(np.concatenate(region.before, axis=1), axis=1)
     found: Mean = RegionMean(hamiltonian, task.map, task.step_size, task.steps).of(
-        region.outline, (float(centre.q), float(centre.p))
+        region.outline, (float(centre[0]), float(centre[1]))
     )
-    error = Fraction(found.error)
-    value = Fraction(found.value)
+    value, error = Fraction(found.value), Fraction(found.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
-    return {
-        "mean_lambda": _known(value, error),
-        "mean_lambda_error": decimal(error, 2),
-        "agree": agree,
-    }
+    shown, bound = known_digits(value, error, _SHOWN)
+    return {"mean_lambda": shown, "mean_lambda_error": bound, "agree": agree}
 
 
 def _distance(
@@ -203,7 +195,5 @@ def _distance(
         found = hausdorff([own], [exact], own_sagitta, exact_sagitta)
         if found.value >= greatest:
             greatest, bound = found.value, found.bound + float(plane.radius or 0)
-    return {
-        "distance": _known(Fraction(greatest), Fraction(bound)),
-        "distance_error": decimal(Fraction(bound), 2),
-    }
+    shown, error = known_digits(Fraction(greatest), Fraction(bound), _SHOWN)
+    return {"distance": shown, "distance_error": error}
