@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from verify.area_probe import Goal, Measured, NoAreaError, Probe
-from verify.exact import decimal, known_digits, text
+from verify.exact import decimal, known_digits, text, upper
 from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
 from verify.hausdorff import hausdorff
@@ -130,7 +130,7 @@ def _areas(
             f"of area {decimal(region.change, 2)}"
         )
     curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
-    change, error = known_digits(region.change, region.error, _SHOWN)
+    change, error = _shown(region.change, region.error)
     return {
         "problem": problem,
         "area_change": None if problem else change,
@@ -150,10 +150,10 @@ def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list
 def _outline(carried: _Carried, curve: np.ndarray, fine: float) -> CarriedOutline:
     measured = carried.measured
     area = abs(measured.area)  # of a curve that runs clockwise it has a sign
-    change, error = known_digits(measured.change, measured.error, _SHOWN)
+    change, error = _shown(measured.change, measured.error)
     return CarriedOutline(
         name=carried.outline.name,
-        area=known_digits(area, area * measured.error, _SHOWN)[0],
+        area=_shown(area, area * measured.error)[0],
         area_change=change,
         probe_error=error,
         nodes=measured.nodes,
@@ -163,6 +163,12 @@ def _outline(carried: _Carried, curve: np.ndarray, fine: float) -> CarriedOutlin
 
 def _extent(curves: Sequence[np.ndarray]) -> float:
     return float(np.ptp(np.concatenate(curves), axis=0).max())
+
+
+def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
+    """The value with one digit more than is known, and its error with that of the text."""
+    shown = known_digits(value, error / 10, _SHOWN)[0]
+    return shown, upper(error + abs(value - Fraction(shown)))
 
 
 # -- beside the areas -----------------------------------------------------------------------------
@@ -176,7 +182,7 @@ def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[st
     )
     value, error = Fraction(found.value), Fraction(found.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
-    shown, bound = known_digits(value, error, _SHOWN)
+    shown, bound = _shown(value, error)
     return {"mean_lambda": shown, "mean_lambda_error": bound, "agree": agree}
 
 
@@ -195,5 +201,5 @@ def _distance(
         found = hausdorff([own], [exact], own_sagitta, exact_sagitta)
         if found.value >= greatest:
             greatest, bound = found.value, found.bound + float(plane.radius or 0)
-    shown, error = known_digits(Fraction(greatest), Fraction(bound), _SHOWN)
+    shown, error = _shown(Fraction(greatest), Fraction(bound))
     return {"distance": shown, "distance_error": error}

@@ -37,6 +37,11 @@ def _map(task: Task) -> str:
     return f"judge {task['scheme']} in {cells} cells of h and {task['parameter']}"
 
 
+def _flow(task: Task) -> str:
+    shape = task["shape"]["shape"] or ("polygon" if task["shape"]["polygon"] else "path")
+    return f"carry {shape} by {task['map']}, {task['steps']} steps of {task['step_size']}"
+
+
 _LINES: Mapping[str, Callable[[Task], str]] = {
     "proof": lambda task: f"prove {task['scheme']} for H = {task['hamiltonian']}",
     "every": lambda task: f"prove {task['scheme']} for every H",
@@ -49,4 +54,5 @@ _LINES: Mapping[str, Callable[[Task], str]] = {
         f"bisect the largest step of {task['scheme']} until {task['time']}"
     ),
     "stability_map": _map,
+    "flow": _flow,
 }
