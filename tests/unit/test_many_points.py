@@ -1,8 +1,6 @@
 """Many points by one step map: the same as one by one, in every number system; points that leave."""
 
-import itertools
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
@@ -32,11 +30,13 @@ def test_points_in_lanes_have_the_bits_of_runs_one_by_one(scheme: str, count: in
     p, q = cloud(count)
     found = made(DUFFING, scheme, observables=frozenset({"lambda"}))(p=p, q=q)
     for i in {0, count // 2, count - 1}:
-        alone = made(DUFFING, scheme, observables=frozenset({"lambda"}))(p=p[i : i + 1], q=q[i : i + 1])
+        point = made(DUFFING, scheme, observables=frozenset({"lambda"}))
+        alone = point(p=p[i : i + 1], q=q[i : i + 1])
         assert all(found[name][i] == alone[name][0] for name in ("p", "q", "lam"))
         one = run(DUFFING, scheme, q=Fraction(q[i]), p=Fraction(p[i]), step_size=H, steps=N,
                   arithmetic="float64", digits=17, observables=("lambda",))  # fmt: skip
-        assert abs(Fraction(one.values["q"].value) - Fraction(found["q"][i])) < 1e-15
+        value, bound = (Fraction(x) for x in (one.values["q"].value, one.values["q"].bound))
+        assert abs(value - Fraction(found["q"][i])) <= 2 * bound < 1e-13
 
 
 @pytest.mark.parametrize("name", ["fixed", "mpfr", "mpmath"])
@@ -78,12 +78,12 @@ def test_a_point_that_leaves_the_range_is_named(name: str) -> None:
     p, q = [0, Fraction(1, 4)], [Fraction(1, 10), 3]
     given = [[system.number(Fraction(x)) for x in z] for z in (p, q)]
     with pytest.raises(LeftError, match=r"^the point \(q, p\) = \(3, 0\.25\) leaves the range of"):
-        made(soft, "lie2", name, steps=400)(p=given[0], q=given[1])
+        made(soft, "lie2", name, steps=100)(p=given[0], q=given[1])
 
 
 def test_what_is_outside_of_h_is_left_too() -> None:
-    log = Hamiltonian.parse("p**2/2 + log(q)")
-    with pytest.raises(LeftError, match=r"\(q, p\) = \(0\.1, 0\)"):
-        made(log, "lie1", steps=200)(p=np.zeros(2), q=np.array([50.0, 0.1]))
-    for k in itertools.islice(itertools.count(), 2):
-        assert made(log, "lie1", steps=2)(p=np.zeros(1), q=np.array([50.0 + k]))["q"][0] > 49
+    root = Hamiltonian.parse("p**2/2 + sqrt(q)")
+    one, far, near = np.zeros(1), np.array([50.0]), np.array([50.0, 0.1])
+    assert made(root, "lie1")(p=one, q=far)["q"][0] > 49
+    with pytest.raises(LeftError, match=r"\(q, p\) = \(0\.1, 0\) leaves the range of float64, or"):
+        made(root, "lie1")(p=np.zeros(2), q=near)
