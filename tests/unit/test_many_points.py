@@ -1,6 +1,7 @@
 """Many points by one step map: the same as one by one, in every number system; points that leave."""
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
