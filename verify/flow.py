@@ -36,7 +36,8 @@ _DRAWN_POINTS = 20_000  # of a curve before it is thinned
 _SHOWN = 12  # significant digits at most
 _LOST = 7  # digits
 # Of the region where the map changes area, and where it does not, and of the outlines inside it.
-_CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
+_PART = Fraction(1, 10**4)  # of the change
+_CHANGED = Goal(_PART, Fraction(1, 10**14))
 _UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
 _DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
 
@@ -95,7 +96,8 @@ def _measured(
         if preserves or _is_sharp(carried[0].measured):
             return carried, floats
     wide = WidePlane.of(*given, digits=max(task.digits, _MORE_DIGITS))
-    return _all(shape, wide, _unchanged(wide.digits) if preserves else _CHANGED), wide
+    goal = _unchanged(wide.digits) if preserves else Goal(_PART, Fraction(100, 10**wide.digits))
+    return _all(shape, wide, goal), wide
 
 
 def _unchanged(digits: int) -> Goal:

@@ -1,6 +1,7 @@
 """Areas of curves and their change by maps, held against exact values; planted errors are seen."""
 
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import mpmath
@@ -202,7 +203,7 @@ def test_panels_end_at_corners_and_corners_are_kept() -> None:
     for arc in arcs:
         own = [panel for panel in found.panels if panel.arc == arc]
         assert (own[0].left, own[-1].right) == (0, 1)
-        assert all(a.right == b.left for a, b in zip(own, own[1:], strict=False))
+        assert all(a.right == b.left for a, b in pairwise(own))
 
 
 def test_a_corner_that_is_rounded_off_is_seen() -> None:

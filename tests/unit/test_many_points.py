@@ -1,4 +1,4 @@
-"""Many points by one step map: the same as one by one, in every number system; points that leave."""
+"""Many points by one step map: the same as one by one in every number system; who leaves it."""
 
 from fractions import Fraction
 from typing import Any
