@@ -38,7 +38,10 @@ def face() -> tuple[np.ndarray, np.ndarray]:
     for k, outline in enumerate(outlines):
         count = POINTS // len(outlines) + (k < POINTS % len(outlines))
         curves.append(outline.arcs[0](FLOAT, np.arange(count) / count))
-    x, y = (np.concatenate([np.broadcast_to(z, np.shape(z)) for z in zs]) for zs in zip(*curves))
+    x, y = (
+        np.concatenate([np.broadcast_to(z, np.shape(z)) for z in zs])
+        for zs in zip(*curves, strict=True)
+    )
     return y, x
 
 
@@ -78,7 +81,10 @@ def speed(kind: str, name: str, digits: int) -> bool:
 def loop() -> bool:
     """Symplectic Euler's steps in numpy, so that both do the same."""
     p, q = face()
-    slopes: dict[str, Callable[[Any], Any]] = {"duffing": lambda x: x + x * x * x, "pendulum": np.sin}
+    slopes: dict[str, Callable[[Any], Any]] = {
+        "duffing": lambda x: x + x * x * x,
+        "pendulum": np.sin,
+    }
     for system, slope in slopes.items():
         made = PointMap(
             Hamiltonian.parse(SYSTEMS[system]), "symplectic-euler", step_size=H, steps=STEPS,
@@ -128,7 +134,7 @@ def main() -> int:
         "loop": loop,
         "probe": probe,
     }
-    return int(not all([known[name]() for name in sys.argv[1:] or known]))
+    return int(min(known[name]() for name in sys.argv[1:] or known) is False)
 
 
 if __name__ == "__main__":
