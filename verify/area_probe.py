@@ -24,6 +24,10 @@ _MOST_ROUNDS = 24
 _STUCK = 2  # a difference that halving does not make smaller by this factor is rounding's
 
 
+class NoAreaError(Exception):
+    """A curve bounds an area that is not told from 0, so that its change has no meaning."""
+
+
 class Plane(Protocol):
     """Points in one number system, and a map of them."""
 
@@ -132,7 +136,10 @@ class Probe:
         self.unit = Fraction(1, 2 ** (2 * plane.grid + self.rule.bits))
 
     def measure(self) -> list[Measured]:
-        """Cuts until the errors are as small as they are to be, or no cut makes them smaller."""
+        """Cuts until the errors are as small as they are to be, or no cut makes them smaller.
+
+        Raises NoAreaError, and what the plane's maps raise.
+        """
         parts: list[_Part] = []
         for index, outline in enumerate(self.outlines):
             count = -(-FIRST_PANELS // len(outline.arcs))
@@ -230,6 +237,10 @@ class Probe:
     def _measured(self, families: Sequence[Family], rounding: int) -> Measured:
         panels = tuple(half for family in families for half in family.halves)
         area, size = sum(panel.before for panel in panels), self._size(families)
+        # A curve that goes round nothing, as a figure of eight may: its parts take each other away.
+        if size * 2 ** (self.plane.bits // 2) <= sum(abs(panel.before) for panel in panels):
+            name = self.outlines[panels[0].outline].name
+            raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
         return Measured(
             area=area * self.unit,
             change=Fraction(sum(panel.change for panel in panels), area),

@@ -37,7 +37,8 @@ _BEFORE = 1 - 1e-9  # of the time of a blow-up, up to which floats can tell
 class Points:
     """φ_t of all points: p and q have a row for each time and a column for each point, float64.
 
-    `bound` ≥ |error| of each of them, by estimate; `method` says how; `alone` are the points that
+    `bound` ≥ |error| of each of them, by estimate: some 10⁻¹² of an orbit's scale at most in closed
+    form, and mostly the rounding to float64; `method` says how; `alone` are the points that
     float64 cannot tell, which were found one by one.
     """
 
@@ -100,6 +101,7 @@ class _Work:
     # -- in closed form -----------------------------------------------------------------------
 
     def in_closed_form(self) -> None:
+        """All points in groups; those that floats cannot tell are kept for later."""
         import numpy as np
 
         if WIDE.prec < FLOAT.prec + 10:
@@ -162,6 +164,7 @@ class _Work:
     # -- without ------------------------------------------------------------------------------
 
     def numerically(self) -> None:
+        """All points twice, by extrapolations of two orders."""
         import numpy as np
 
         fine, rough = (follow(self.hamiltonian, self.p, self.q, self.times, n) for n in (8, 7))
@@ -177,6 +180,7 @@ class _Work:
     # -- against the exact solution -----------------------------------------------------------
 
     def one_by_one(self) -> None:
+        """Those that were kept for later. Raises NoFlowError."""
         for i in sorted(self.alone):
             for k in range(len(self.times)):
                 self.found[:, k, i], bound = self._exact(i, k)
@@ -196,11 +200,12 @@ class _Work:
     def checked(self, most: int) -> Points:
         """What was found, where the sample's errors are no larger than they are estimated."""
         estimated = _SAFETY * float(self.error.max(initial=0.0))
-        # A numerical flow of many digits to three times takes three times as long as to one.
-        last = range(len(self.times)) if most == _SAMPLE else range(len(self.times))[-1:]
+        # Digits of a numerical flow take long: it is held at the longest time.
+        every = sorted(range(len(self.times)), key=lambda k: abs(self.times[k]))
+        held = every if most == _SAMPLE else every[-1:]
         worst = 0.0
         for i in self._sample(most):
-            for k in last:
+            for k in held:
                 true, bound = self._exact(i, k)
                 error = max(abs(x - y) for x, y in zip(self.found[:, k, i], true, strict=True))
                 worst = max(worst, float(error) + bound)

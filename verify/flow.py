@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.area_probe import Goal, Measured, Probe
-from verify.exact import decimal, text
+from verify.area_probe import Goal, Measured, NoAreaError, Probe
+from verify.exact import decimal, known_digits, text, upper
 from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
 from verify.hausdorff import hausdorff
@@ -37,7 +37,8 @@ _SHOWN = 12  # significant digits at most
 _LOST = 7  # digits
 _SAFETY = 1.01  # for what lies between the points of dense curves
 # Of the region where the map changes area, and where it does not, and of the outlines inside it.
-_CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
+_PART = Fraction(1, 10**4)  # of the change
+_CHANGED = Goal(_PART, Fraction(1, 10**14))
 _UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
 _DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
 
@@ -66,7 +67,7 @@ def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
             found |= _mean(hamiltonian, task, carried[0])
         if task.distance:
             found |= _distance(hamiltonian, span, carried)
-    except (LeftError, NoFlowError) as error:
+    except (LeftError, NoFlowError, NoAreaError) as error:
         found = {"problem": str(error)}
     return FlowImage(
         map=task.map,
@@ -96,7 +97,8 @@ def _measured(
         if preserves or _is_sharp(carried[0].measured):
             return carried, floats
     wide = WidePlane.of(*given, digits=max(task.digits, _MORE_DIGITS))
-    return _all(shape, wide, _unchanged(wide.digits) if preserves else _CHANGED), wide
+    goal = _unchanged(wide.digits) if preserves else Goal(_PART, Fraction(100, 10**wide.digits))
+    return _all(shape, wide, goal), wide
 
 
 def _unchanged(digits: int) -> Goal:
@@ -131,10 +133,11 @@ def _areas(
             f"of area {decimal(region.change, 2)}"
         )
     curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
+    change, error = _shown(region.change, region.error)
     return {
         "problem": problem,
-        "area_change": None if problem else _known(region.change, region.error),
-        "probe_error": decimal(region.error, 2),
+        "area_change": None if problem else change,
+        "probe_error": decimal(region.error, 2) if problem else error,
         "arithmetic": plane.name,
         "digits": plane.digits,
         "method": plane.method,
@@ -144,31 +147,31 @@ def _areas(
 
 def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list[CarriedOutline]:
     fine = _extent(curves) / DRAWN
-    return [
-        CarriedOutline(
-            name=each.outline.name,
-            area=_known(each.measured.area, abs(each.measured.area) * each.measured.error),
-            area_change=_known(each.measured.change, each.measured.error),
-            probe_error=decimal(each.measured.error, 2),
-            nodes=each.measured.nodes,
-            points=points_text(thinned(curve, fine)),
-        )
-        for each, curve in zip(carried, curves, strict=True)
-    ]
+    return [_outline(each, curve, fine) for each, curve in zip(carried, curves, strict=True)]
+
+
+def _outline(carried: _Carried, curve: np.ndarray, fine: float) -> CarriedOutline:
+    measured = carried.measured
+    area = abs(measured.area)  # of a curve that runs clockwise it has a sign
+    change, error = _shown(measured.change, measured.error)
+    return CarriedOutline(
+        name=carried.outline.name,
+        area=_shown(area, area * measured.error)[0],
+        area_change=change,
+        probe_error=error,
+        nodes=measured.nodes,
+        points=points_text(thinned(curve, fine)),
+    )
 
 
 def _extent(curves: Sequence[np.ndarray]) -> float:
     return float(np.ptp(np.concatenate(curves), axis=0).max())
 
 
-def _known(value: Fraction, error: Fraction) -> str:
-    """The digits that are known, the last by one unit or so; one digit of what is not known."""
-    if not value or abs(value) <= error:
-        return decimal(value, 1)
-    known = 1
-    while known < _SHOWN and error * 10 ** (known + 1) < abs(value):
-        known += 1
-    return decimal(value, known)
+def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
+    """The value with one digit more than is known, and its error with that of the text."""
+    shown = known_digits(value, error / 10, _SHOWN)[0]
+    return shown, upper(error + abs(value - Fraction(shown)))
 
 
 # -- beside the areas -----------------------------------------------------------------------------
@@ -176,20 +179,17 @@ def _known(value: Fraction, error: Fraction) -> str:
 
 def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, Any]:
     """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
-    x, y = (np.concatenate([z[i] for z in region.before]).mean() for i in (0, 1))
+    # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
+    x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
     made = RegionMean(hamiltonian, task.map, task.step_size, task.steps)
     try:
         found: Mean = made.of(region.outline, (float(x), float(y)))
     except LeftError:
         return {}
-    error = Fraction(found.error)
-    value = Fraction(found.value)
+    value, error = Fraction(found.value), Fraction(found.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
-    return {
-        "mean_lambda": _known(value, error),
-        "mean_lambda_error": decimal(error, 2),
-        "agree": agree,
-    }
+    shown, bound = _shown(value, error)
+    return {"mean_lambda": shown, "mean_lambda_error": bound, "agree": agree}
 
 
 def _distance(
@@ -206,10 +206,8 @@ def _distance(
         found, error = _apart(each.after, true)
         if found >= greatest:
             greatest, bound = found, error + float(plane.radius or 0)
-    return {
-        "distance": _known(Fraction(greatest), Fraction(bound)),
-        "distance_error": decimal(Fraction(bound), 2),
-    }
+    shown, told = _shown(Fraction(greatest), Fraction(bound))
+    return {"distance": shown, "distance_error": told}
 
 
 _Nodes = Sequence[tuple[np.ndarray, np.ndarray]]

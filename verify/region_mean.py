@@ -19,15 +19,16 @@ from verify.many_points import PointMap
 from verify.outline import Outline
 from verify.panels import NODES, rule
 
-_FIRST = 4  # panels along a smooth curve
+_FIRST = 8  # panels along a smooth curve
 _MOST_POINTS = 70_000
-_AGREED = 1e-3  # of the mean: two that differ by less are good enough; the later is far better
+_AGREED = 1e-3  # of the mean: an error that is good enough
+_SAFETY = 4  # the later of two means is nearer to the truth than they are to each other
 _ROUNDING = 1e-12  # of |Λ|, in float64 and ΔJ's closed form, whose errors mostly cancel in a mean
 
 
 @dataclass(frozen=True)
 class Mean:
-    """The mean of Λ with an estimate of its error: by how much the last two means differ."""
+    """The mean of Λ with an estimate of its error, by how much the last two means differ."""
 
     value: float
     error: float
@@ -59,7 +60,7 @@ class RegionMean:
             mean = float(weights @ lam / weights.sum())
             noise = _ROUNDING * float(np.abs(weights) @ np.abs(lam) / abs(weights.sum()))
             if before is not None:
-                error = abs(mean - before) + noise
+                error = _SAFETY * abs(mean - before) + noise
                 if error <= _AGREED * abs(mean) or 4 * len(x) > _MOST_POINTS:
                     return Mean(mean, error, len(x))
             before, count, rays = mean, 2 * count, 2 * rays

@@ -38,9 +38,8 @@ def _map(task: Task) -> str:
 
 
 def _flow(task: Task) -> str:
-    given = task["shape"]
-    shape = given["shape"] or ("polygon" if given["polygon"] else "path")
-    return f"carry {shape} by {task['steps']} steps of {task['step_size']} of {task['map']}"
+    shape = task["shape"]["shape"] or ("polygon" if task["shape"]["polygon"] else "path")
+    return f"carry {shape} by {task['map']}, {task['steps']} steps of {task['step_size']}"
 
 
 _LINES: Mapping[str, Callable[[Task], str]] = {

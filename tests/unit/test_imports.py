@@ -1,6 +1,7 @@
 """Imports go downwards only, and light commands stay light: read from the source."""
 
 import ast
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -114,8 +115,70 @@ def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
 
 
 @every_module
-def test_numba_numpy_and_matplotlib_are_imported_only_where_they_are_used(path: Path) -> None:
-    assert not roots(imported(path)) & {"numba", "numpy", "matplotlib"}
+def test_numba_and_matplotlib_are_imported_only_where_they_are_used(path: Path) -> None:
+    assert not roots(imported(path)) & {"numba", "matplotlib"}
+
+
+def of_arrays(edges: dict[str, set[str]]) -> set[str]:
+    """The modules that import numpy when they are imported themselves."""
+    return {name for name, names in edges.items() if "numpy" in roots(names)}
+
+
+def bring_arrays(edges: dict[str, set[str]]) -> set[tuple[str, str]]:
+    """(module, array module) where the first imports the second, and is none itself."""
+    arrays = of_arrays(edges)
+    return {(name, other) for name in set(edges) - arrays for other in edges[name] & arrays}
+
+
+def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
+    """So that what needs no array never imports numpy: the others do so in functions."""
+    edges = {name: imported(path) for name, path in NAMES.items()}
+    assert not bring_arrays(edges)
+    light = {"scene", "plan", "perform", "execute", "report", "tasks", "results", "cli"}
+    light |= {name.removeprefix("verify.") for name in NAMES if name.startswith("verify.cli")}
+    assert not of_arrays(edges) & {f"verify.{name}" for name in light}
+    assert "verify.panels" in of_arrays(edges), "the rule speaks of something"
+    planted = edges | {"verify.plan": edges["verify.plan"] | {"verify.panels"}}
+    assert bring_arrays(planted) == {("verify.plan", "verify.panels")}
+
+
+SAID = """
+import sys
+from verify.cli import main
+try:
+    main({arguments})
+except SystemExit as done:
+    assert not done.code, done.code
+print(sorted({{"numpy", "numba", "matplotlib"}} & set(sys.modules)), file=sys.stderr)
+"""
+FLOW = """
+system = "duffing"
+parameters = { delta = 1 }
+schemes = ["lie2"]
+[[flow]]
+shape = "cat"
+step_size = 0.01
+steps = [50]
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "loaded"),
+    [
+        (["plan", "SCENE"], []),
+        (["prove", "--system", "duffing", "--scheme", "lie2"], []),
+        (["flow", "SCENE", "--workers", "1"], ["numba", "numpy"]),
+    ],
+)
+def test_what_carries_no_points_loads_no_numpy(
+    arguments: list[str], loaded: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(FLOW)
+    arguments = [str(path) if given == "SCENE" else given for given in arguments]
+    command = [sys.executable, "-c", SAID.format(arguments=arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stderr.splitlines()[-1] == str(loaded)
 
 
 @every_module

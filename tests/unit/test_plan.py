@@ -64,6 +64,7 @@ def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) ->
         "mine: Λ against its growth law": "the scene has no [grid] that says `growth = true`",
         "mine: criteria 1–4": "the scene names no criteria",
         "mine: error against run time": "the scene has no [work_precision]",
+        "mine: regions carried by maps, and their areas": "the scene has no [[flow]]",
         "mine: stability, and whose fault it is where there is none": "the scene has no "
         "[[stability]]",
         "mine: the largest stable step": "the scene has no [[largest_step]]",

@@ -6,7 +6,14 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from verify import execute, results, scene_results, stability_results, work_precision_results
+from verify import (
+    execute,
+    flow_results,
+    results,
+    scene_results,
+    stability_results,
+    work_precision_results,
+)
 from verify.claims_file import load_claims
 from verify.errors import InputError
 from verify.report import make_report
@@ -150,7 +157,7 @@ def test_the_steps_are_the_whole_ones_that_fit_into_the_time(tmp_path: Path) -> 
 
 # -- JSON -----------------------------------------------------------------------------------------
 
-RESULTS = (results, scene_results, stability_results, work_precision_results)
+RESULTS = (results, scene_results, stability_results, work_precision_results, flow_results)
 FULL = """
 title = "Two <schemes> & δ"
 system = "duffing"
@@ -190,6 +197,13 @@ values = [1]
 step_sizes = [0.1]
 steps = 100
 initial_value = { q = 1, p = 0 }
+schemes = ["lie2"]
+[[flow]]
+shape = "circle"
+centre = { q = 1, p = 0 }
+scale = 0.25
+step_size = 0.1
+steps = [3]
 schemes = ["lie2"]
 [work_precision]
 time = 1

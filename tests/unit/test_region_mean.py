@@ -1,0 +1,86 @@
+"""The mean of Λ over a region, against exact integrals and against the change of area."""
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.unit.carried import DUFFING, OSCILLATOR, PENDULUM, floats, linear_determinant, measured
+from verify import region_mean, shapes
+from verify.area_probe import Goal
+from verify.hamiltonian import Hamiltonian
+from verify.outline import Outline
+from verify.region_mean import RegionMean, _cone
+
+CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
+CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
+H, N = Fraction(1, 10), 30
+
+
+def placed(outline: Outline, q: Any, p: Any, scale: Any) -> Outline:
+    return outline.placed(Fraction(q), Fraction(p), Fraction(scale))
+
+
+def integral(f: Any, outline: Outline, centre: tuple[float, float]) -> float:
+    x, y, weights = _cone(outline, centre, 4, 1)
+    return float(weights @ f(x, y))
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (0.3, -0.2), (5.0, 1.0)])
+def test_polynomials_over_a_square_and_a_disc_are_integrated_exactly(centre: Any) -> None:
+    """Also where the rays come from a point outside: what they sweep twice cancels."""
+    size = 1.0 + 100 * (centre[0] > 1)
+    assert abs(integral(lambda x, y: 1 + 0 * x, SQUARE, centre) - 4) < 1e-14 * size
+    assert abs(integral(lambda x, y: x**4 * y**2, SQUARE, centre) - 4 / 15) < 1e-13 * size**2
+    assert abs(integral(lambda x, y: x**2 * y**2, CIRCLE, centre) - np.pi / 24) < 1e-13 * size**2
+
+
+def test_the_mean_for_a_linear_map_is_the_determinant() -> None:
+    found = RegionMean(OSCILLATOR, "lie3", H, N).of(CAT, (0.0, 0.0))
+    true = float(linear_determinant("lie3", H, N))
+    assert abs(found.value - true) <= found.error < 1e-10 * abs(true)
+
+
+@pytest.mark.parametrize("outline", [CIRCLE, SQUARE, CAT], ids=["circle", "square", "cat"])
+@pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
+def test_the_mean_is_the_change_of_area(hamiltonian: Hamiltonian, outline: Outline) -> None:
+    own = placed(outline, 1, 0, "1/2")
+    found = RegionMean(hamiltonian, "lie2", H, N).of(own, (1.0, 0.0))
+    area = measured(own, floats("lie2", H, N, hamiltonian), CHANGED)
+    assert abs(Fraction(found.value) - area.change) <= Fraction(found.error) + area.error
+    assert found.error <= 2e-3 * abs(found.value)
+
+
+def apart(monkeypatch: pytest.MonkeyPatch, planted: Any, steps: int = N) -> float:
+    """By how many of its errors the mean is away from the change of area."""
+    own = placed(SQUARE, 1, 0, "1/2")
+    with monkeypatch.context() as patch:
+        patch.setattr(region_mean, "_cone", planted)
+        found = RegionMean(DUFFING, "lie2", H, steps).of(own, (1.0, 0.0))
+    area = measured(own, floats("lie2", H, N, DUFFING), CHANGED)
+    return abs(found.value - float(area.change)) / (found.error + float(area.error))
+
+
+def test_half_the_region_a_flipped_sign_and_a_step_too_many_are_seen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def half(outline: Outline, *given: Any) -> Any:
+        return _cone(Outline("half", outline.arcs[:2]), *given)
+
+    def one_sign(*given: Any) -> Any:
+        x, y, weights = _cone(*given)
+        return 2 - x, y + 0.5, weights
+
+    assert apart(monkeypatch, _cone) <= 1
+    assert apart(monkeypatch, half) > 10
+    assert apart(monkeypatch, one_sign) > 10
+    assert apart(monkeypatch, _cone, steps=N + 1) > 10
+
+
+def test_the_sign_of_lambda_counts() -> None:
+    own = placed(CIRCLE, 1, 0, "1/2")
+    for scheme in ("lie2", "lie3"):
+        found = RegionMean(OSCILLATOR, scheme, H, N).of(own, (1.0, 0.0))
+        assert found.value * float(linear_determinant(scheme, H, N)) > 0
+    assert linear_determinant("lie2", H, N) > 0 > linear_determinant("lie3", H, N)
