@@ -6,6 +6,7 @@ variables are the same number. A probe whose own error is not far below the chan
 float64 then gives way to more digits, and where these do not do either, the image says so.
 """
 
+import contextlib
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,8 +21,16 @@ from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
 from verify.hausdorff import hausdorff
 from verify.many_points import LeftError
+from verify.number_system import UnsupportedError
 from verify.outline import Outline, Shape
-from verify.planes import ExactPlane, FloatPlane, SchemePlane, WidePlane
+from verify.planes import (
+    WIDE,
+    ExactPlane,
+    FloatPlane,
+    SchemePlane,
+    WidePlane,
+    smaller_than_one,
+)
 from verify.polyline import DRAWN, dense, thinned
 from verify.polyline import text as points_text
 from verify.proof.exact_flow import NoFlowError
@@ -89,15 +98,23 @@ def _measured(
     shape = task.shape.made()
     if task.map == EXACT_FLOW:
         exact = ExactPlane(hamiltonian, task.step_size * task.steps)
+        exact.grid += smaller_than_one(shape.outlines[0])
         return _all(shape, exact, _UNCHANGED), exact
     given = hamiltonian, task.map, task.step_size, task.steps
+    smaller = smaller_than_one(shape.outlines[0])
     if task.digits <= _FLOAT_DIGITS:
-        floats = FloatPlane(*given)
-        carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
-        if preserves or _is_sharp(carried[0].measured):
-            return carried, floats
-    wide = WidePlane.of(*given, digits=max(task.digits, _MORE_DIGITS))
-    goal = _unchanged(wide.digits) if preserves else Goal(_PART, Fraction(100, 10**wide.digits))
+        with contextlib.suppress(NoAreaError):  # its points may all be one in float64
+            floats = FloatPlane(*given, smaller)
+            carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
+            if preserves or _is_sharp(carried[0].measured):
+                return carried, floats
+    digits = max(task.digits, _MORE_DIGITS)
+    goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
+    for name in WIDE[:-1]:
+        with contextlib.suppress(UnsupportedError, LeftError):
+            wide = WidePlane(*given, name, digits, smaller)
+            return _all(shape, wide, goal), wide
+    wide = WidePlane(*given, WIDE[-1], digits, smaller)
     return _all(shape, wide, goal), wide
 
 

@@ -4,7 +4,6 @@ A scheme's map in float64 is held against the same steps with compensated sums, 
 systems against a still wider one. The exact flow comes with its own bound.
 """
 
-import contextlib
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
@@ -19,13 +18,23 @@ from verify.exact_points import exact_points
 from verify.float_context import FLOAT
 from verify.hamiltonian import Hamiltonian
 from verify.many_points import PointMap
-from verify.number_system import Arithmetic, UnsupportedError, bits_for
+from verify.number_system import Arithmetic, bits_for
 from verify.outline import Outline
 
 _FLOAT_GRID = 80  # bits after the point that are kept of a float64
+_PRECISE = 2000  # bits with which the size of an outline is found
 _WIDER = 19  # digits that the finer arithmetic has more: one limb
-_FASTEST = ("fixed", "mpfr")
+WIDE = ("fixed", "mpfr")  # the faster first; the last has every range
 _SAMPLED = 8  # panels that are carried in it
+
+
+def smaller_than_one(outline: Outline) -> int:
+    """Bits by which the outline's size is below 1: so many more after the point are looked at."""
+    mp = MPContext()
+    mp.prec = _PRECISE
+    points = [arc(mp, mp.mpf(k) / 7) for arc in outline.arcs for k in range(7)]
+    size = max(abs(z[i] - points[0][i]) for z in points for i in (0, 1))
+    return max(0, -int(mp.mag(size))) if size else 0
 
 
 class _Floats:
@@ -53,7 +62,10 @@ class FloatPlane(_Floats):
     name, digits = float64.NAME, 17
     method = "float64; its rounding by the same steps with compensated sums"
 
-    def __init__(self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int) -> None:
+    def __init__(
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, smaller: int = 0
+    ) -> None:
+        self.grid += smaller
         self._maps = [
             PointMap(
                 hamiltonian, scheme, step_size=h, steps=steps,
@@ -97,23 +109,16 @@ class WidePlane:
     radius: Fraction | None = None
 
     def __init__(
-        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, name: str, digits: int
-    ) -> None:
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, name: str,
+        digits: int, smaller: int = 0,
+    ) -> None:  # fmt: skip
+        """`digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
         self._given = hamiltonian, scheme, h, steps, name
         self.name, self.digits = name, digits
+        self._places = digits + -(-smaller * 3 // 10)
         self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
-        self.bits = self.grid = bits_for(digits)
-        self._map, self.arithmetic = self._made(digits)
-
-    @classmethod
-    def of(
-        cls, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, digits: int
-    ) -> "WidePlane":
-        """In the fastest number system that can do it."""
-        for name in _FASTEST:
-            with contextlib.suppress(UnsupportedError):
-                return cls(hamiltonian, scheme, h, steps, name, digits)
-        raise UnsupportedError(f"no number system of {digits} digits can do {scheme}")
+        self.bits, self.grid = bits_for(digits), bits_for(self._places)
+        self._map, self.arithmetic = self._made(self._places)
 
     def _made(self, digits: int) -> tuple[PointMap, Arithmetic]:
         hamiltonian, scheme, h, steps, name = self._given
@@ -123,11 +128,11 @@ class WidePlane:
 
     @cached_property
     def _wider(self) -> tuple[PointMap, Arithmetic]:
-        return self._made(self.digits + _WIDER)
+        return self._made(self._places + _WIDER)
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
         mp = MPContext()
-        mp.prec = self.bits + 20
+        mp.prec = self.grid + 20
         at = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
         number = self.arithmetic.number
         x, y = ([number(_exact(mp, z[i])) for z in at] for i in (0, 1))
