@@ -22,7 +22,7 @@ from verify.many_points import PointMap
 from verify.outline import Outline
 from verify.panels import NODES, rule
 
-_FIRST = 4  # cells along the curve, at least
+_FIRST = 8  # cells along the curve, at least
 _MOST_POINTS = 90_000
 _AGREED = 1e-3  # of the mean: an error of the cells that is good enough; the quarters' is far less
 _ROUNDING = 1e-12  # of |Λ|, in float64 and ΔJ's closed form, whose errors mostly cancel in a mean
@@ -69,13 +69,13 @@ class RegionMean:
             area = sum(f.quarters[0].sum() for f in found)
             mean = sum(f.quarters[1].sum() for f in found) / area
             noise = _ROUNDING * sum(f.quarters[2].sum() for f in found) / abs(area)
-            error = sum(f.difference for f in found) / abs(area) + noise
+            error = sum(f.difference(mean) for f in found) / abs(area) + noise
             share = _AGREED * abs(mean * area) / (2 * len(found))
-            cut = [f for f in found if f.difference > share]
+            cut = [f for f in found if f.difference(mean) > share]
             more = 16 * NODES**2 * len(cut)
             if error <= _AGREED * abs(mean) or not cut or done.points + more > _MOST_POINTS:
                 return Mean(float(mean), float(error), done.points)
-            kept = [f for f in found if f.difference <= share]
+            kept = [f for f in found if f.difference(mean) <= share]
             cells = [cell for f in cut for cell in _quarters(f.cell)]
             sums = np.concatenate([f.quarters for f in cut], axis=1)
             found = kept + self._families(cells, sums, outline, centre, done)
@@ -90,8 +90,8 @@ class RegionMean:
     ) -> "list[_Family]":
         parts = [part for cell in cells for part in _quarters(cell)]
         quarters = self._sums(outline, centre, parts, done).reshape(3, len(cells), 4)
-        apart = np.abs(quarters[1].sum(axis=1) - sums[1])
-        return [_Family(cell, quarters[:, k], float(apart[k])) for k, cell in enumerate(cells)]
+        apart = quarters.sum(axis=2) - sums
+        return [_Family(cell, quarters[:, k], apart[:, k]) for k, cell in enumerate(cells)]
 
     def _sums(
         self, outline: Outline, centre: tuple[float, float], cells: list[_Cell], done: "_Count"
@@ -114,11 +114,15 @@ class _Count:
 
 @dataclass(frozen=True)
 class _Family:
-    """A cell, what its quarters sum to (3, 4), and by how much their Λ differs from the cell's."""
+    """A cell, what its quarters sum to (3, 4), and by how much that differs from the cell's."""
 
     cell: _Cell
     quarters: np.ndarray
-    difference: float
+    apart: np.ndarray
+
+    def difference(self, mean: float) -> float:
+        """Of the integral of Λ − mean: where Λ is constant no area's error matters."""
+        return abs(float(self.apart[1] - mean * self.apart[0]))
 
 
 def _quarters(cell: _Cell) -> list[_Cell]:
