@@ -1,5 +1,6 @@
 """The command `verify flow`: regions carried by maps, and their areas."""
 
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ from verify import show
 from verify.cli_input import target, writable
 from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
+from verify.exact import short
 
 if TYPE_CHECKING:
     from verify.flow_results import FlowImage, FlowResult
@@ -58,7 +60,7 @@ def flow(scene: str, keep: Path | None, workers: int | None, as_json: bool) -> N
 def _print(name: str, result: "FlowResult") -> None:
     q, p = result.centre
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
-    where = f"{result.shape} at (q, p) = ({q}, {p}), scale {result.scale}"
+    where = f"{result.shape} at (q, p) = ({q}, {p}), scale {short(Fraction(result.scale))}"
     click.echo(f"{title}{where}, h = {result.step_size}")
     rows = [_HEAD, *map(_row, result.images)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

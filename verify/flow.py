@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -202,6 +203,8 @@ def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[st
     try:
         found: Mean = made.of(region.outline, (float(x), float(y)))
     except LeftError:
+        return {}
+    if not (isfinite(found.value) and isfinite(found.error)):  # areas below float64's range
         return {}
     value, error = Fraction(found.value), Fraction(found.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
