@@ -47,10 +47,15 @@ def test_the_text_says_what_preserves_area_and_what_does_not(
 ) -> None:
     status, out, _ = here(capsys, "flow", str(scene), "--workers", "1")
     assert status == 0
-    assert "lie2, N = 10, t = 1: area changes by " in out
-    assert ", the same" in out
-    assert "symplectic-euler, N = 10, t = 1: area unchanged by proof; measured " in out
-    assert "from the exact flow" in out
+    title, head, exact, lie2, euler = out.splitlines()
+    assert "circle at (q, p) = (1, 0), scale 0.5, h = 0.1" in title
+    assert head.split("  ")[-1] == "from the exact flow"
+    assert exact.split()[:6] == ["exact", "flow", "10", "1", "0,", "proved"]
+    assert euler.split()[:5] == ["symplectic-euler", "10", "1", "0,", "proved"]
+    assert lie2.split()[:3] == ["lie2", "10", "1"]
+    assert "proved" not in lie2
+    assert lie2.count("±") == 3
+    assert "NOT THE SAME" not in out
 
 
 def test_a_map_whose_points_leave_has_status_1_and_says_so(

@@ -246,8 +246,8 @@ def test_a_distance_is_that_of_the_exact_flow_for_the_same_time(
 
 
 def test_the_greatest_distance_of_all_outlines_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = iter([0.25, 0.5, 0.125])
+    told = iter([0.00025, 0.0005, 0.000125])  # less than of points that belong together
     monkeypatch.setattr(module, "hausdorff", lambda *_: Distance(next(told), 1e-9))
     path = "M 0 0 L 1 0 L 0 1 Z M 2 0 L 3 0 L 2 1 Z M 4 0 L 5 0 L 4 1 Z"
     found = carried(shape={"path": path, "scale": "0.1"}, distance=True, mean_lambda=False)
-    assert Fraction(found.distance or 0) == Fraction(1, 2)
+    assert Fraction(found.distance or 0) == Fraction(1, 2000)
