@@ -4,7 +4,7 @@ A column is a map. Its images stand in one panel where each keeps its shape; whe
 out, or three maps are compared, each number of steps has a row of its own.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,11 +26,13 @@ from verify.polyline import parsed, thinned
 _POINT = 1 / 72
 _WIDTH = 600
 _LEFT, _ROW_LABEL, _RIGHT, _TOP, _BOTTOM, _GAP = 46, 22, 8, 26, 40, 12
+_ROW_PLACE = 10
 _LOWEST, _HIGHEST = 0.3, 2.2  # a panel's height by its width
 _MOST_ROWS = 6
 _WITH_OTHERS = 2  # maps at most whose images stand in one panel
 _KEPT_SHAPE = 3.0  # an outline that grew longer than this has lost its shape
 _DETAIL = 0.12  # of a point: what is finer is not drawn
+_LONG, _THINNER = 20, 0.6  # panel widths: a line so long is drawn with thinner strokes
 _ROOM = 0.04  # of the extent, around everything
 _LABEL = 11  # of an image, in points
 _LONGEST = 26  # letters of a heading
@@ -160,7 +162,7 @@ def draw_flow(grid: Grid) -> Figure:
         if grid.rows:
             y = _BOTTOM + (rows - 0.5 - i) * layout.height + (rows - 1 - i) * _GAP
             figure.text(
-                8 / _WIDTH, y / total, grid.rows[i], rotation=90, ha="center", va="center"
+                _ROW_PLACE / _WIDTH, y / total, grid.rows[i], rotation=90, ha="center", va="center"
             )
     return figure
 
@@ -216,17 +218,20 @@ def _shape(axes: Any, curves: Curves, colour: str, layout: _Layout, *, before: b
     """The region lightly filled with a thin line, the other outlines as thinner lines."""
     region, *others = (thinned(curve, _DETAIL / layout.scale) for curve in curves)
     strength = 0.35 if before else 1
+    thin = _THINNER if _length(region) > _LONG * (layout.width / layout.scale) else 1
     axes.add_patch(
         PathPatch(
             _path([region]), facecolor=to_rgba(colour, 0.1 if before else 0.22),
-            edgecolor=to_rgba(colour, strength), linewidth=0.7, clip_on=False,
+            edgecolor=to_rgba(colour, strength), linewidth=0.7 * thin, clip_on=False,
         )
     )  # fmt: skip
     if others:
-        line = to_rgba(colour, strength)
         axes.add_patch(
-            PathPatch(_path(others), fill=False, edgecolor=line, linewidth=0.45, clip_on=False)
-        )
+            PathPatch(
+                _path(others), fill=False, edgecolor=to_rgba(colour, strength),
+                linewidth=0.45 * thin, clip_on=False,
+            )
+        )  # fmt: skip
 
 
 def _path(curves: Sequence[np.ndarray]) -> Path:
@@ -242,8 +247,3 @@ def _name(axes: Any, text: str, region: np.ndarray, layout: _Layout) -> None:
         textcoords="offset points", ha="center", va="bottom" if above else "top", fontsize=_LABEL,
     )  # fmt: skip
 
-
-def drawn_rows(flow: FlowResult) -> Iterator[int]:
-    """The numbers of steps of which an image is drawn."""
-    seen = {n for row in grid_of(flow).panels for panel in row for n, _ in panel.images}
-    yield from sorted(seen)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from reports import plots
 from reports.claim_view import Anchors, ClaimView
 from reports.first_screen import FirstScreen, first_screen
+from reports.paper_figure_view import PaperFigureView, paper_figure_views
 from reports.plots import Plot
 from reports.scene_view import SceneView, scene_view
 from verify.scene_results import Report
@@ -29,23 +30,28 @@ class ClaimGroup:
 
 @dataclass(frozen=True)
 class PageView:
-    """`paper_figures`: the paper's figures, made again; a template of its own shows them."""
+    """`paper_figures`: the paper's figures, made again; what they show stands nowhere else."""
 
     report: Report
     first: FirstScreen
     groups: tuple[ClaimGroup, ...]
     claims: tuple[ClaimView, ...]
     scenes: tuple[SceneView, ...]
-    paper_figures: tuple[Plot, ...]
+    paper_figures: tuple[PaperFigureView, ...]
     kinds: tuple[tuple[Kind, str], ...]  # verdicts on runs that occur, and what they mean
     ran: bool  # whether anything was run
     separated: bool
     grown: bool  # whether Λ was held against its growth law
     timed: bool  # whether error stands against run time
+    carried: bool  # whether regions were carried by maps
 
     def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
         """Those with a claim on this scene."""
         return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
+
+    def figure_of(self, plot: Plot) -> PaperFigureView | None:
+        """The paper's figure that shows it."""
+        return next((f for f in self.paper_figures if any(p is plot for p in f.plots)), None)
 
 
 def page_view(report: Report) -> PageView:
@@ -61,7 +67,7 @@ def page_view(report: Report) -> PageView:
         groups=tuple(groups(claims, anchors)),
         claims=claims,
         scenes=scenes,
-        paper_figures=(),
+        paper_figures=paper_figure_views(report.figures, scenes, claims, anchors),
         kinds=_kinds(scenes),
         ran=any(
             s.runs or s.series or s.separations or s.crossovers or s.work_precision
@@ -70,6 +76,7 @@ def page_view(report: Report) -> PageView:
         separated=any(s.separations or s.crossovers for s in report.scenes),
         grown=any(s.growth_laws for s in report.scenes),
         timed=any(s.work_precision for s in report.scenes),
+        carried=any(s.flows for s in report.scenes),
     )
 
 
