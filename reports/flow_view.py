@@ -8,6 +8,7 @@ from reports.plots import Plot
 from reports.typography import NBSP, listed, number, step, whole
 from verify.flow_results import EXACT_FLOW, FlowImage, FlowResult
 
+_IS = f"{NBSP}={NBSP}"
 _SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture
 
 
@@ -233,7 +234,7 @@ def _size(text: str | None) -> Fraction:
 
 
 def _at(flow: FlowResult, image: FlowImage) -> str:
-    return f"h = {step(flow.step_size)}, N = {whole(image.steps)}"
+    return f"h{_IS}{step(flow.step_size)}, N{_IS}{whole(image.steps)}"
 
 
 def _change(image: FlowImage) -> str:
@@ -284,8 +285,8 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
     from reports.flow_figure import flow_panels, grid_of
 
     grid, what = grid_of(flow), _the(flow)
-    lead = f"{what[:1].upper()}{what[1:]}, carried by {listed(grid.columns)} with h = "
-    lead += step(flow.step_size)
+    maps = listed(f"the {name}" if name == EXACT_FLOW else name for name in grid.columns)
+    lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{_IS}{step(flow.step_size)}"
     svg = flow_panels(grid, name=f"panels-of-{anchor}", label=f"{lead}.")
     return Plot(svg, f"{lead}.", _caption(flow, len(grid.rows)), wide=True)
 
