@@ -198,8 +198,7 @@ def _frame(axes: Any, layout: _Layout, *, left: bool, bottom: bool) -> None:
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
         axis.set_tick_params(label1On=shown)
-        if shown:
-            axis.set_label_text(name)
+        axis.set_label_text(name, visible=shown)
 
 
 def _draw_panel(axes: Any, panel: Panel, grid: Grid, colour: str, layout: _Layout) -> None:
