@@ -16,6 +16,8 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from reports.typography import NBSP
+
 INK = "#010203"
 # Okabe and Ito's colours, darkened where they would fade on white; style.css has the dark theme's.
 SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a3ffc", "#5b6670")
@@ -79,8 +81,10 @@ def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
 
 
 def _printable(text: str) -> str:
-    """Without control characters, which no XML may hold."""
-    return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
+    """Without control characters, which no XML may hold; a number's own blanks stay."""
+    return "".join(
+        c if c.isprintable() or c in ("\n", NBSP) else "\N{REPLACEMENT CHARACTER}" for c in text
+    )
 
 
 def _inline(root: Any, name: str, label: str) -> Markup:
