@@ -213,19 +213,21 @@ def _draw_panel(axes: Any, panel: Panel, grid: Grid, colour: str, layout: _Layou
         axes.text(0.5, 0.97, text, transform=axes.transAxes, ha="center", va="top", fontsize=_LABEL)
 
 
-def _shape(axes: Any, curves: Curves, colour: str, layout: _Layout, *, before: bool = False) -> None:
+def _shape(
+    axes: Any, curves: Curves, colour: str, layout: _Layout, *, before: bool = False
+) -> None:
     """The region lightly filled with a thin line, the other outlines as thinner lines."""
     region, *others = (thinned(curve, _DETAIL / layout.scale) for curve in curves)
     strength = 0.35 if before else 1
     thin = _THINNER if _length(region) > _LONG * (layout.width / layout.scale) else 1
-    axes.add_patch(
+    axes.add_artist(
         PathPatch(
             _path([region]), facecolor=to_rgba(colour, 0.1 if before else 0.22),
             edgecolor=to_rgba(colour, strength), linewidth=0.7 * thin, clip_on=False,
         )
     )  # fmt: skip
     if others:
-        axes.add_patch(
+        axes.add_artist(
             PathPatch(
                 _path(others), fill=False, edgecolor=to_rgba(colour, strength),
                 linewidth=0.45 * thin, clip_on=False,
@@ -241,8 +243,8 @@ def _name(axes: Any, text: str, region: np.ndarray, layout: _Layout) -> None:
     """Above or below the image, on the side that is farther from the panel's middle."""
     low, high = region.min(axis=0), region.max(axis=0)
     above = (low[1] + high[1]) / 2 >= (layout.low[1] + layout.high[1]) / 2
+    place = (low[0] + high[0]) / 2, high[1] if above else low[1]
     axes.annotate(
-        text, ((low[0] + high[0]) / 2, high[1] if above else low[1]), xytext=(0, 3 if above else -3),
+        text, place, xytext=(0, 3 if above else -3),
         textcoords="offset points", ha="center", va="bottom" if above else "top", fontsize=_LABEL,
     )  # fmt: skip
-

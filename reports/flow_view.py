@@ -217,7 +217,13 @@ def _finding_of(flow: FlowResult, image: FlowImage) -> str:
         return f"{start} keeps the area of {_region(flow)} by proof {change}.{away}"
     unseen = "; by eye nothing is seen" if _size(image.area_change) < _SEEN else ""
     text = f"{start} changes the area of {_region(flow)} by {_change(image)} of it{unseen}."
-    return f"{text}{away}"
+    doubt = ""
+    if image.agree is False:
+        mean = _pair(image.mean_lambda, image.mean_lambda_error)
+        doubt = (
+            f" The mean of Λ over it, which must be the same, is {mean}: one of the two is wrong."
+        )
+    return f"{text}{doubt}{away}"
 
 
 def _region(flow: FlowResult) -> str:

@@ -38,9 +38,9 @@ def image(**changes: Any) -> FlowImage:
 
 def exact(**changes: Any) -> FlowImage:
     own: dict[str, Any] = {
-        "map": EXACT_FLOW, "area_preserving": True, "area_change": "3e-13", "probe_error": "7.7e-12",
-        "mean_lambda": None, "mean_lambda_error": None, "agree": None, "distance": None,
-        "distance_error": None,
+        "map": EXACT_FLOW, "area_preserving": True, "area_change": "3e-13",
+        "probe_error": "7.7e-12", "mean_lambda": None, "mean_lambda_error": None,
+        "agree": None, "distance": None, "distance_error": None,
     }  # fmt: skip
     return image(**(own | changes))
 

@@ -116,6 +116,8 @@ def test_measures_that_disagree_are_told_and_never_glossed_over() -> None:
     text = text_of(page_of(flow(image(agree=False), image(steps=200))))
     assert "differs from it in 1 of 2 images" in text
     assert "the two measures disagree" in text
+    of_one = text_of(page_of(flow(image(agree=False))))
+    assert "which must be the same, is −1.234 × 10⁻⁵ ± 2.0 × 10⁻⁸: one of the two" in of_one
     assert "is the same within the errors" not in text
     wrong = text_of(page_of(flow(exact(area_change="1e-06"))))
     assert "the probe is wrong there" in wrong
@@ -207,7 +209,9 @@ def paper() -> Report:
     mine = scene(
         proofs=(proof(),),
         runs=tuple(run(step_size=h, values={"lambda": value}) for h, value in lam.items()),
-        series=(run(series=SERIES, source="Figure 2"), run(series=SERIES, q="2", source="Figure 9")),
+        series=(
+            run(series=SERIES, source="Figure 2"), run(series=SERIES, q="2", source="Figure 9"),
+        ),
         flows=(TWO.model_copy(update={"source": "Figure 3"}), THREE),
     )  # fmt: skip
     return report(
@@ -226,7 +230,9 @@ def paper() -> Report:
 
 
 def article(page: str, anchor: str) -> str:
-    (found,) = re.findall(rf'<article class="made-again" id="{anchor}".*?</article>', page, re.DOTALL)
+    (found,) = re.findall(
+        rf'<article class="made-again" id="{anchor}".*?</article>', page, re.DOTALL
+    )
     return str(found)
 
 
