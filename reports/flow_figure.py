@@ -24,7 +24,7 @@ from verify.flow_results import CarriedOutline, DrawnOutline, FlowImage, FlowRes
 from verify.polyline import parsed, thinned
 
 _POINT = 1 / 72
-_WIDTH = 600
+_WIDTH, _NARROW = 600, 370  # of several columns, of one
 _LEFT, _ROW_LABEL, _RIGHT, _TOP, _BOTTOM, _GAP = 46, 22, 8, 26, 40, 12
 _ROW_PLACE = 10
 _LOWEST, _HIGHEST = 0.3, 2.2  # a panel's height by its width
@@ -132,6 +132,7 @@ def _length(curve: np.ndarray) -> float:
 class _Layout:
     """Places in points; one scale for all panels."""
 
+    total: float
     left: float
     width: float
     height: float
@@ -147,22 +148,27 @@ class _Layout:
 def draw_flow(grid: Grid) -> Figure:
     layout = _layout(grid)
     rows, columns = len(grid.panels), len(grid.columns)
-    total = _TOP + rows * layout.height + (rows - 1) * _GAP + _BOTTOM
-    figure = Drawing(figsize=(_WIDTH * _POINT, total * _POINT))
+    high = _TOP + rows * layout.height + (rows - 1) * _GAP + _BOTTOM
+    figure = Drawing(figsize=(layout.total * _POINT, high * _POINT))
     for i, row in enumerate(grid.panels):
         for j, panel in enumerate(row):
             x = layout.left + j * (layout.width + _GAP)
             y = _BOTTOM + (rows - 1 - i) * (layout.height + _GAP)
-            place = x / _WIDTH, y / total, layout.width / _WIDTH, layout.height / total
+            place = x / layout.total, y / high, layout.width / layout.total, layout.height / high
             axes = figure.add_axes(place)
             _frame(axes, layout, left=j == 0, bottom=i == rows - 1)
             _draw_panel(axes, panel, grid, SERIES[j % len(SERIES)], layout)
             if i == 0:
-                axes.set_title(_heading(j, grid.columns[j], columns))
+                axes.set_title(_heading(j, grid.columns[j], columns) + _missing(panel, grid))
         if grid.rows:
             y = _BOTTOM + (rows - 0.5 - i) * layout.height + (rows - 1 - i) * _GAP
             figure.text(
-                _ROW_PLACE / _WIDTH, y / total, grid.rows[i], rotation=90, ha="center", va="center"
+                _ROW_PLACE / layout.total,
+                y / high,
+                grid.rows[i],
+                rotation=90,
+                ha="center",
+                va="center",
             )
     return figure
 
@@ -173,11 +179,21 @@ def _heading(index: int, name: str, count: int) -> str:
     return f"({chr(ord('a') + index)}) {short}" if count <= 26 else short
 
 
+def _missing(panel: Panel, grid: Grid) -> str:
+    """Which images a panel of several has not."""
+    if grid.rows or not panel.missing:
+        return ""
+    first, *others = panel.missing
+    more = f" and {len(others)} more" if others else ""
+    return f"; no image at N = {whole(first)}{more}"
+
+
 def _layout(grid: Grid) -> _Layout:
     """Equal axes: a panel is as high as what it shows, within limits."""
     left = _LEFT + (_ROW_LABEL if grid.rows else 0)
     columns = len(grid.columns)
-    width = (_WIDTH - left - _RIGHT - (columns - 1) * _GAP) / columns
+    total = _WIDTH if columns > 1 else _NARROW
+    width = (total - left - _RIGHT - (columns - 1) * _GAP) / columns
     low, high = grid.size
     span = np.maximum(high - low, 1e-300)
     middle, span = (low + high) / 2, span + 2 * _ROOM * span.max()
@@ -186,7 +202,7 @@ def _layout(grid: Grid) -> _Layout:
     ratio = min(_HIGHEST, max(_LOWEST, float(span[1] / span[0])))
     half = max(span[0], span[1] / ratio) / 2
     reach = np.array([half, half * ratio])
-    return _Layout(left, width, width * ratio, middle - reach, middle + reach)
+    return _Layout(total, left, width, width * ratio, middle - reach, middle + reach)
 
 
 def _frame(axes: Any, layout: _Layout, *, left: bool, bottom: bool) -> None:
@@ -207,10 +223,8 @@ def _draw_panel(axes: Any, panel: Panel, grid: Grid, colour: str, layout: _Layou
         _shape(axes, curves, colour, layout)
         if not grid.rows:
             _name(axes, f"N = {whole(steps)}", curves[0], layout)
-    if panel.missing:
-        told = ", ".join(f"N = {whole(n)}" for n in panel.missing)
-        text = "no image" if grid.rows else f"no image: {told}"
-        axes.text(0.5, 0.97, text, transform=axes.transAxes, ha="center", va="top", fontsize=_LABEL)
+    if panel.missing and grid.rows:
+        axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
 
 
 def _shape(

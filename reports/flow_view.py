@@ -72,8 +72,8 @@ def _carried(flow: FlowResult, anchor: str) -> CarriedView:
 
 
 def _title(flow: FlowResult) -> str:
-    source = f"{flow.source}: " if flow.source else ""
-    return f"{source}{_the(flow)}, h = {step(flow.step_size)}"
+    what = f"{_the(flow)}, h{_IS}{step(flow.step_size)}"
+    return f"{flow.source}: {what}" if flow.source else f"{what[:1].upper()}{what[1:]}"
 
 
 def _the(flow: FlowResult) -> str:
@@ -128,7 +128,7 @@ def _probe(known: Sequence[Found]) -> str:
 def _floor_of(ratio: Fraction) -> int:
     """Two digits, rounded downwards."""
     count = int(ratio)
-    unit = 10 ** max(0, len(str(count)) - 2)
+    unit = int("1" + "0" * max(0, len(str(count)) - 2))
     return count // unit * unit
 
 
@@ -294,7 +294,7 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
     maps = listed(f"the {name}" if name == EXACT_FLOW else name for name in grid.columns)
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{_IS}{step(flow.step_size)}"
     svg = flow_panels(grid, name=f"panels-of-{anchor}", label=f"{lead}.")
-    return Plot(svg, f"{lead}.", _caption(flow, len(grid.rows)), wide=True)
+    return Plot(svg, f"{lead}.", _caption(flow, len(grid.rows)), wide=len(grid.columns) > 1)
 
 
 def _caption(flow: FlowResult, rows: int) -> str:

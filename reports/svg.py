@@ -25,6 +25,7 @@ SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a
 _SVG = "http://www.w3.org/2000/svg"
 _HREF = "{http://www.w3.org/1999/xlink}href"
 _PLACES = 1  # decimals of a coordinate: a tenth of a point is less than a pixel
+_UNITS: int = 10**_PLACES
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 _UNWANTED = {"font", "font-family", "font-style", "font-variant", "font-weight", "font-stretch"}
 _RC: Any = {
@@ -206,7 +207,7 @@ def _short_path(path: str) -> str:
 
 def _units(text: str) -> int:
     """A coordinate in units of the last decimal that is kept."""
-    return round(float(text) * 10**_PLACES)
+    return round(float(text) * _UNITS)
 
 
 def _straight(right: int, down: int) -> str:
@@ -221,7 +222,7 @@ def _joined(numbers: Sequence[int]) -> str:
 
 
 def _decimal(units: int) -> str:
-    whole, part = divmod(abs(units), 10**_PLACES)
+    whole, part = divmod(abs(units), _UNITS)
     digits = f".{part:0{_PLACES}d}".rstrip("0").rstrip(".")
     shown = f"{whole or ''}{digits}" or "0"
     return f"-{shown}" if units < 0 else shown

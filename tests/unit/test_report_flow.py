@@ -129,7 +129,7 @@ def test_an_image_that_is_missing_says_why() -> None:
     text = text_of(page)
     assert "1 image has no known change of area" in text
     assert text.count("left the range of float64 at step 7") == 2, "its sentence and its row"
-    assert "no image: N = 400" in page
+    assert "(a) lie2; no image at N = 400" in page
     alone = page_of(flow(FAILED))
     assert "<svg" not in alone
     assert "not known" in text_of(alone)
