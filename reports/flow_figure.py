@@ -25,7 +25,7 @@ from verify.polyline import parsed, thinned
 
 _POINT = 1 / 72
 _WIDTH, _NARROW = 600, 370  # of several columns, of one
-_LEFT, _ROW_LABEL, _RIGHT, _TOP, _BOTTOM, _GAP = 46, 22, 8, 26, 40, 12
+_LEFT, _LETTER, _ROW_LABEL, _RIGHT, _TOP, _BOTTOM, _GAP = 26, 7.5, 22, 8, 26, 40, 12
 _ROW_PLACE = 10
 _LOWEST, _HIGHEST = 0.3, 2.2  # a panel's height by its width
 _MOST_ROWS = 6
@@ -190,11 +190,12 @@ def _missing(panel: Panel, grid: Grid) -> str:
 
 def _layout(grid: Grid) -> _Layout:
     """Equal axes: a panel is as high as what it shows, within limits."""
-    left = _LEFT + (_ROW_LABEL if grid.rows else 0)
+    low, high = grid.size
+    longest = max(len(_tick(y)) for y in _ticks().tick_values(low[1], high[1]))
+    left = _LEFT + _LETTER * longest + (_ROW_LABEL if grid.rows else 0)
     columns = len(grid.columns)
     total = _WIDTH if columns > 1 else _NARROW
     width = (total - left - _RIGHT - (columns - 1) * _GAP) / columns
-    low, high = grid.size
     span = np.maximum(high - low, 1e-300)
     middle, span = (low + high) / 2, span + 2 * _ROOM * span.max()
     if not grid.rows:  # room for the images' labels
@@ -211,18 +212,27 @@ def _frame(axes: Any, layout: _Layout, *, left: bool, bottom: bool) -> None:
     axes.set_aspect("equal")
     grid_lines(axes, "both")
     for axis, name, shown in ((axes.xaxis, "q", bottom), (axes.yaxis, "p", left)):
-        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
+        axis.set_major_locator(_ticks())
+        axis.set_major_formatter(FuncFormatter(_tick))
         axis.set_tick_params(label1On=shown)
         axis.set_label_text(name, visible=shown)
 
 
+def _ticks() -> MaxNLocator:
+    return MaxNLocator(5, steps=[1, 2, 5, 10])
+
+
+def _tick(x: float, _: object = None) -> str:
+    return f"{x:g}".replace("-", "−")
+
+
 def _draw_panel(axes: Any, panel: Panel, grid: Grid, colour: str, layout: _Layout) -> None:
     _shape(axes, grid.before, INK, layout, before=True)
-    for steps, curves in panel.images:
+    for _, curves in panel.images:
         _shape(axes, curves, colour, layout)
-        if not grid.rows:
-            _name(axes, f"N = {whole(steps)}", curves[0], layout)
+    names: list[tuple[float, float]] = []
+    for steps, curves in () if grid.rows else panel.images:
+        _name(axes, f"N = {whole(steps)}", curves[0], layout, names)
     if panel.missing and grid.rows:
         axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
 
@@ -253,12 +263,24 @@ def _path(curves: Sequence[np.ndarray]) -> Path:
     return Path.make_compound_path(*(Path(np.vstack([c, c[:1]]), closed=True) for c in curves))
 
 
-def _name(axes: Any, text: str, region: np.ndarray, layout: _Layout) -> None:
-    """Above or below the image, on the side that is farther from the panel's middle."""
+def _name(
+    axes: Any,
+    text: str,
+    region: np.ndarray,
+    layout: _Layout,
+    others: list[tuple[float, float]],
+) -> None:
+    """Above or below the image, towards the nearer edge of the panel, and clear of `others`."""
     low, high = region.min(axis=0), region.max(axis=0)
     above = (low[1] + high[1]) / 2 >= (layout.low[1] + layout.high[1]) / 2
     place = (low[0] + high[0]) / 2, high[1] if above else low[1]
+    x, y = (value * layout.scale for value in place)  # in points
+    line, width = (_LABEL + 2) * (1 if above else -1), len(text) * _LABEL * 0.65
+    shift = 0
+    while any(abs(x - u) < width and abs(y + shift - v) < abs(line) for u, v in others):
+        shift += line
+    others.append((x, y + shift))
     axes.annotate(
-        text, place, xytext=(0, 3 if above else -3),
-        textcoords="offset points", ha="center", va="bottom" if above else "top", fontsize=_LABEL,
+        text, place, xytext=(0, shift + (3 if above else -3)), textcoords="offset points",
+        ha="center", va="bottom" if above else "top", fontsize=_LABEL,
     )  # fmt: skip
