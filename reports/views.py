@@ -43,7 +43,6 @@ class PageView:
     separated: bool
     grown: bool  # whether Λ was held against its growth law
     timed: bool  # whether error stands against run time
-    carried: bool  # whether regions were carried by maps
 
     def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
         """Those with a claim on this scene."""
@@ -76,7 +75,6 @@ def page_view(report: Report) -> PageView:
         separated=any(s.separations or s.crossovers for s in report.scenes),
         grown=any(s.growth_laws for s in report.scenes),
         timed=any(s.work_precision for s in report.scenes),
-        carried=any(s.flows for s in report.scenes),
     )
 
 
