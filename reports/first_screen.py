@@ -229,6 +229,10 @@ def _pictures(scenes: Sequence[SceneView]) -> Iterator[tuple[Plot, Place]]:
     ]
     for _, plot, place in sorted(maps, key=lambda each: -len(each[0].counted())):
         yield plot, place
+    for scene in scenes:
+        carried = scene.flows.regions if scene.flows else ()
+        name = scene.result.title
+        yield from ((r.plot, Place(r.anchor, name)) for r in carried if r.plot is not None)
     for scheme, place in schemes:
         parted = scheme.separation.plots if scheme.separation else ()
         yield from ((plot, place) for plot in (*parted, *scheme.series))

@@ -24,11 +24,15 @@ _MOST_SHOWN = 4  # significant digits of a number in a caption
 
 @dataclass(frozen=True)
 class Plot:
-    """An inline SVG with its caption; `lead` is also the image's text alternative."""
+    """An inline SVG with its caption; `lead` is also the image's text alternative.
+
+    One that is `wide` spans the text column.
+    """
 
     svg: Markup
     lead: str
     caption: str
+    wide: bool = False
 
 
 # -- how it was computed --------------------------------------------------------------------------

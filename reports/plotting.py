@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 from matplotlib.figure import Figure
 
-from reports import crossover_figure, figures, growth_figure, stability_figure
+from reports import crossover_figure, figures, flow_figure, growth_figure, stability_figure
 from reports import work_precision_figure as work_figure
 from reports.claim_view import ClaimView
 from reports.growth_view import orbits
@@ -19,6 +19,7 @@ from reports.plots import rows_of
 from reports.svg import styled
 from reports.work_precision_plots import error_panels
 from verify.errors import InputError
+from verify.flow_results import FlowResult
 from verify.results import ClaimResult, GrowthLawResult, RunResult, SeparationGrid
 from verify.stability_results import StabilityMapResult
 from verify.work_precision_results import WorkPrecisionResult
@@ -97,6 +98,13 @@ def plot_work_precision(found: WorkPrecisionResult) -> Figure:
 def plot_stability(over: StabilityMapResult) -> Figure:
     """Verdicts in the plane of step size and stiffness."""
     return _made(lambda: stability_figure.draw_plane(stability_figure.plane_of(over)))
+
+
+def plot_flow(flow: FlowResult) -> Figure:
+    """A region and its images by each map, q to the right and p upwards, on equal axes."""
+    if not flow.before or not any(image.outlines for image in flow.images):
+        raise InputError("flow", flow.shape, "holds no image to draw")
+    return _made(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
 
 
 def _made(draw: Callable[[], Figure]) -> Figure:

@@ -15,6 +15,7 @@ from verify.results import CriterionResult, EveryResult, ProofResult
 from verify.scene_results import SceneResult
 
 if TYPE_CHECKING:
+    from reports.flow_view import FlowView
     from reports.growth_view import GrowthView
     from reports.separation_view import SeparationView
     from reports.stability_view import StabilityView
@@ -35,6 +36,7 @@ class SchemeView:
     every_finding: Markup  # and that in sentences
     plots: tuple[Plot, ...]
     series: tuple[Plot, ...]
+    sources: tuple[str, ...]  # what of a paper each series repeats
     runs: RunTable | None
     separation: "SeparationView | None"
     growth: "GrowthView | None"
@@ -49,6 +51,7 @@ class SceneView:
     schemes: tuple[SchemeView, ...]
     work_precision: "WorkPrecisionView | None"
     stability: "StabilityView | None"
+    flows: "FlowView | None"
 
 
 def scene_view(scene: SceneResult, anchor: str) -> SceneView:
@@ -64,6 +67,7 @@ def scene_view(scene: SceneResult, anchor: str) -> SceneView:
         ),
         work_precision=_work_precision(scene, anchor),
         stability=_stability(scene, anchor),
+        flows=_flows(scene, anchor),
     )
 
 
@@ -89,6 +93,7 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
             plots.over_time(run, name=f"time-{index}-of-{anchor}")
             for index, run in enumerate(series)
         ),
+        sources=tuple(run.source for run in series),
         runs=run_table(runs),
         separation=_separation(scene, proof.scheme, anchor),
         growth=_growth(scene, proof.scheme, anchor),
@@ -146,6 +151,15 @@ def _work_precision(scene: SceneResult, anchor: str) -> "WorkPrecisionView | Non
     from reports.work_precision_view import work_precision_view
 
     return work_precision_view(scene.work_precision, name=anchor)
+
+
+def _flows(scene: SceneResult, anchor: str) -> "FlowView | None":
+    """Regions carried by maps, imported only where there are any."""
+    if not scene.flows:
+        return None
+    from reports.flow_view import flow_view
+
+    return flow_view(scene.flows, anchor)
 
 
 def _floors(scene: SceneResult) -> str:

@@ -25,6 +25,7 @@ SERIES = ("#0072b2", "#c44e00", "#00805c", "#a5407f", "#7a6200", "#2f6fd0", "#8a
 _SVG = "http://www.w3.org/2000/svg"
 _HREF = "{http://www.w3.org/1999/xlink}href"
 _PLACES = 1  # decimals of a coordinate: a tenth of a point is less than a pixel
+_UNITS: int = 10**_PLACES
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 _UNWANTED = {"font", "font-family", "font-style", "font-variant", "font-weight", "font-stretch"}
 _RC: Any = {
@@ -185,26 +186,46 @@ def _rounded(text: str) -> str:
 
 
 def _short_path(path: str) -> str:
-    """The path with rounded coordinates, without steps of no length, straight steps as H and V."""
+    """The path with rounded coordinates, without steps of no length, straight steps relative.
+
+    What is rounded are the places, not the steps between them, so that nothing adds up.
+    """
     out: list[str] = []
-    x = y = ""
+    x = y = 0
+    begun = [0, 0]  # where `z` leads back to
     for command, rest in re.findall(r"([MLCQz])([^MLCQz]*)", path):
-        numbers = [_rounded(n) for n in _NUMBER.findall(rest)]
+        numbers = [_units(n) for n in _NUMBER.findall(rest)]
         if command == "L":
-            step = _straight(x, y, numbers[0], numbers[1])
+            out.append(_straight(numbers[0] - x, numbers[1] - y))
         else:
-            step = command + " ".join(numbers)
-        if step:
-            out.append(step)
-        if numbers:
-            x, y = numbers[-2], numbers[-1]
+            out.append(command + _joined(numbers))
+        x, y = numbers[-2:] or begun
+        if command == "M":
+            begun = [x, y]
     return "".join(out)
 
 
-def _straight(x: str, y: str, to_x: str, to_y: str) -> str:
-    if x == to_x:
-        return "" if y == to_y else f"V{to_y}"
-    return f"H{to_x}" if y == to_y else f"L{to_x} {to_y}"
+def _units(text: str) -> int:
+    """A coordinate in units of the last decimal that is kept."""
+    return round(float(text) * _UNITS)
+
+
+def _straight(right: int, down: int) -> str:
+    if not right:
+        return f"v{_decimal(down)}" if down else ""
+    return f"l{_joined([right, down])}" if down else f"h{_decimal(right)}"
+
+
+def _joined(numbers: Sequence[int]) -> str:
+    """A minus sign sets numbers apart as well as a space."""
+    return " ".join(_decimal(n) for n in numbers).replace(" -", "-")
+
+
+def _decimal(units: int) -> str:
+    whole, part = divmod(abs(units), _UNITS)
+    digits = f".{part:0{_PLACES}d}".rstrip("0").rstrip(".")
+    shown = f"{whole or ''}{digits}" or "0"
+    return f"-{shown}" if units < 0 else shown
 
 
 def document(figures: Sequence[Markup]) -> str:

@@ -10,6 +10,7 @@ from markupsafe import Markup
 from reports import plots, words
 from reports.claim_view import Anchors, ClaimView
 from reports.first_screen import FirstScreen, first_screen
+from reports.paper_figure_view import PaperFigureView, paper_figure_views
 from reports.plots import Plot
 from reports.scene_view import SceneView, scene_view
 from verify.scene_results import Report
@@ -31,20 +32,24 @@ class ClaimGroup:
 
 @dataclass(frozen=True)
 class PageView:
-    """`paper_figures`: the paper's figures, made again; a template of its own shows them."""
+    """`paper_figures`: the paper's figures, made again; what they show stands nowhere else."""
 
     report: Report
     first: FirstScreen
     groups: tuple[ClaimGroup, ...]
     claims: tuple[ClaimView, ...]
     scenes: tuple[SceneView, ...]
-    paper_figures: tuple[Plot, ...]
+    paper_figures: tuple[PaperFigureView, ...]
     kinds: tuple[tuple[Kind, str], ...]  # verdicts on runs that occur, and what they mean
     terms: tuple[tuple[str, Markup], ...]  # those that its results need
 
     def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
         """Those with a claim on this scene."""
         return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
+
+    def figure_of(self, plot: Plot) -> PaperFigureView | None:
+        """The paper's figure that shows it."""
+        return next((f for f in self.paper_figures if any(p is plot for p in f.plots)), None)
 
 
 def page_view(report: Report) -> PageView:
@@ -60,7 +65,7 @@ def page_view(report: Report) -> PageView:
         groups=tuple(groups(claims, anchors)),
         claims=claims,
         scenes=scenes,
-        paper_figures=(),
+        paper_figures=paper_figure_views(report.figures, scenes, claims, anchors),
         kinds=_kinds(scenes),
         terms=tuple(words.terms(report.scenes)),
     )

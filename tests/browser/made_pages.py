@@ -1,17 +1,19 @@
 """Small pages made by the real code: a paper's claims, a user's scene; both with hostile text."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
 from reports.page import render
 from verify.claims import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
 from verify.execute import Store
+from verify.paper_figures import PaperFigure
 from verify.report import make_report
 from verify.scene import scene_from
 from verify.scene_results import Report
 
 EVIL = "<script>window.planted = 1</script><img src=x onerror='window.planted = 2'>"
+FLOW = "Figure 4 <script>window.planted = 3</script>"  # a label may be 80 characters long
 
 _GRID: dict[str, Any] = {
     "time": "0.2", "step_sizes": ["0.01", "0.02", "0.03"], "separate": True,
@@ -28,6 +30,12 @@ def paper() -> Report:
             "parameters": {"delta": 1}, "schemes": ["lie2", "symplectic-euler"],
             "criteria": [1, 2, 3, 4], "grid": _GRID,
             "series": [{"step_size": "0.01", "time": "1", "initial_value": {"q": "1", "p": "0"}}],
+            "flow": [
+                {"shape": "circle", "centre": {"q": 1, "p": 0}, "scale": "0.5",
+                 "step_size": "0.05", "steps": [10, 20], "source": FLOW},
+                {"polygon": [["0", "0"], ["1", "0"], ["0", "1"]], "step_size": "0.05",
+                 "steps": [5], "schemes": ["lie2"]},
+            ],
         },
         "duffing",
     )  # fmt: skip
@@ -49,7 +57,12 @@ def paper() -> Report:
         TheoremClaim(id="eq-3", source="Eq. 3", section="2.1 Discretization", kind="theorem",
                      statement="L_{H_p}(p_k) = H_p.", name="eq-3"),
     ]  # fmt: skip
-    return _report(f"A paper {EVIL}", scene, claims)
+    figures = [
+        PaperFigure(label="Figure 1", caption=f"Errors {EVIL}", scene="duffing", shows="runs",
+                    claims=("grows",), assumed=f"T. {EVIL}"),
+        PaperFigure(label=FLOW, caption="Flow.", scene="duffing", shows="flow"),
+    ]  # fmt: skip
+    return _report(f"A paper {EVIL}", scene, claims, figures)
 
 
 def own_scene() -> Report:
@@ -69,8 +82,13 @@ def own_scene() -> Report:
     return made.model_copy(update={"scenes": (found.model_copy(update={"hamiltonian": EVIL}),)})
 
 
-def _report(title: str, scene: Any, claims: list[Claim]) -> Report:
-    return make_report(title, [scene], claims, Store(None), command="verify report", workers=1)
+def _report(
+    title: str, scene: Any, claims: list[Claim], figures: Sequence[PaperFigure] = ()
+) -> Report:
+    command = "verify report"
+    return make_report(
+        title, [scene], claims, Store(None), command=command, figures=figures, workers=1
+    )
 
 
 _MADE: dict[str, Callable[[], Report]] = {"paper": paper, "own scene": own_scene}

@@ -9,6 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from reports import plotting
+from tests.unit.made_flows import FAILED, THREE, flow
 from tests.unit.made_growth import TWO
 from tests.unit.made_separations import CROSSING, grid
 from tests.unit.made_stability import MAP
@@ -30,6 +31,7 @@ MAKERS: dict[str, Callable[[], Figure]] = {
     "growth": lambda: plotting.plot_growth([TWO]),
     "work precision": lambda: plotting.plot_work_precision(result(ladder())),
     "stability": lambda: plotting.plot_stability(MAP),
+    "flow": lambda: plotting.plot_flow(THREE),
 }
 
 
@@ -96,6 +98,7 @@ EMPTY: SeparationGrid = as_grid(list(grid(["1e-9"] * 3, ["1e-9"] * 3).points[:1]
         (lambda: plotting.plot_growth([]), "laws"),
         (lambda: plotting.plot_work_precision(result()), "found"),
         (lambda: plotting.plot_table(claim()), "claim"),
+        (lambda: plotting.plot_flow(flow(FAILED)), "flow"),
     ],
 )
 def test_what_there_is_nothing_to_draw_of_is_an_error(make: Callable[[], Any], name: str) -> None:
