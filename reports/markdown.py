@@ -17,7 +17,7 @@ from reports.first_screen import SIGNS
 from reports.markdown_text import Markdown, escaped, in_html, markdown, table
 from reports.page import DATA
 from reports.plots import Plot
-from reports.views import page_view
+from reports.views import PageView, page_view
 from verify.keeping import write_atomically
 from verify.scene_results import Report
 from verify.verdict import Verdict
@@ -31,10 +31,10 @@ _OWN = re.compile(r"figure-[0-9]{2,}\.svg")  # the names of figures that `write`
 class _Figures:
     """The figures in the order in which the text shows them, each under the name of its file.
 
-    `first` stands on the first screen and nowhere else.
+    The first screen's stands nowhere else, and what a figure of the paper shows stands only there.
     """
 
-    first: Plot | None
+    page: PageView
     files: dict[str, str] = field(default_factory=dict)
 
     def image(self, plot: Plot) -> Markdown:
@@ -46,8 +46,16 @@ class _Figures:
         return Markdown(f"![{escaped(plot.lead)}]({path})")
 
     def show(self, plot: Plot) -> Markdown:
-        """The image with its caption, or where it stands already."""
-        if plot is self.first:
+        """The image with its caption, or where it stands."""
+        shown = self.page.figure_of(plot)
+        if shown is None:
+            return self.show_here(plot)
+        lead = f"{shown.figure.label}: {plot.lead}"
+        return Markdown(f"Picture: [{escaped(lead)}](#{shown.anchor})")
+
+    def show_here(self, plot: Plot) -> Markdown:
+        """The image with its caption, but for the first screen's."""
+        if plot is self.page.first.plot:
             return Markdown(f"Picture: [{escaped(plot.lead)}](#{FIRST})")
         lead, caption = escaped(plot.lead), markdown(plot.caption)
         return Markdown(f"{self.image(plot)}\n\n<b>{lead}</b> {caption}")
@@ -72,11 +80,18 @@ def write(report: Report, folder: Path) -> Path:
 def render(report: Report) -> tuple[str, dict[str, str]]:
     """The whole text, and the SVG documents that it shows by the paths at which it does."""
     page = page_view(report)
-    figures = _Figures(page.first.plot)
+    figures = _Figures(page)
     text = (
         _environment()
         .get_template("report.md")
-        .render(page=page, signs=SIGNS, image=figures.image, figure=figures.show, first_id=FIRST)
+        .render(
+            page=page,
+            signs=SIGNS,
+            image=figures.image,
+            figure=figures.show,
+            figure_here=figures.show_here,
+            first_id=FIRST,
+        )
     )
     return _spaced(text), figures.files
 

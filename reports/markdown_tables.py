@@ -12,6 +12,7 @@ from verify.results import CriterionResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
+    from reports.flow_view import CarriedView, Cell
     from reports.growth_view import GrowthView
     from reports.separation_view import SeparationView
     from reports.stability_view import StabilityView
@@ -115,6 +116,19 @@ def judged(view: "StabilityView") -> Markdown:
     heads = ("case", "scheme", "h", "N", "verdict", "evidence")
     rows = [(r.name, r.scheme, r.step_size, r.steps, r.verdict, r.detail) for r in view.cases]
     return table(heads, rows, "llrrll")
+
+
+def carried(view: "CarriedView") -> Markdown:
+    heads = ("map", "N", "t", "change of area", "mean of Λ", "distance", "arithmetic")
+    rows = [
+        (r.map, r.steps, r.time, _pair(r.change), _pair(r.mean), _pair(r.distance), r.arithmetic)
+        for r in view.rows
+    ]
+    return table(heads, rows, "lrrrrrl")
+
+
+def _pair(found: "Cell") -> str:
+    return f"{found.value} ± {found.error}" if found.error else found.value
 
 
 def _joined(parts: Iterable[tuple[str, Markdown]]) -> Markdown:

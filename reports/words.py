@@ -72,6 +72,17 @@ _GROWN = {
         "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
     ),
 }
+_CARRIED = {
+    "Change of area": Markup(
+        "The area inside the image of a closed outline, less that inside the outline, divided by "
+        "the latter: ∮ p dq along both, refined until the quadrature’s own error is far below the "
+        "change. It equals the mean of Λ over the region, which is computed beside it without any "
+        "area."
+    ),
+    "Distance of outlines": Markup(
+        "Hausdorff’s: the farthest that a point of either outline is from the other one."
+    ),
+}
 _TIMED = {
     "Limited by rounding": Markup(
         "The float64 run differs from the same steps in exact arithmetic by a part of its error "
@@ -102,6 +113,8 @@ def terms(scenes: Sequence[SceneResult]) -> Iterator[tuple[str, Markup]]:
         yield from _SEPARATED.items()
     if any(s.growth_laws for s in scenes):
         yield from _GROWN.items()
+    if any(s.flows for s in scenes):
+        yield from _CARRIED.items()
     if any(s.work_precision for s in scenes):
         yield from _TIMED.items()
     if any(s.runs or s.series or s.separations or s.crossovers or s.work_precision for s in scenes):
