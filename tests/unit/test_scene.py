@@ -233,6 +233,11 @@ scheme = "lie2"
 kind = "less"
 quantity = "mse"
 than = "abs_lambda"
+[[figure]]
+label = "Figure 1"
+scene = "mine"
+shows = "runs"
+claims = ["less"]
 """
 
 
@@ -251,8 +256,11 @@ def test_the_scenes_of_the_paper_survive_json_too(name: str) -> None:
 def full_report(folder: Path) -> Report:
     scene = load(folder, FULL)
     (folder / "claims.toml").write_text(CLAIMS)
-    claims = load_claims(folder / "claims.toml").claims
-    return make_report("All", [scene], claims, execute.Store(None), command="test", workers=1)
+    file = load_claims(folder / "claims.toml")
+    store, figures = execute.Store(None), file.figures
+    return make_report(
+        "All", [scene], file.claims, store, figures=figures, command="test", workers=1
+    )
 
 
 def models(value: object) -> set[type]:
