@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy
@@ -13,6 +14,19 @@ from verify.formula import parameter_name, parse, symbol, to_text
 from verify.generators import MAX_TERMS, embed
 from verify.ring import Poly, Ring
 from verify.substitution import substitute
+
+
+# A report asks for the same few Hamiltonians thousands of times: once for every task.
+@lru_cache(maxsize=64)
+def _of_formula(formula: str) -> "Hamiltonian":
+    return Hamiltonian(parse(formula, source="hamiltonian"))
+
+
+@lru_cache(maxsize=64)
+def _with_values(expression: sympy.Expr, values: tuple[tuple[str, Fraction], ...]) -> "Hamiltonian":
+    result = Hamiltonian(expression, values)
+    result.exact  # noqa: B018 - refuses values for which H is not defined
+    return result
 
 
 @dataclass(frozen=True)
@@ -34,10 +48,12 @@ class Hamiltonian:
 
         Raises InputError for a bad formula, a bad value, or a parameter that H does not have.
         """
-        expression = parse(formula, source="hamiltonian")
+        if not isinstance(formula, str):  # the parser says so
+            parse(formula, source="hamiltonian")
+        made = _of_formula(formula)
         if parameters is not None and not isinstance(parameters, Mapping):
             raise InputError("parameters", parameters, "is not a mapping of names to values")
-        return cls(expression).with_values(parameters or {})
+        return made.with_values(parameters or {})
 
     def with_values(self, parameters: Mapping[str, Exact | None]) -> "Hamiltonian":
         """The same H with these parameter values instead of its present ones."""
@@ -48,11 +64,9 @@ class Hamiltonian:
                 raise InputError("parameter", name, f"H has no such parameter; it has: {known}")
             if value is not None:
                 given[name] = rational(value, f"parameter {name}")
-        result = Hamiltonian(self.expression, tuple(sorted(given.items())))
-        result.exact  # noqa: B018 - refuses values for which H is not defined
-        return result
+        return _with_values(self.expression, tuple(sorted(given.items())))
 
-    @property
+    @cached_property
     def parameters(self) -> tuple[str, ...]:
         """All parameter names, with or without a value."""
         return tuple(
@@ -65,7 +79,7 @@ class Hamiltonian:
         given = dict(self.values)
         return tuple(name for name in self.parameters if name not in given)
 
-    @property
+    @cached_property
     def exact(self) -> sympy.Expr:
         """H with the values put in; InputError where it is not defined for them."""
         return self.put_in(self.expression)
@@ -76,11 +90,16 @@ class Hamiltonian:
         shown = ", ".join(f"{n}={text(v)}" for n, v in self.values)
         return substitute(expression, put, shown)
 
+    @cached_property
+    def formula(self) -> str:
+        """The expression as text that `parse` reads back."""
+        return to_text(self.expression)
+
     @property
     def written(self) -> dict[str, Any]:
         """Its formula and parameter values as text, by the names that results give them."""
         return {
-            "hamiltonian": to_text(self.expression),
+            "hamiltonian": self.formula,
             "parameters": {name: text(value) for name, value in self.values},
         }
 

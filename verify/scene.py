@@ -54,7 +54,6 @@ from verify import systems
 from verify.errors import InputError
 from verify.exact import text
 from verify.flow_sections import Flow
-from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.results import Frozen
 from verify.runs import CLOSED_FORM, MAX_STEPS, OBSERVABLES
@@ -225,7 +224,7 @@ class Scene(Frozen):
     def given(self) -> dict[str, Any]:
         """H as a task has it: its formula, and its parameter values exactly."""
         exact = self.exact_hamiltonian()
-        return {"hamiltonian": to_text(exact.expression), "parameters": dict(exact.values)}
+        return {"hamiltonian": exact.formula, "parameters": dict(exact.values)}
 
     def exact_hamiltonian(self) -> Hamiltonian:
         """The Hamiltonian with the scene's parameter values."""
