@@ -115,7 +115,7 @@ def prose(text: str) -> Markup:
 
 def sentence(text: str) -> Markup:
     """Prose as a sentence of its own: with a capital, unless it opens with a name, and a stop."""
-    if re.match(r"[a-z]{2,}[ ,]", text):
+    if re.match(r"(?!det )[a-z]{2,}[ ,]", text):
         text = text[0].upper() + text[1:]
     return prose(text if text.endswith((".", "!", "?")) else f"{text}.")
 

@@ -119,7 +119,7 @@ def _within(ends: list[tuple[Fraction, Fraction]], allowed: Fraction) -> Verdict
 def _largest(known: list[tuple[_At, FlowImage]]) -> str:
     if not known:
         return "nothing was measured"
-    at, image = max(known, key=lambda each: abs(Fraction(each[1].area_change or 0)))
+    at, image = max(known, key=lambda each: _ends(each[1])[1])
     measured = f"{image.area_change} ± {image.probe_error}"
     return f"the area of the region changes by {measured} of it ({_where(at)})"
 
