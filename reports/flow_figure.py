@@ -18,7 +18,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from reports.axes import grid_lines
 from reports.drawing import Drawing
-from reports.label_place import Box, place_of
+from reports.label_place import Box, dots, place_of
 from reports.svg import INK, SERIES, drawn
 from reports.typography import number, whole
 from verify.flow_results import CarriedOutline, DrawnOutline, FlowImage, FlowResult
@@ -150,7 +150,7 @@ class _Layout:
 
 def draw_flow(grid: Grid) -> Figure:
     layout = _layout(grid)
-    rows, columns = len(grid.panels), len(grid.columns)
+    rows = len(grid.panels)
     high = _TOP + rows * layout.height + (rows - 1) * _GAP + _BOTTOM
     figure = Drawing(figsize=(layout.total * _POINT, high * _POINT))
     for i, row in enumerate(grid.panels):
@@ -269,28 +269,18 @@ def _path(curves: Sequence[np.ndarray]) -> Path:
 
 def _name_all(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
     """The number of steps beside each image, clear of all that is drawn."""
-    images = [(n, _dots(curves, layout)) for n, curves in panel.images]
-    everything = np.concatenate([_dots(grid.before, layout), *(dots for _, dots in images)])
+    low, scale = layout.low, layout.scale
+    images = [(n, dots(curves, low, scale)) for n, curves in panel.images]
+    everything = np.concatenate([dots(grid.before, low, scale), *(own for _, own in images)])
     room = (0.0, 0.0, layout.width, layout.height)
     taken: list[Box] = []
-    for steps, dots in images:
+    for steps, own in images:
         text = f"N = {whole(steps)}"
         size = len(text) * _LABEL * _LETTER_OF_LABEL, _LABEL + 2.0
-        taken.append(place_of(size, dots, everything, taken, room))
+        taken.append(place_of(size, own, everything, taken, room))
         left, lower, right, _ = taken[-1]
         at = layout.low + np.array([(left + right) / 2, lower + 1]) / layout.scale
         axes.text(*at, text, ha="center", va="bottom", fontsize=_LABEL)
-
-
-def _dots(curves: Curves, layout: _Layout) -> np.ndarray:
-    """Points of the outlines close together, in points from the panel's corner."""
-    parts = []
-    for curve in curves:
-        ends = np.vstack([curve, curve[:1]])
-        lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(ends, axis=0).T))])
-        at = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * layout.scale / 2))
-        parts.append(np.column_stack([np.interp(at, lengths, ends[:, i]) for i in (0, 1)]))
-    return (np.concatenate(parts) - layout.low) * layout.scale
 
 
 # -- what is seen ---------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from reports.typography import NBSP, listed, whole
 from verify.flow_results import EXACT_FLOW, FlowResult
 from verify.hausdorff import hausdorff
 
+_NEAR = 2  # widths of a line: what lies so near hides what it lies on, nearly
 _NOTED = 1.5  # times as long: an outline drawn out so far is spoken of
 
 
@@ -58,8 +59,8 @@ def _upon_before(grid: Grid) -> Iterator[str]:
         for row in grid.panels
         for panel in row
         for steps, curves in panel.images
-        if hausdorff(curves[:1], grid.before[:1]).value < line_width(grid)
+        if hausdorff(curves[:1], grid.before[:1]).value < _NEAR * line_width(grid)
     }
     if hidden:
         counts = listed([f"N{NBSP}={NBSP}{whole(n)}" for n in sorted(hidden)])
-        yield f"The image at {counts} lies on the grey one and hides it."
+        yield f"At {counts} the grey one is nearly hidden: the image is two lines’ widths away at most."

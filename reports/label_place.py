@@ -1,6 +1,6 @@
 """Where a label stands beside what it names: clear of other labels and of all that is drawn."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -26,6 +26,17 @@ def place_of(
         return bad, _count(drawn, box)
 
     return min(_places(size, named, room), key=cost)
+
+
+def dots(curves: Sequence[np.ndarray], low: np.ndarray, scale: float) -> np.ndarray:
+    """Points close together on closed curves (n, 2), in points from the panel's corner `low`."""
+    parts = []
+    for curve in curves:
+        ends = np.vstack([curve, curve[:1]])
+        lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(ends, axis=0).T))])
+        at = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
+        parts.append(np.column_stack([np.interp(at, lengths, ends[:, i]) for i in (0, 1)]))
+    return (np.concatenate(parts) - low) * scale
 
 
 def _places(size: tuple[float, float], named: np.ndarray, room: Box) -> Iterator[Box]:
