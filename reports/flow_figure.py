@@ -77,12 +77,13 @@ def flow_panels(grid: Grid, *, name: str, label: str) -> Markup:
 
 
 def grid_of(flow: FlowResult) -> Grid:
-    """All maps' images; at most so many rows, the first and the last among them."""
+    """All maps' images; at most so many rows, the first and the last of those with an image."""
     maps = tuple(dict.fromkeys(image.map for image in flow.images))
     counts = sorted({image.steps for image in flow.images})
     before = _curves(flow.before)
     together = len(maps) <= _WITH_OTHERS and _keep_shape(flow, before)
-    groups = [counts] if together else [[n] for n in _some(counts)]
+    shown = sorted({image.steps for image in flow.images if image.outlines})
+    groups = [counts] if together else [[n] for n in _some(shown)]
     found = {(image.map, image.steps): image for image in flow.images}
     times = {image.steps: image.time for image in flow.images}
     return Grid(

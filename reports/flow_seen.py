@@ -49,7 +49,7 @@ def _upon_each_other(flow: FlowResult, line: float) -> Iterator[str]:
     if same:
         yield f"All images by {listed(same)} lie within a line’s width of the exact ones."
     if apart:
-        yield f"Some by {listed(apart)} lie further from the exact ones than a line’s width."
+        yield f"Some images by {listed(apart)} lie further from the exact ones than a line’s width."
 
 
 def _upon_before(grid: Grid) -> Iterator[str]:
@@ -63,4 +63,4 @@ def _upon_before(grid: Grid) -> Iterator[str]:
     }
     if hidden:
         counts = listed([f"N{NBSP}={NBSP}{whole(n)}" for n in sorted(hidden)])
-        yield f"At {counts} the grey one is nearly hidden: the image is two lines’ widths away at most."
+        yield f"At {counts} the image lies within two lines’ widths of the grey one and hides it."

@@ -132,6 +132,9 @@ def _caption(flow: FlowResult, rows: int) -> str:
     counts = len({image.steps for image in flow.images})
     placed = "a row for each number of steps N" if rows else "labelled by the number of steps N"
     some = f" {whole(rows)} of {whole(counts)} are drawn." if rows and rows < counts else ""
+    none = sorted({i.steps for i in flow.images} - {i.steps for i in flow.images if i.outlines})
+    if none:
+        some += f" At N{IS}{listed(map(whole, none))} there is no image."
     return (
         f"Grey: before. In colour: where each map carries it, {placed}.{some} What is tinted is "
         f"{region_of(flow)}, whose area is measured. One scale for q and for p in all panels."

@@ -258,7 +258,7 @@ def test_a_figure_has_its_claims_with_their_verdicts_and_what_was_assumed() -> N
     assert "✓ PROVED It grows. Eq. 1: It is." in first
     assert "What was assumed. T = 20,000." in first
     assert "The paper draws nothing from it that a number can decide." in second
-    assert "✗ REFUTED It keeps area. By 42." in third
+    assert "✗ REFUTED It keeps area. Eq. 1: By 42." in third
     assert 'href="#claim-kept"' in article(page, "figure-3")
     assert "lie2 with h = 0.01, N = 300 changes the area of the circle by 9.8765 × 10⁻⁴" in third
 
