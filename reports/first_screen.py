@@ -11,6 +11,7 @@ from reports.claim_view import ClaimView
 from reports.plots import Plot
 from reports.scene_view import SceneView
 from reports.typography import listed, superscript, whole
+from reports.words import counts_of
 from verify.results import ProofResult
 from verify.scene_results import Report
 from verify.stability_results import KINDS, Kind, StabilityResult
@@ -154,8 +155,7 @@ def _finding_of_proof(proof: ProofResult) -> str:
 
 def _finding_of_runs(judged: Sequence[StabilityResult]) -> str:
     counted = Counter(case.kind for case in judged)
-    shown = listed(f"{whole(counted[kind])} {kind}" for kind in KINDS if counted[kind])
-    return f"Of {whole(len(judged))} judged runs: {shown}."
+    return f"Of {whole(len(judged))} judged runs: {counts_of(counted)}."
 
 
 def _h(power: int) -> str:
@@ -231,8 +231,7 @@ def _pictures(scenes: Sequence[SceneView]) -> Iterator[tuple[Plot, Place]]:
         yield plot, place
     for scene in scenes:
         carried = scene.flows.regions if scene.flows else ()
-        name = scene.result.title
-        yield from ((r.plot, Place(r.anchor, name)) for r in carried if r.plot is not None)
+        yield from ((r.plot, Place(r.anchor, r.title)) for r in carried if r.plot is not None)
     for scheme, place in schemes:
         parted = scheme.separation.plots if scheme.separation else ()
         yield from ((plot, place) for plot in (*parted, *scheme.series))

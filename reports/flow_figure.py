@@ -18,6 +18,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from reports.axes import grid_lines
 from reports.drawing import Drawing
+from reports.label_place import Box, dots, place_of
 from reports.svg import INK, SERIES, drawn
 from reports.typography import number, whole
 from verify.flow_results import CarriedOutline, DrawnOutline, FlowImage, FlowResult
@@ -35,6 +36,8 @@ _DETAIL = 0.12  # of a point: what is finer is not drawn
 _LONG, _THINNER = 20, 0.6  # panel widths: a line so long is drawn with thinner strokes
 _ROOM = 0.04  # of the extent, around everything
 _LABEL = 11  # of an image, in points
+_LETTER_OF_LABEL = 0.62  # its width, as a part of the size
+_LINE = 0.7  # points, the region's outline
 _LONGEST = 26  # letters of a heading
 
 Curves = tuple[np.ndarray, ...]
@@ -74,12 +77,13 @@ def flow_panels(grid: Grid, *, name: str, label: str) -> Markup:
 
 
 def grid_of(flow: FlowResult) -> Grid:
-    """All maps' images; at most so many rows, the first and the last among them."""
+    """All maps' images; at most so many rows, the first and the last of those with an image."""
     maps = tuple(dict.fromkeys(image.map for image in flow.images))
     counts = sorted({image.steps for image in flow.images})
     before = _curves(flow.before)
     together = len(maps) <= _WITH_OTHERS and _keep_shape(flow, before)
-    groups = [counts] if together else [[n] for n in _some(counts)]
+    shown = sorted({image.steps for image in flow.images if image.outlines})
+    groups = [counts] if together else [[n] for n in _some(shown)]
     found = {(image.map, image.steps): image for image in flow.images}
     times = {image.steps: image.time for image in flow.images}
     return Grid(
@@ -147,7 +151,7 @@ class _Layout:
 
 def draw_flow(grid: Grid) -> Figure:
     layout = _layout(grid)
-    rows, columns = len(grid.panels), len(grid.columns)
+    rows = len(grid.panels)
     high = _TOP + rows * layout.height + (rows - 1) * _GAP + _BOTTOM
     figure = Drawing(figsize=(layout.total * _POINT, high * _POINT))
     for i, row in enumerate(grid.panels):
@@ -159,7 +163,7 @@ def draw_flow(grid: Grid) -> Figure:
             _frame(axes, layout, left=j == 0, bottom=i == rows - 1)
             _draw_panel(axes, panel, grid, SERIES[j % len(SERIES)], layout)
             if i == 0:
-                axes.set_title(_heading(j, grid.columns[j], columns) + _missing(panel, grid))
+                axes.set_title(_heading(j, grid) + _missing(panel, grid))
         if grid.rows:
             y = _BOTTOM + (rows - 0.5 - i) * layout.height + (rows - 1 - i) * _GAP
             figure.text(
@@ -173,10 +177,12 @@ def draw_flow(grid: Grid) -> Figure:
     return figure
 
 
-def _heading(index: int, name: str, count: int) -> str:
+def _heading(index: int, grid: Grid) -> str:
+    """With its letter, where each column is one panel; a paper's letters run through all rows."""
+    name, count = grid.columns[index], len(grid.columns)
     longest = max(4, _LONGEST * 3 // count)
     short = name if len(name) <= longest else f"{name[: longest - 1]}…"
-    return f"({chr(ord('a') + index)}) {short}" if count <= 26 else short
+    return short if grid.rows or count > 26 else f"({chr(ord('a') + index)}) {short}"
 
 
 def _missing(panel: Panel, grid: Grid) -> str:
@@ -230,9 +236,8 @@ def _draw_panel(axes: Any, panel: Panel, grid: Grid, colour: str, layout: _Layou
     _shape(axes, grid.before, INK, layout, before=True)
     for _, curves in panel.images:
         _shape(axes, curves, colour, layout)
-    names: list[tuple[float, float]] = []
-    for steps, curves in () if grid.rows else panel.images:
-        _name(axes, f"N = {whole(steps)}", curves[0], layout, names)
+    if not grid.rows:
+        _name_all(axes, panel, grid, layout)
     if panel.missing and grid.rows:
         axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
 
@@ -247,7 +252,7 @@ def _shape(
     axes.add_artist(
         PathPatch(
             _path([region]), facecolor=to_rgba(colour, 0.1 if before else 0.22),
-            edgecolor=to_rgba(colour, strength), linewidth=0.7 * thin, clip_on=False,
+            edgecolor=to_rgba(colour, strength), linewidth=_LINE * thin, clip_on=False,
         )
     )  # fmt: skip
     if others:
@@ -263,24 +268,30 @@ def _path(curves: Sequence[np.ndarray]) -> Path:
     return Path.make_compound_path(*(Path(np.vstack([c, c[:1]]), closed=True) for c in curves))
 
 
-def _name(
-    axes: Any,
-    text: str,
-    region: np.ndarray,
-    layout: _Layout,
-    others: list[tuple[float, float]],
-) -> None:
-    """Above or below the image, towards the nearer edge of the panel, and clear of `others`."""
-    low, high = region.min(axis=0), region.max(axis=0)
-    above = (low[1] + high[1]) / 2 >= (layout.low[1] + layout.high[1]) / 2
-    place = (low[0] + high[0]) / 2, high[1] if above else low[1]
-    x, y = (value * layout.scale for value in place)  # in points
-    line, width = (_LABEL + 2) * (1 if above else -1), len(text) * _LABEL * 0.65
-    shift = 0
-    while any(abs(x - u) < width and abs(y + shift - v) < abs(line) for u, v in others):
-        shift += line
-    others.append((x, y + shift))
-    axes.annotate(
-        text, place, xytext=(0, shift + (3 if above else -3)), textcoords="offset points",
-        ha="center", va="bottom" if above else "top", fontsize=_LABEL,
-    )  # fmt: skip
+def _name_all(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
+    """The number of steps beside each image, clear of all that is drawn."""
+    low, scale = layout.low, layout.scale
+    images = [(n, dots(curves, low, scale)) for n, curves in panel.images]
+    everything = np.concatenate([dots(grid.before, low, scale), *(own for _, own in images)])
+    room = (0.0, 0.0, layout.width, layout.height)
+    taken: list[Box] = []
+    for steps, own in images:
+        text = f"N = {whole(steps)}"
+        size = len(text) * _LABEL * _LETTER_OF_LABEL, _LABEL + 2.0
+        taken.append(place_of(size, own, everything, taken, room))
+        left, lower, right, _ = taken[-1]
+        at = layout.low + np.array([(left + right) / 2, lower + 1]) / layout.scale
+        axes.text(*at, text, ha="center", va="bottom", fontsize=_LABEL)
+
+
+# -- what is seen ---------------------------------------------------------------------------------
+
+
+def line_width(grid: Grid) -> float:
+    """What the width of an outline's line is in units of q and p: nearer things look as one."""
+    return _LINE / _layout(grid).scale
+
+
+def stretched(before: Curves, image: Curves) -> float:
+    """How many times as long the region's outline has become."""
+    return _length(image[0]) / _length(before[0])

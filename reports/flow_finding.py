@@ -1,13 +1,14 @@
 """What regions carried by maps show, in sentences: on all of a scene, and on each of them."""
 
 from collections.abc import Iterator, Sequence
+from decimal import ROUND_CEILING, Decimal
 from fractions import Fraction
 
 from reports.typography import NBSP, listed, number, step, whole
 from verify.flow_results import EXACT_FLOW, FlowImage, FlowResult
 
 IS = f"{NBSP}={NBSP}"
-_SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture
+_SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture; the sentence says it
 
 # -- sentences on all of a scene ------------------------------------------------------------------
 
@@ -114,21 +115,30 @@ def _distances(images: Sequence[Found]) -> Iterator[str]:
     parts = []
     for name, own in by_map.items():
         flow, image = max(own, key=lambda each: _size(each[1].distance))
-        parts.append(f"{name} up to {_pair(image.distance, image.distance_error)} "
-                     f"({_at(flow, image)})")  # fmt: skip
+        parts.append(f"{name} {_away(image)} ({_at(flow, image)})")
     if parts:
-        yield f"From the exact flow’s outlines those by a scheme are away: {listed(parts)}."
+        yield f"The outlines’ distance from those by the exact flow: {listed(parts)}."
 
 
 # -- sentences on one region ----------------------------------------------------------------------
 
 
 def finding(flow: FlowResult) -> Iterator[str]:
-    """The change of area of each scheme after the most steps; what is proved; distances."""
-    last: dict[str, FlowImage] = {}
+    """The change of area of each scheme after the most steps; what is proved; distances.
+
+    Where the last image failed, the last that is known is told too.
+    """
+    last: dict[str, list[FlowImage]] = {}
     for image in sorted(flow.images, key=lambda image: image.steps):
-        last[image.map] = image
-    for image in (i for name, i in last.items() if name != EXACT_FLOW):
+        own = last.setdefault(image.map, [])
+        known = [each for each in own if each.area_change is not None]
+        own[:] = [*known[-1:], image]
+    for name, images in last.items():
+        if name == EXACT_FLOW:
+            continue
+        *earlier, image = images
+        if image.area_change is None:
+            yield from (_finding_of(flow, known) for known in earlier)
         yield _finding_of(flow, image)
 
 
@@ -138,12 +148,12 @@ def _finding_of(flow: FlowResult, image: FlowImage) -> str:
         return f"{start}: no change of area is known ({image.problem or 'none was measured'})."
     away = ""
     if image.distance is not None:
-        apart = _pair(image.distance, image.distance_error)
-        away = f" Its outlines are up to {apart} away from the exact ones."
+        away = f" Its outlines are {_away(image)} away from the exact ones."
     if image.area_preserving:
         change = f"(measured: {_change(image)})"
         return f"{start} keeps the area of {region_of(flow)} by proof {change}.{away}"
-    unseen = "; by eye nothing is seen" if _size(image.area_change) < _SEEN else ""
+    most = _size(image.area_change) + _size(image.probe_error)
+    unseen = ", less than the thousandth that a picture can show" if most < _SEEN else ""
     text = f"{start} changes the area of {region_of(flow)} by {_change(image)} of it{unseen}."
     doubt = ""
     if image.agree is False:
@@ -173,6 +183,20 @@ def _at(flow: FlowResult, image: FlowImage) -> str:
 
 def _change(image: FlowImage) -> str:
     return _pair(image.area_change, image.probe_error)
+
+
+def _away(image: FlowImage) -> str:
+    """A distance with its error; where that is as large, only what the two bound together."""
+    found, error = _size(image.distance), _size(image.distance_error)
+    if error < found:
+        return f"up to {_pair(image.distance, image.distance_error)}"
+    return f"at most {number(_rounded_up(found + error))}"
+
+
+def _rounded_up(value: Fraction) -> str:
+    """A bound with two digits."""
+    exact = Decimal(value.numerator) / Decimal(value.denominator)
+    return f"{exact.quantize(Decimal((0, (1,), exact.adjusted() - 1)), ROUND_CEILING):.1e}"
 
 
 def _pair(value: str | None, error: str | None) -> str:

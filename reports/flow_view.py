@@ -117,18 +117,24 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
     if not flow.before or not any(image.outlines for image in flow.images):
         return None
     from reports.flow_figure import flow_panels, grid_of
+    from reports.flow_seen import seen
 
     grid, what = grid_of(flow), _the(flow)
     maps = listed(f"the {name}" if name == EXACT_FLOW else name for name in grid.columns)
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
-    svg = flow_panels(grid, name=f"panels-of-{anchor}", label=f"{lead}.")
-    return Plot(svg, f"{lead}.", _caption(flow, len(grid.rows)), wide=len(grid.columns) > 1)
+    found = " ".join(seen(flow, grid))
+    svg = flow_panels(grid, name=f"panels-of-{anchor}", label=f"{lead}. {found}".strip())
+    caption = f"{_caption(flow, len(grid.rows))} {found}".strip()
+    return Plot(svg, f"{lead}.", caption, wide=len(grid.columns) > 1)
 
 
 def _caption(flow: FlowResult, rows: int) -> str:
     counts = len({image.steps for image in flow.images})
     placed = "a row for each number of steps N" if rows else "labelled by the number of steps N"
     some = f" {whole(rows)} of {whole(counts)} are drawn." if rows and rows < counts else ""
+    none = sorted({i.steps for i in flow.images} - {i.steps for i in flow.images if i.outlines})
+    if none:
+        some += f" At N{IS}{listed(map(whole, none))} there is no image."
     return (
         f"Grey: before. In colour: where each map carries it, {placed}.{some} What is tinted is "
         f"{region_of(flow)}, whose area is measured. One scale for q and for p in all panels."

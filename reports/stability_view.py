@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from reports.plots import Plot
 from reports.typography import listed, number, step, whole
+from reports.words import counts_of
 from verify.exact import plain, short
 from verify.scene_results import SceneResult
 from verify.stability_results import (
@@ -75,8 +76,7 @@ def stability_view(scene: SceneResult, anchor: str) -> StabilityView:
 def _finding(cases: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:
     if cases:
         counted = Counter(case.kind for case in cases)
-        parts = [f"{counted[kind]} {kind}" for kind in KINDS if counted[kind]]
-        yield f"Of {whole(len(cases))} runs: {listed(parts)}."
+        yield f"Of {whole(len(cases))} runs: {counts_of(counted)}."
     drifting = sorted(
         (case for case in cases if case.rate), key=lambda case: -abs(Fraction(case.rate or 0))
     )
@@ -154,8 +154,7 @@ def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[Plot]:
 
 
 def _caption(over: StabilityMapResult) -> str:
-    counted = over.counted()
-    parts = listed([f"{n} {kind}" for kind, n in counted.items()])
+    parts = counts_of(over.counted())
     limit = ""
     if any(h and Fraction(h) > 0 for h in over.linear):
         limit = (

@@ -1,10 +1,12 @@
 """What every format of the report says in the same words: the terms, and what its tables hold."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from markupsafe import Markup
 
+from reports.typography import listed, whole
 from verify.scene_results import SceneResult
+from verify.stability_results import KINDS, Kind
 
 RUNS = (
     "Only known digits are printed, each value with its error bound. “|·| ≤” stands where no digit "
@@ -119,3 +121,22 @@ def terms(scenes: Sequence[SceneResult]) -> Iterator[tuple[str, Markup]]:
         yield from _TIMED.items()
     if any(s.runs or s.series or s.separations or s.crossovers or s.work_precision for s in scenes):
         yield from _RAN.items()
+
+
+# -- counts of judged runs in a sentence ----------------------------------------------------------
+
+_COUNTED: dict[Kind, str] = {
+    "stable": "stable",
+    "drifts": "drifting",
+    "unstable: scheme": "unstable by the scheme",
+    "unstable: arithmetic": "unstable by the arithmetic",
+    "escapes": "escaping",
+    "overflow": "overflowing",
+    "underflow": "underflowing",
+    "undecided": "undecided",
+}
+
+
+def counts_of(counted: Mapping[Kind, int]) -> str:
+    """How many of each kind there are: a kind's name is a verb or has a colon, and reads badly."""
+    return listed(f"{whole(counted[kind])} {_COUNTED[kind]}" for kind in KINDS if counted.get(kind))

@@ -71,7 +71,7 @@ def check_flow_distance(claim: FlowDistanceClaim, findings: Findings) -> ClaimRe
         return result(claim, Verdict.UNDECIDED, reason, details)
     at, worst = max(known, key=lambda each: Fraction(each[1].distance or 0))
     evidence = (
-        f"the outlines' Hausdorff distance from those by the exact flow is at most "
+        f"the largest of {len(known)} Hausdorff distances from the exact flow’s outlines is "
         f"{worst.distance} ± {worst.distance_error} ({_where(at)}; allowed here: "
         f"{text(claim.within)})"
     )
@@ -125,7 +125,7 @@ def _largest(known: list[tuple[_At, FlowImage]]) -> str:
 
 
 def _against(known: list[tuple[_At, FlowImage]], allowed: Fraction) -> str:
-    return f"{_largest(known)}, the most of {len(known)}; allowed here: {text(allowed)}"
+    return f"{_largest(known)}, the largest of {len(known)} changes; allowed here: {text(allowed)}"
 
 
 def _where(at: _At) -> str:

@@ -39,7 +39,7 @@ def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
 
 def test_the_verdicts_are_counted_and_what_occurs_is_explained() -> None:
     text = text_of(page_of(stability=(case(), case(), LEFT)))
-    assert "Of 3 runs: 2 drifts and 1 unstable: scheme." in text
+    assert "Of 3 runs: 2 drifting and 1 unstable by the scheme." in text
     assert "drifts (1.25e-04 per unit time)" in text
     assert "leaves at step 7" in text
     assert "the scheme’s doing" in text
@@ -78,7 +78,7 @@ def test_a_map_is_a_figure_with_counts_and_the_line_of_linear_theory() -> None:
     page = page_of(stability_maps=(MAP,))
     text = text_of(page)
     assert "Stability of lie4 over the step size h and a." in text
-    assert "2 stable, 1 drifts, 1 unstable: scheme, 1 escapes and 1 overflow" in text
+    assert "2 stable, 1 drifting, 1 unstable by the scheme, 1 escaping and 1 overflowing" in text
     assert "The line is where h times the orbit’s greatest frequency" in text
     assert "limit of linear theory" in page
 
