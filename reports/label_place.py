@@ -36,7 +36,8 @@ def dots(curves: Sequence[np.ndarray], low: np.ndarray, scale: float) -> np.ndar
         lengths = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(ends, axis=0).T))])
         at = np.linspace(0, lengths[-1], 2 + int(lengths[-1] * scale / 2))
         parts.append(np.column_stack([np.interp(at, lengths, ends[:, i]) for i in (0, 1)]))
-    return (np.concatenate(parts) - low) * scale
+    found: np.ndarray = (np.concatenate(parts) - low) * scale
+    return found
 
 
 def _places(size: tuple[float, float], named: np.ndarray, room: Box) -> Iterator[Box]:
