@@ -157,7 +157,7 @@ class Probe:
             cut = self._to_cut(families)
         rounding = self._roundings(families)
         return [
-            self._measured(self._of(families, i), rounding[i], exhausted=bool(cut))
+            self._measured(self._of(families, i), rounding[i], bool(cut))
             for i in range(len(self.outlines))
         ]
 

@@ -229,7 +229,7 @@ def _distance(
     to tell even its area. Raises NoFlowError.
     """
     region = carried[0].measured
-    if region.truncated > max(1, abs(region.change)):
+    if region.truncated > max(Fraction(1), abs(region.change)):
         return {}
     if any(np.abs(z).max() > FARTHEST for each in carried for z in each.after):
         return {}
