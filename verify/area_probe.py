@@ -109,7 +109,8 @@ class Measured:
     """The area inside a curve and its relative change by a map, with a bound of the change's error.
 
     `truncated` and `rounded` are the parts of `error`: the quadrature's and the arithmetic's.
-    `panels` are the halves in their order along the curve.
+    `panels` are the halves in their order along the curve. `exhausted`: the goals were not reached
+    with as many nodes as there may be.
     """
 
     area: Fraction
@@ -117,6 +118,7 @@ class Measured:
     truncated: Fraction
     rounded: Fraction
     panels: tuple[Panel, ...]
+    exhausted: bool
 
     @property
     def error(self) -> Fraction:
@@ -147,14 +149,16 @@ class Probe:
             for arc in range(len(outline.arcs)):
                 parts += [(index, arc, a, b) for a, b in pairwise(ends)]
         families = self._families(self._panels(parts))
+        cut = self._to_cut(families)
         for _ in range(_MOST_ROUNDS):
-            cut = self._to_cut(families)
             if not cut or NODES * 2 * (len(families) + len(cut)) > MOST_NODES:
                 break
             families = self._cut(families, cut)
+            cut = self._to_cut(families)
         rounding = self._roundings(families)
         return [
-            self._measured(self._of(families, i), rounding[i]) for i in range(len(self.outlines))
+            self._measured(self._of(families, i), rounding[i], bool(cut))
+            for i in range(len(self.outlines))
         ]
 
     # -- panels -------------------------------------------------------------------------------
@@ -234,7 +238,7 @@ class Probe:
 
     # -- the result ---------------------------------------------------------------------------
 
-    def _measured(self, families: Sequence[Family], rounding: int) -> Measured:
+    def _measured(self, families: Sequence[Family], rounding: int, exhausted: bool) -> Measured:
         panels = tuple(half for family in families for half in family.halves)
         area, size = sum(panel.before for panel in panels), self._size(families)
         # A curve that goes round nothing, as a figure of eight may: its parts take each other away.
@@ -247,6 +251,7 @@ class Probe:
             truncated=Fraction(sum(family.difference for family in families), size),
             rounded=Fraction(rounding + self._floor(panels), size),
             panels=panels,
+            exhausted=exhausted,
         )
 
     def _roundings(self, families: Sequence[Family]) -> list[int]:

@@ -20,7 +20,7 @@ from verify.area_probe import Goal, Measured, NoAreaError, Probe
 from verify.exact import decimal, known_digits, text, upper
 from verify.flow_results import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.hamiltonian import Hamiltonian
-from verify.hausdorff import hausdorff
+from verify.hausdorff import FARTHEST, hausdorff
 from verify.many_points import LeftError
 from verify.number_system import UnsupportedError
 from verify.outline import Outline, Shape
@@ -71,12 +71,14 @@ def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
     preserves = True if exact else get(task.map).step_map(hamiltonian).preserves_area
     found: dict[str, Any] = {}
     try:
-        carried, plane = _measured(hamiltonian, task, preserves)
-        found = _areas(carried, plane, preserves)
-        if task.mean_lambda and not preserves:
-            found |= _mean(hamiltonian, task, carried[0])
-        if task.distance:
-            found |= _distance(hamiltonian, span, carried)
+        with np.errstate(all="ignore"):  # what is not finite is looked for
+            carried, plane = _measured(hamiltonian, task, preserves)
+            found = _areas(carried, plane, preserves)
+            if task.mean_lambda and not preserves:
+                found |= _mean(hamiltonian, task, carried[0])
+            if task.distance:
+                with contextlib.suppress(NoFlowError):  # the area is known all the same
+                    found |= _distance(hamiltonian, span, carried)
     except (LeftError, NoFlowError, NoAreaError) as error:
         found = {"problem": str(error)}
     return FlowImage(
@@ -107,7 +109,8 @@ def _measured(
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
             floats = FloatPlane(*given, smaller)
             carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
-            if preserves or _is_sharp(carried[0].measured):
+            measured = carried[0].measured
+            if preserves or _is_sharp(measured) or _is_unresolved(measured):
                 return carried, floats
     digits = max(task.digits, _MORE_DIGITS)
     goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
@@ -138,6 +141,11 @@ def _all(shape: Shape, plane: SchemePlane | ExactPlane, goal: Goal) -> list[_Car
 
 def _is_sharp(measured: Measured) -> bool:
     return BELOW * measured.error <= abs(measured.change)
+
+
+def _is_unresolved(measured: Measured) -> bool:
+    """Whether the curve is too long for the nodes there may be, which no digits mend."""
+    return measured.exhausted and measured.truncated > BELOW * measured.rounded
 
 
 def _areas(
@@ -215,19 +223,32 @@ def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[st
 def _distance(
     hamiltonian: Hamiltonian, span: Fraction, carried: Sequence[_Carried]
 ) -> dict[str, Any]:
-    """The greatest Hausdorff distance of an outline from its image by the exact flow."""
+    """The greatest Hausdorff distance of an outline from its image by the exact flow.
+
+    Nothing where an image is too far away for it, or where too few points of the region's are known
+    to tell even its area. Raises NoFlowError.
+    """
+    region = carried[0].measured
+    if region.truncated > max(Fraction(1), abs(region.change)):
+        return {}
+    if any(np.abs(z).max() > FARTHEST for each in carried for z in each.after):
+        return {}
     plane = ExactPlane(hamiltonian, span)
     panels = [z for each in carried for z in each.before]
     q, p = plane.carried(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
     images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
-    greatest, bound = 0.0, 0.0
-    for each in carried:
-        true = [next(images) for _ in each.before]
-        found, error = _apart(each.after, true)
-        if found >= greatest:
-            greatest, bound = found, error + float(plane.radius or 0)
-    shown, told = _shown(Fraction(greatest), Fraction(bound))
+    apart = [_apart(each.after, [next(images) for _ in each.before]) for each in carried]
+    greatest, bound = _greatest(apart)
+    error = Fraction(bound) + (plane.radius or 0)
+    shown, told = _shown(Fraction(greatest), error)
     return {"distance": shown, "distance_error": told}
+
+
+def _greatest(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """The greatest of values with errors, with its error: a smaller one may be less well known."""
+    greatest = max(value for value, _ in values)
+    most, least = (max(value + sign * error for value, error in values) for sign in (1, -1))
+    return greatest, max(most - greatest, greatest - least)
 
 
 _Nodes = Sequence[tuple[np.ndarray, np.ndarray]]

@@ -45,14 +45,16 @@ def check_flow_area(claim: FlowAreaClaim, findings: Findings) -> ClaimResult:
         return result(claim, Verdict.PROVED, said, details)
     if images and all(image.area_preserving for _, image in images):
         return result(claim, Verdict.PROVED, f"det J ≡ 1; {_largest(known)}", details)
-    if doubtful or not known:
+    certain = [each for each in known if each[1] not in doubtful]
+    ends = [_ends(image) for _, image in certain]
+    refuted = any(low > (claim.within or 0) for low, _ in ends)  # one image is enough
+    if not refuted and (doubtful or not known):
         reason = next((i.problem for i in doubtful if i.problem), "the two measures disagree")
         return result(claim, Verdict.UNDECIDED, reason, details)
-    ends = [_ends(image) for _, image in known]
     if claim.within is None:
-        verdict = Verdict.REFUTED if any(low > 0 for low, _ in ends) else Verdict.UNDECIDED
-        return result(claim, verdict, _largest(known), details)
-    return result(claim, _within(ends, claim.within), _against(known, claim.within), details)
+        verdict = Verdict.REFUTED if refuted else Verdict.UNDECIDED
+        return result(claim, verdict, _largest(certain), details)
+    return result(claim, _within(ends, claim.within), _against(certain, claim.within), details)
 
 
 def check_flow_distance(claim: FlowDistanceClaim, findings: Findings) -> ClaimResult:
@@ -66,7 +68,13 @@ def check_flow_distance(claim: FlowDistanceClaim, findings: Findings) -> ClaimRe
         ),
     ]
     known = [(at, image) for at, image in images if image.distance is not None]
-    if len(known) < len(images) or not known:
+    ends = [
+        (Fraction(i.distance or 0) - Fraction(i.distance_error or 0),
+         Fraction(i.distance or 0) + Fraction(i.distance_error or 0))
+        for _, i in known
+    ]  # fmt: skip
+    verdict = _within(ends, claim.within)
+    if not known or (len(known) < len(images) and verdict is not Verdict.REFUTED):
         reason = next((i.problem for _, i in images if i.problem), "a distance is not known")
         return result(claim, Verdict.UNDECIDED, reason, details)
     at, worst = max(known, key=lambda each: Fraction(each[1].distance or 0))
@@ -75,12 +83,7 @@ def check_flow_distance(claim: FlowDistanceClaim, findings: Findings) -> ClaimRe
         f"{worst.distance} ± {worst.distance_error} ({_where(at)}; allowed here: "
         f"{text(claim.within)})"
     )
-    ends = [
-        (Fraction(i.distance or 0) - Fraction(i.distance_error or 0),
-         Fraction(i.distance or 0) + Fraction(i.distance_error or 0))
-        for _, i in known
-    ]  # fmt: skip
-    return result(claim, _within(ends, claim.within), evidence, details)
+    return result(claim, verdict, evidence, details)
 
 
 def conserves_area(hamiltonian: Hamiltonian) -> bool:

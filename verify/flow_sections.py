@@ -16,8 +16,9 @@ source = "Figure 6"                    # what of a paper it repeats; may be left
 """
 
 from fractions import Fraction
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
+from mpmath.ctx_mp import MPContext
 from pydantic import Field, model_validator
 
 from verify import shapes
@@ -29,6 +30,7 @@ from verify.runs import MAX_STEPS
 from verify.scene_values import Digits, InitialValue, Number, Steps, StepSize, Time
 
 MOST_DIGITS = 1000  # of points: a curve has thousands of them
+FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them are floats too
 Corner = tuple[Number, Number]
 
 
@@ -48,7 +50,8 @@ class ShapeGiven(Frozen):
             raise InputError("flow", ", ".join(given), "give one of shape, polygon and path")
         if self.scale <= 0:
             raise InputError("scale", text(self.scale), "must be greater than 0")
-        self.made()
+        if _reach(self.made()) > FARTHEST:
+            raise InputError("flow", "centre, scale", f"the shape reaches beyond ±{FARTHEST:g}")
         return self
 
     def made(self) -> Shape:
@@ -64,6 +67,13 @@ class ShapeGiven(Frozen):
 
             made = svg_path(self.path or "")
         return made.placed(self.centre.q, self.centre.p, self.scale)
+
+
+def _reach(shape: Shape) -> Any:
+    """The greatest coordinate of some points of each arc, in mpmath's numbers of any size."""
+    mp = MPContext()
+    points = (arc(mp, mp.mpf(k) / 2) for o in shape.outlines for arc in o.arcs for k in (0, 1))
+    return max(abs(x) for point in points for x in point)
 
 
 class Flow(ShapeGiven):

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 RELATIVE = 1e-6  # how closely the polylines' distance is enclosed
 _ROUNDING = 2.0**-48  # of the greatest coordinate: ours, not that of the points
-_GREATEST, _LEAST = 1e150, 1e-150  # so that no square overflows, nor is lost where it matters
+FARTHEST, _LEAST = 1e150, 1e-150  # so that no square overflows, nor is lost where it matters
 _DEEP = 60  # divisions of one segment
 _HALVINGS = 40
 
@@ -72,8 +72,8 @@ def _segments(name: str, curves: "Sequence[Curve]") -> Any:
     for curve in curves:
         if curve.ndim != 2 or curve.shape[1] != 2 or not len(curve):
             raise InputError(name, curve.shape, "not an array of points, of shape (n, 2), n ≥ 1")
-        if not (np.abs(curve) <= _GREATEST).all():
-            raise InputError(name, "curves", f"a coordinate is not finite, or beyond ±{_GREATEST}")
+        if not (np.abs(curve) <= FARTHEST).all():
+            raise InputError(name, "curves", f"a coordinate is not finite, or beyond ±{FARTHEST}")
     if not curves:
         raise InputError(name, "curves", "there is none")
     return segments([np.asarray(curve, dtype=np.float64) for curve in curves])

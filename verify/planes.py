@@ -51,7 +51,11 @@ class _Floats:
         return points
 
     def whole(self, x: np.ndarray) -> np.ndarray:
-        return np.array([int(v) for v in np.ldexp(x, self.grid)], dtype=object)
+        with np.errstate(over="ignore"):
+            scaled = np.ldexp(x, self.grid)
+        if np.isfinite(scaled).all():
+            return _objects([int(v) for v in scaled])
+        return _objects([int(Fraction(v) * (1 << self.grid)) for v in x.tolist()])
 
 
 class FloatPlane(_Floats):

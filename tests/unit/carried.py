@@ -40,7 +40,7 @@ def measured(outline: Outline, plane: Any, goal: Goal = FINE) -> Measured:
 
 
 def wide(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR, digits: int = 33) -> Any:
-    return WidePlane.of(of, scheme, Fraction(h), steps, digits)
+    return WidePlane(of, scheme, Fraction(h), steps, "fixed", digits)
 
 
 def floats(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR) -> FloatPlane:

@@ -265,8 +265,8 @@ TRUE = linear_determinant("lie3", Fraction(1, 20), 40)
 def test_a_panel_that_is_dropped_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     right = Probe._measured
 
-    def planted(self: Probe, families: Any, rounding: int) -> Measured:
-        return right(self, families[1:], rounding)
+    def planted(self: Probe, families: Any, *rest: Any) -> Measured:
+        return right(self, families[1:], *rest)
 
     monkeypatch.setattr(Probe, "_measured", planted)
     found = measured(SQUARE, MadePlane(bent))

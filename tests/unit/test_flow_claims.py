@@ -132,6 +132,10 @@ def test_one_image_that_is_not_known_leaves_what_the_others_say_open_unless_they
     good, bad = {"area_change": "1e-3"}, {"area_change": None, "problem": "it left"}
     assert verdict(area(within="1e-2"), findings(made_scene(), [good, bad])) is UNDECIDED
     assert verdict(area(within="1e-2"), findings(made_scene(), [good, good])) is MEASURED
+    assert verdict(area(within="1e-4"), findings(made_scene(), [good, bad])) is REFUTED
+    assert verdict(area(), findings(made_scene(), [good, bad])) is REFUTED
+    wrong = {"area_change": "1e-3", "agree": False}  # what is in doubt refutes nothing
+    assert verdict(area(within="1e-4"), findings(made_scene(), [wrong, bad])) is UNDECIDED
 
 
 @pytest.mark.parametrize(
@@ -144,6 +148,7 @@ def test_one_image_that_is_not_known_leaves_what_the_others_say_open_unless_they
         ([{"distance": "0.1", "distance_error": "0"}, {"distance": "0.3", "distance_error": "0"}],
          REFUTED),
         ([{"distance": "0.1", "distance_error": "0"}, {"distance": None}], UNDECIDED),
+        ([{"distance": "0.3", "distance_error": "0"}, {"distance": None}], REFUTED),
     ],
 )  # fmt: skip
 def test_distances_by_hand(given: list[dict[str, Any]], expected: Verdict) -> None:
