@@ -74,7 +74,7 @@ def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
         with np.errstate(all="ignore"):  # what is not finite is looked for
             carried, plane = _measured(hamiltonian, task, preserves)
             found = _areas(carried, plane, preserves)
-            if task.mean_lambda and not preserves:
+            if task.mean_lambda and not preserves and not found["problem"]:
                 found |= _mean(hamiltonian, task, carried[0])
             if task.distance:
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
@@ -152,12 +152,7 @@ def _areas(
     carried: Sequence[_Carried], plane: SchemePlane | ExactPlane, preserves: bool
 ) -> dict[str, Any]:
     region = carried[0].measured
-    problem = ""
-    if not preserves and not _is_sharp(region):
-        problem = (
-            f"the probe's error {decimal(region.error, 2)} is not {BELOW} times below the change "
-            f"of area {decimal(region.change, 2)}"
-        )
+    problem = _problem(region, preserves)
     curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
     change, error = _shown(region.change, region.error)
     return {
@@ -169,6 +164,18 @@ def _areas(
         "method": plane.method,
         "outlines": tuple(_outlines(carried, curves)),
     }
+
+
+def _problem(region: Measured, preserves: bool) -> str:
+    """Why what was measured tells nothing; empty where it does."""
+    if not preserves and not _is_sharp(region):
+        return (
+            f"the probe's error {decimal(region.error, 2)} is not {BELOW} times below the change "
+            f"of area {decimal(region.change, 2)}"
+        )
+    if BELOW * region.error > max(1, abs(region.change)):
+        return f"the image is not resolved: its area is known but for {decimal(region.error, 2)}"
+    return ""
 
 
 def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list[CarriedOutline]:

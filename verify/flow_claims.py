@@ -68,11 +68,7 @@ def check_flow_distance(claim: FlowDistanceClaim, findings: Findings) -> ClaimRe
         ),
     ]
     known = [(at, image) for at, image in images if image.distance is not None]
-    ends = [
-        (Fraction(i.distance or 0) - Fraction(i.distance_error or 0),
-         Fraction(i.distance or 0) + Fraction(i.distance_error or 0))
-        for _, i in known
-    ]  # fmt: skip
+    ends = [_around(image.distance, image.distance_error) for _, image in known]
     verdict = _within(ends, claim.within)
     if not known or (len(known) < len(images) and verdict is not Verdict.REFUTED):
         reason = next((i.problem for _, i in images if i.problem), "a distance is not known")
@@ -109,8 +105,12 @@ def _images(claim: FlowClaim, scene: Scene, findings: Findings) -> list[tuple[_A
 
 def _ends(image: FlowImage) -> tuple[Fraction, Fraction]:
     """The least and the greatest that |change| may be; 0 where its sign is not known."""
-    size, error = abs(Fraction(image.area_change or 0)), Fraction(image.probe_error or 0)
-    return max(size - error, Fraction(0)), size + error
+    return _around(image.area_change, image.probe_error)
+
+
+def _around(value: str | None, error: str | None) -> tuple[Fraction, Fraction]:
+    size, apart = abs(Fraction(value or 0)), Fraction(error or 0)
+    return max(size - apart, Fraction(0)), size + apart
 
 
 def _within(ends: list[tuple[Fraction, Fraction]], allowed: Fraction) -> Verdict:

@@ -11,7 +11,7 @@ steps = [5000, 10000, 20000]           # of the map; or times = [1, 2, 3]
 schemes = ["lie2", "symplectic-euler"] # the scene's, where it is left out
 exact = true                           # the exact flow beside them, and the distance from it
 mean_lambda = true                     # the mean of Λ over the region, for schemes that change area
-digits = 17                            # more than 17: all points are carried with so many
+digits = 17                            # more than 17: all points are carried with 33 or more
 source = "Figure 6"                    # what of a paper it repeats; may be left out
 """
 

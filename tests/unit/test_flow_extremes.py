@@ -82,3 +82,11 @@ def test_a_curve_too_long_for_the_nodes_is_not_tried_with_more_digits() -> None:
 def test_a_greatest_value_is_no_better_known_than_those_that_may_be_greater() -> None:
     assert _greatest([(1.0, 0.25), (0.5, 0.125)]) == (1.0, 0.25)
     assert _greatest([(1.0, 0.25), (0.5, 2.0)]) == (1.0, 1.5)
+
+
+def test_an_image_that_is_not_resolved_is_told_even_where_area_is_preserved() -> None:
+    """A step a thousand long shears the face beyond what any number of nodes follows."""
+    image = carried(scheme="symplectic-euler", h=1000, steps=3, mean_lambda=False)
+    assert "is not resolved" in image.problem
+    assert image.area_change is None
+    assert carried(scheme="symplectic-euler", mean_lambda=False).problem == ""
