@@ -173,7 +173,7 @@ def _problem(region: Measured, preserves: bool) -> str:
             f"the probe's error {decimal(region.error, 2)} is not {BELOW} times below the change "
             f"of area {decimal(region.change, 2)}"
         )
-    if BELOW * region.error > max(1, abs(region.change)):
+    if BELOW * region.error > max(Fraction(1), abs(region.change)):
         return f"the image is not resolved: its area is known but for {decimal(region.error, 2)}"
     return ""
 
