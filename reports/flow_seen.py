@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from fractions import Fraction
 
+import numpy as np
+
 from reports.flow_figure import Grid, line_width, stretched
 from reports.typography import NBSP, listed, whole
 from verify.flow_results import EXACT_FLOW, FlowResult
-from verify.hausdorff import hausdorff
 
 _NEAR = 2  # widths of a line: what lies so near hides what it lies on, nearly
 _NOTED = 1.5  # times as long: an outline drawn out so far is spoken of
@@ -59,8 +60,28 @@ def _upon_before(grid: Grid) -> Iterator[str]:
         for row in grid.panels
         for panel in row
         for steps, curves in panel.images
-        if hausdorff(curves[:1], grid.before[:1]).value < _NEAR * line_width(grid)
+        if _lies_upon(curves[0], grid.before[0], _NEAR * line_width(grid))
     }
     if hidden:
         counts = listed([f"N{NBSP}={NBSP}{whole(n)}" for n in sorted(hidden)])
         yield f"At {counts} the image lies within two lines’ widths of the grey one and hides it."
+
+
+def _lies_upon(curve: np.ndarray, other: np.ndarray, width: float) -> bool:
+    """Whether two closed polylines (n, 2) keep within that width of each other, by their corners.
+
+    Their boxes tell it of most; the distance itself, which is exact, is slow to compile for a page.
+    """
+    ends = np.array([curve.min(0) - other.min(0), curve.max(0) - other.max(0)])
+    if np.abs(ends).max() >= width:
+        return False
+    return max(_farthest(curve, other), _farthest(other, curve)) < width
+
+
+def _farthest(points: np.ndarray, curve: np.ndarray) -> float:
+    """The greatest distance of the points from the curve's segments."""
+    along = np.roll(curve, -1, axis=0) - curve
+    apart = points[:, None] - curve[None]
+    share = (apart * along).sum(-1) / np.maximum((along * along).sum(-1), np.finfo(float).tiny)
+    nearest = apart - np.clip(share, 0, 1)[..., None] * along
+    return float(np.hypot(nearest[..., 0], nearest[..., 1]).min(1).max())

@@ -16,6 +16,7 @@ source = "Figure 6"                    # what of a paper it repeats; may be left
 """
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import Annotated, Any, Self
 
 from mpmath.ctx_mp import MPContext
@@ -50,29 +51,51 @@ class ShapeGiven(Frozen):
             raise InputError("flow", ", ".join(given), "give one of shape, polygon and path")
         if self.scale <= 0:
             raise InputError("scale", text(self.scale), "must be greater than 0")
-        if _reach(self.made()) > FARTHEST:
+        if _reach(*self._key()) > FARTHEST:
             raise InputError("flow", "centre, scale", f"the shape reaches beyond ±{FARTHEST:g}")
         return self
 
     def made(self) -> Shape:
         """The shape where it is put."""
-        if self.shape is not None:
-            made = shapes.get(self.shape)
-        elif self.polygon is not None:
-            from verify.own_outline import polygon
+        return _made(*self._key())
 
-            made = polygon(self.polygon)
-        else:
-            from verify.own_outline import svg_path
-
-            made = svg_path(self.path or "")
-        return made.placed(self.centre.q, self.centre.p, self.scale)
+    def _key(self) -> "_Key":
+        at = self.centre
+        return self.shape, self.polygon, self.path, at.q, at.p, self.scale
 
 
-def _reach(shape: Shape) -> Any:
+_Key = tuple[str | None, tuple[Corner, ...] | None, str | None, Fraction, Fraction, Fraction]
+
+
+# A plan asks for the same few shapes again for each map and number of steps.
+@lru_cache(maxsize=64)
+def _made(
+    name: str | None,
+    corners: tuple[Corner, ...] | None,
+    path: str | None,
+    q: Fraction,
+    p: Fraction,
+    scale: Fraction,
+) -> Shape:
+    if name is not None:
+        made = shapes.get(name)
+    elif corners is not None:
+        from verify.own_outline import polygon
+
+        made = polygon(corners)
+    else:
+        from verify.own_outline import svg_path
+
+        made = svg_path(path or "")
+    return made.placed(q, p, scale)
+
+
+@lru_cache(maxsize=64)
+def _reach(*key: Any) -> Any:
     """The greatest coordinate of some points of each arc, in mpmath's numbers of any size."""
     mp = MPContext()
-    points = (arc(mp, mp.mpf(k) / 2) for o in shape.outlines for arc in o.arcs for k in (0, 1))
+    arcs = (arc for outline in _made(*key).outlines for arc in outline.arcs)
+    points = (arc(mp, mp.mpf(k) / 2) for arc in arcs for k in (0, 1))
     return max(abs(x) for point in points for x in point)
 
 
