@@ -13,6 +13,7 @@ from typing import Any
 
 from mpmath.ctx_mp import MPContext
 
+from verify.exact import of_mpf
 from verify.motion import Context, Motion, number
 from verify.proof.exact_flow import NoFlowError
 
@@ -59,7 +60,7 @@ def evaluate(
 def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
     """|t| at which the solution ends, forwards (1) or backwards (−1); None where it does not."""
     end = motion.blow_up(_context(digits + _GUARD + motion.lost), sign)
-    return None if end is None else _exact(end)
+    return None if end is None else of_mpf(end)
 
 
 def _check_end(motion: Motion, time: Fraction, mp: Context) -> None:
@@ -126,9 +127,3 @@ def _context(digits: int) -> Context:
 def _length(x: Fraction) -> int:
     """The decimal digits in which a rational is written."""
     return (x.numerator.bit_length() + x.denominator.bit_length()) * 3 // 10
-
-
-def _exact(x: Any) -> Fraction:
-    sign, mantissa, exponent, _ = x._mpf_
-    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return -size if sign else size

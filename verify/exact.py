@@ -8,6 +8,7 @@ import re
 import warnings
 from decimal import Decimal
 from fractions import Fraction
+from typing import Any
 
 import gmpy2
 
@@ -105,6 +106,13 @@ def short(value: Fraction) -> str:
     """Its exact text where that is short, else three significant digits of it."""
     written = text(value)
     return written if len(written) <= _SHORT else decimal(value, 3)
+
+
+def of_mpf(x: Any) -> Fraction:
+    """The rational that a finite number of mpmath is."""
+    sign, mantissa, exponent, _ = x._mpf_
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return -size if sign else size
 
 
 def decimal(value: Fraction, digits: int) -> str:

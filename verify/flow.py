@@ -99,12 +99,11 @@ def _measured(
 ) -> tuple[list[_Carried], SchemePlane | ExactPlane]:
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
     shape = task.shape.made()
+    smaller = smaller_than_one(shape.outlines[0])
     if task.map == EXACT_FLOW:
-        exact = ExactPlane(hamiltonian, task.step_size * task.steps)
-        exact.grid += smaller_than_one(shape.outlines[0])
+        exact = ExactPlane(hamiltonian, task.step_size * task.steps, smaller)
         return _all(shape, exact, _UNCHANGED), exact
     given = hamiltonian, task.map, task.step_size, task.steps
-    smaller = smaller_than_one(shape.outlines[0])
     if task.digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
             floats = FloatPlane(*given, smaller)

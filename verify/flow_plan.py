@@ -38,15 +38,15 @@ def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
 
 def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
     """One a map and number of steps, in that order."""
-    exact = scene.exact_hamiltonian()
+    exact, given, shape = scene.exact_hamiltonian(), scene.given(), flow.shape_given()
     for name in maps_of(scene, flow):
         by_scheme = name != EXACT_FLOW
         preserves = not by_scheme or get(name).step_map(exact).preserves_area
         for steps in flow.counts:
             yield FlowTask(
-                **scene.given(),
+                **given,
                 map=name,
-                shape=flow.shape_given(),
+                shape=shape,
                 step_size=flow.step_size,
                 steps=steps,
                 digits=flow.digits,

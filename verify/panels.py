@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 from mpmath.ctx_mp import MPContext
 
+from verify.exact import of_mpf
+
 Number = Any  # of an mpmath context
 NODES = 16
 _GUARD = 40  # bits, of which Newton's method and differences of nodes take a few
@@ -88,11 +90,7 @@ def _derivative(nodes: Sequence[Number]) -> list[list[Number]]:
 
 
 def _exact(values: Sequence[Number]) -> tuple[Fraction, ...]:
-    found = []
-    for x in values:
-        sign, mantissa, exponent, _ = x._mpf_
-        found.append((-1) ** sign * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
-    return tuple(found)
+    return tuple(map(of_mpf, values))
 
 
 @cache

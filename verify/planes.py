@@ -14,6 +14,7 @@ from mpmath.ctx_mp import MPContext
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import float64
+from verify.exact import of_mpf
 from verify.exact_points import exact_points
 from verify.float_context import FLOAT
 from verify.hamiltonian import Hamiltonian
@@ -91,7 +92,8 @@ class ExactPlane(_Floats):
     sampled = 0
     name, digits = float64.NAME, 17
 
-    def __init__(self, hamiltonian: Hamiltonian, time: Fraction) -> None:
+    def __init__(self, hamiltonian: Hamiltonian, time: Fraction, smaller: int = 0) -> None:
+        self.grid += smaller
         self._hamiltonian, self._time = hamiltonian, time
         self.radius: Fraction | None = Fraction(0)
         self.method = ""
@@ -139,7 +141,7 @@ class WidePlane:
         mp.prec = self.grid + 20
         at = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
         number = self.arithmetic.number
-        x, y = ([number(_exact(mp, z[i])) for z in at] for i in (0, 1))
+        x, y = ([number(of_mpf(mp.mpf(z[i]))) for z in at] for i in (0, 1))
         return _objects(x), _objects(y)
 
     def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
@@ -171,12 +173,6 @@ def _objects(values: Sequence[Any]) -> np.ndarray:
     made = np.empty(len(values), dtype=object)
     made[:] = values
     return made
-
-
-def _exact(mp: Any, x: Any) -> Fraction:
-    sign, mantissa, exponent, _ = mp.mpf(x)._mpf_
-    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return -size if sign else size
 
 
 SchemePlane = FloatPlane | WidePlane

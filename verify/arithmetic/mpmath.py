@@ -11,6 +11,7 @@ from typing import Any
 from mpmath import libmp
 from mpmath.ctx_mp import MPContext
 
+from verify.exact import of_mpf
 from verify.number_system import ESCAPE_BITS, MOST_EXPONENT, Arithmetic, bits_for, interpreted
 
 NAME = "mpmath"
@@ -43,7 +44,7 @@ def at_bits(bits: int) -> Arithmetic:
         name=NAME,
         bits=bits,
         number=number,
-        exact=_exact,
+        exact=of_mpf,
         finite=lambda x: bool(
             context.isfinite(x) and abs(x._mpf_[2] + x._mpf_[3]) <= MOST_EXPONENT
         ),
@@ -63,9 +64,3 @@ def at_bits(bits: int) -> Arithmetic:
         pipelined=False,
         chunk=1 << 12,
     )
-
-
-def _exact(x: Any) -> Fraction:
-    sign, mantissa, exponent, _ = x._mpf_
-    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return Fraction(-size if sign else size)
