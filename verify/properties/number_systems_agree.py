@@ -1,0 +1,67 @@
+"""Every number system's p, q and Λ lie within their bounds of what balls enclose, or reach there.
+
+One number system an example, by its numbers, so that all of them get their turn. Where the step
+solves equations, which balls do not do here, float64 is held against 40 digits.
+"""
+
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.ball_steps import BITS, ball_steps
+from verify.balls import Ball, around, shown
+from verify.example import Example
+from verify.precision import working_precision
+from verify.property import Violation
+from verify.results import RunResult
+from verify.runs import run
+
+_DIGITS = 30
+_OBSERVABLES = ("lambda",)
+
+
+def holds(example: Example) -> bool:
+    names = number_systems.names()
+    turn = example.p.numerator + example.q.denominator + example.steps
+    name = names[turn % len(names)]
+    wanted = _enclosed(example)
+    if wanted is None:
+        return False
+    found = _run(example, name, 17 if name == "float64" else _DIGITS)
+    if found is None:
+        return False
+    for quantity, value in found.values.items():
+        ours = around(Fraction(value.value), Fraction(value.bound))
+        if not ours.overlaps(wanted[quantity]):
+            within = f"{value.value} ± {value.bound}"
+            true = shown(wanted[quantity], 20)
+            raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
+    return True
+
+
+def _enclosed(example: Example) -> dict[str, Ball] | None:
+    if example.step_map.solved:
+        found = _run(example, "mpfr", 40)
+        if found is None:
+            return None
+        return {n: around(Fraction(v.value), Fraction(v.bound)) for n, v in found.values.items()}
+    start = example.p, example.q, example.step_size
+    states = ball_steps(example.step_map, *start, example.steps)
+    if states is None:
+        return None
+    with working_precision(BITS):
+        return {"p": states[-1].p, "q": states[-1].q, "lambda": states[-1].product - 1}
+
+
+def _run(example: Example, arithmetic: str, digits: int) -> RunResult | None:
+    found = run(
+        example.hamiltonian,
+        example.scheme.name,
+        q=example.q,
+        p=example.p,
+        step_size=example.step_size,
+        steps=example.steps,
+        arithmetic=arithmetic,
+        digits=digits,
+        observables=_OBSERVABLES,
+    )
+    return found if found.status == "finished" else None

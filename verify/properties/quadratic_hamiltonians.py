@@ -1,0 +1,83 @@
+"""For quadratic H, det J = R(x)·R(−x) with x² = −h² det Hess H, R the scheme's stability function.
+
+That is |R(iωh)|² where the orbits are ellipses, and R(λh)·R(−λh) where they are hyperbolas. Asked
+of the quadratic part of H at the initial value, its coefficients rounded.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+from math import factorial
+
+import sympy
+
+from verify.ball_steps import BITS
+from verify.enclosure import enclose
+from verify.exact import short
+from verify.example import Example
+from verify.formula import symbol
+from verify.generic import RungeKutta, TaylorSeries
+from verify.hamiltonian import Hamiltonian
+from verify.property import Violation
+
+_UNIT = 100  # coefficients are whole multiples of 1/100
+
+
+def holds(example: Example) -> bool:
+    generic = example.scheme.generic
+    hessian = _hessian(example)
+    if not isinstance(generic, TaylorSeries | RungeKutta) or hessian is None:
+        return False
+    h_pp, h_pq, h_qq = hessian
+    square = -(example.step_size**2) * (h_pp * h_qq - h_pq**2)
+    wanted = _product(_stability_function(generic), square)
+    p, q = symbol("p"), symbol("q")
+    a, b, c = (sympy.Rational(x.numerator, x.denominator) for x in hessian)
+    step_map = example.scheme.step_map(Hamiltonian(a * p**2 / 2 + b * p * q + c * q**2 / 2))
+    delta_j = step_map.whole.delta_j
+    found = enclose(step_map.whole.ring, delta_j, {"h": example.step_size}, BITS)
+    if not (found + 1).contains(_fmpq(wanted)):
+        given = f"Hess H = ({short(h_pp)}, {short(h_pq)}, {short(h_qq)})"
+        raise Violation(f"det J is {(found + 1).str(12)}, and should be {short(wanted)}: {given}")
+    return True
+
+
+def _hessian(example: Example) -> tuple[Fraction, Fraction, Fraction] | None:
+    """H_pp, H_pq, H_qq at the initial value, rounded; None where they are not ordinary numbers."""
+    field, _ = example.hamiltonian.field()
+    ring, point = field.ring, {"p": example.p, "q": example.q}
+    found = []
+    for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
+        value = enclose(ring, ring.diff(x, name), point, 128)
+        if value is None or not abs(value) < 10**6:
+            return None
+        found.append(Fraction(int((value * _UNIT).mid().floor().unique_fmpz()), _UNIT))
+    return found[0], found[1], found[2]
+
+
+@lru_cache(maxsize=64)
+def _stability_function(generic: TaylorSeries | RungeKutta) -> Sequence[Fraction]:
+    """The coefficients of R(z) = Σ cₙ zⁿ: 1/n!, or 1, b·1, b·A1, b·A²1, …"""
+    if isinstance(generic, TaylorSeries):
+        return [Fraction(1, factorial(n)) for n in range(generic.eta + 1)]
+    stages = len(generic.weights)
+    rows = [[*row, *[Fraction(0)] * (stages - len(row))] for row in generic.rows]
+    vector, found = [Fraction(1)] * stages, [Fraction(1)]
+    for _ in range(stages):
+        found.append(sum((b * x for b, x in zip(generic.weights, vector, strict=True)), Fraction()))
+        vector = [sum((a * x for a, x in zip(r, vector, strict=True)), Fraction()) for r in rows]
+    return found
+
+
+def _product(coefficients: Sequence[Fraction], square: Fraction) -> Fraction:
+    """R(x) R(−x), which is even in x: its odd and even parts by x² = `square`."""
+    even = sum((c * square ** (n // 2) for n, c in enumerate(coefficients) if n % 2 == 0),
+               Fraction())  # fmt: skip
+    odd = sum((c * square ** (n // 2) for n, c in enumerate(coefficients) if n % 2), Fraction())
+    return even**2 - square * odd**2
+
+
+def _fmpq(x: Fraction) -> object:
+    import flint
+
+    return flint.fmpq(x.numerator, x.denominator)

@@ -1,0 +1,51 @@
+"""What is written reads back equal: the scene as TOML, H's formula, the step map's formulas."""
+
+import tomllib
+
+from verify.ball_steps import BITS
+from verify.balls import shown
+from verify.enclosure import enclose
+from verify.example import Example
+from verify.formula import to_text
+from verify.hamiltonian import Hamiltonian
+from verify.property import Violation
+from verify.scene import scene_from
+from verify.scene_text import scene_text
+from verify.step_map import StepMap
+
+_LONGEST = 60  # terms of a map that is read back
+
+
+def holds(example: Example) -> bool:
+    again = scene_from(tomllib.loads(scene_text(example.scene), parse_float=str), "scene")
+    if again != example.scene:
+        raise Violation("the scene's TOML reads back as another scene")
+    given = example.hamiltonian
+    read = Hamiltonian.parse(given.formula, dict(given.values))
+    _must_be_same(example, given, read)
+    _must_be_same_map(example)
+    return True
+
+
+def _must_be_same(example: Example, given: Hamiltonian, read: Hamiltonian) -> None:
+    values = []
+    for hamiltonian in (given, read):
+        field, (energy,) = hamiltonian.field(hamiltonian.exact)
+        values.append([enclose(field.ring, x, example.start, BITS) for x in
+                       (energy, field.h_p, field.h_q)])  # fmt: skip
+    for x, y in zip(*values, strict=True):
+        if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
+            raise Violation(f"H reads back as another: {given.formula}")
+
+
+def _must_be_same_map(example: Example) -> None:
+    closed = example.step_map.closed
+    if closed is None or closed.length > _LONGEST:
+        return
+    texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
+    read = StepMap.from_formulas(example.hamiltonian, *texts).whole
+    for name in ("p_next", "q_next"):
+        pair = [enclose(step.ring, getattr(step, name), example.start, BITS)
+                for step in (closed, read)]  # fmt: skip
+        if None not in pair and not pair[0].overlaps(pair[1]):
+            raise Violation(f"{name} reads back as {shown(pair[1])}, and is {shown(pair[0])}")

@@ -1,0 +1,28 @@
+"""The step of −h undoes the step of h, for a scheme that claims to be symmetric."""
+
+from verify.ball_steps import BITS, BallState, ball_steps, stepped
+from verify.balls import rational_ball, shown
+from verify.example import Example
+from verify.precision import working_precision
+from verify.property import Violation
+
+
+def holds(example: Example) -> bool:
+    if not example.scheme.symmetric:
+        return False
+    states = ball_steps(example.step_map, example.p, example.q, example.step_size, 1)
+    if states is None:
+        return False
+    back = _back(example, states[-1])
+    if back is None or not back.sharp:
+        return False
+    for name, ball, start in (("p", back.p, states[0].p), ("q", back.q, states[0].q)):
+        if not ball.overlaps(start):
+            raise Violation(f"{name} comes back as {shown(ball, 12)}, from {shown(start, 12)}")
+    return True
+
+
+def _back(example: Example, state: BallState) -> BallState | None:
+
+    with working_precision(BITS):
+        return stepped(example.step_map, state, rational_ball(-example.step_size))

@@ -1,0 +1,45 @@
+"""A scheme that claims det J ≡ 1 has it: by the proof, and by J's four entries at a point.
+
+Where the step solves equations the entries are multiplied along a run with 40 digits.
+"""
+
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.ball_steps import ball_steps
+from verify.balls import shown
+from verify.exact import decimal
+from verify.example import Example
+from verify.property import Violation
+from verify.stepping import Job
+
+_DIGITS, _STEPS = 40, 2
+_SMALL = Fraction(1, 10**30)
+
+
+def holds(example: Example) -> bool:
+    if not example.scheme.area_preserving:
+        return False
+    if example.proof.area_preserving is False:
+        raise Violation(f"the proof says that ΔJ has order {example.proof.order}")
+    if example.step_map.solved:
+        return _by_a_run(example)
+    states = ball_steps(example.step_map, example.p, example.q, example.step_size, 1)
+    if states is None or not states[-1].sharp:
+        return False
+    if not states[-1].product.contains(1):
+        raise Violation(f"det J is {shown(states[-1].product, 12)}, and not 1")
+    return True
+
+
+def _by_a_run(example: Example) -> bool:
+    wanted = frozenset({"lambda_plain"})
+    job = Job(example.hamiltonian, example.scheme.name, example.start, _STEPS, wanted, 0)
+    found = job.go(number_systems.get("mpfr", _DIGITS))
+    if found.done < _STEPS:
+        return False
+    change = found.values["lambda_plain"]
+    size = 1 + abs(found.values["p"]) + abs(found.values["q"])
+    if abs(change) > _SMALL * size:
+        raise Violation(f"Π det J − 1 is {decimal(change, 6)} after {_STEPS} steps")
+    return True
