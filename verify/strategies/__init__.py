@@ -1,0 +1,18 @@
+"""hypothesis strategies, to property-test an integrator of one's own against exact schemes.
+
+    from hypothesis import given
+    from verify import strategies
+
+    @given(strategies.hamiltonians(separable=True), strategies.initial_values())
+    def test_mine(hamiltonian, start): ...
+
+All numbers are exact rationals. Arguments are looked at when a strategy is made: InputError says
+what is wrong with one. `st.from_type` knows the types that are drawn here: see `verify.drawn`.
+"""
+
+from verify.strategies.hamiltonians import hamiltonians
+from verify.strategies.numbers import initial_values, parameters, step_sizes
+from verify.strategies.scenes import scenes
+from verify.strategies.schemes import schemes
+
+__all__ = ["hamiltonians", "initial_values", "parameters", "scenes", "schemes", "step_sizes"]

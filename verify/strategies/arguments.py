@@ -1,0 +1,43 @@
+"""What the strategies take as arguments: whole numbers and exact ones, looked at when they are
+given, not when something is drawn."""
+
+from fractions import Fraction
+
+from hypothesis import strategies as st
+
+from verify.errors import InputError
+from verify.exact import Exact, rational, text
+
+
+def whole(name: str, value: object, least: int, most: int | None = None) -> int:
+    """The value, where it is a whole number from `least` to `most`; else InputError."""
+    fits = isinstance(value, int) and not isinstance(value, bool)
+    if not fits or value < least or (most is not None and value > most):  # type: ignore[operator]
+        allowed = f"{least} or more" if most is None else f"{least} … {most}"
+        raise InputError(name, value, f"must be a whole number, {allowed}")
+    return value  # type: ignore[return-value]
+
+
+def exactly(name: str, value: Exact) -> Fraction:
+    """The rational that is written; InputError for a float, which says how to write it."""
+    if isinstance(value, float):
+        if value != value or value in (float("inf"), float("-inf")):
+            raise InputError(name, value, "not a finite number")
+        meant = Fraction(repr(value))
+        problem = f"is a float; write '{text(meant)}' or Fraction({meant.numerator}, " + (
+            f"{meant.denominator}) to have it exactly"
+        )
+        raise InputError(name, value, problem)
+    return rational(value, name)
+
+
+def yes_no_either(name: str, value: object) -> bool | None:
+    """True, False, or None for either; else InputError."""
+    if value is not None and not isinstance(value, bool):
+        raise InputError(name, value, "must be True, False, or None for either")
+    return value
+
+
+def strategy_or_none(name: str, value: object) -> None:
+    if value is not None and not isinstance(value, st.SearchStrategy):
+        raise InputError(name, value, "is not a hypothesis strategy")

@@ -1,0 +1,78 @@
+"""Hamiltonians as they are drawn from formulas."""
+
+from collections.abc import Sequence
+
+from hypothesis import strategies as st
+
+from verify.errors import InputError
+from verify.formula import MAX_EXPONENT
+from verify.hamiltonian import Hamiltonian
+from verify.strategies.arguments import whole, yes_no_either
+from verify.strategies.formulas import KINDS, Formula, formulas, plans
+from verify.strategies.terms import Limits
+
+_MOST_TERMS, _MOST_SIZE = 50, 10**9
+
+
+def hamiltonians(
+    kinds: Sequence[str] = KINDS,
+    *,
+    degree: int = 6,
+    terms: int = 4,
+    size: int = 9,
+    separable: bool | None = None,
+    bounded: bool | None = None,
+    with_parameters: bool = False,
+) -> st.SearchStrategy[Hamiltonian]:
+    """Hamiltonians H(p, q) with rational coefficients, short enough to be read; never constant.
+
+    `kinds`: `polynomial`, `trigonometric` (sin and cos), `exponential` (exp, cosh, sinh),
+    `rational` (quotients such as q/(1 + q**2), whose denominators vanish for no real p, q); one of
+    those given is drawn. `degree` (1 … 64) is that of the polynomial part; `terms` (1 … 50) how
+    many are added up at most; `size` (1 … 10^9) bounds the coefficients' numerators and
+    denominators.
+
+    `separable`: True for H = T(p) + V(q), False where H_pq is not the zero function, None for
+    either. `bounded`: True where H → ∞ in every direction, so that H is bounded below and every
+    orbit stays in a compact set; False where some ray from the origin is known along which H stays
+    bounded above or falls to −∞; None for either, and for those of which neither is known. About
+    one in seven of all is a quadratic form, elliptic, hyperbolic or parabolic.
+
+    `with_parameters`: some coefficients are parameters `a` and `b`, with their values.
+
+    Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
+    exists, when it is called and not when it draws.
+    """
+    drawn = drawn_formulas(kinds, degree, terms, size, separable, bounded, with_parameters)
+    return drawn.map(made)
+
+
+def made(formula: Formula) -> Hamiltonian:
+    return Hamiltonian.parse(formula.text, dict(formula.parameters))
+
+
+def drawn_formulas(
+    kinds: Sequence[str] = KINDS,
+    degree: int = 6,
+    terms: int = 4,
+    size: int = 9,
+    separable: bool | None = None,
+    bounded: bool | None = None,
+    with_parameters: bool = False,
+) -> st.SearchStrategy[Formula]:
+    """The same, before they are parsed."""
+    if isinstance(kinds, str) or not isinstance(kinds, Sequence) or not kinds:
+        raise InputError("kinds", kinds, f"is not a list of some of: {', '.join(KINDS)}")
+    for kind in kinds:
+        if kind not in KINDS:
+            raise InputError("kinds", kind, f"unknown; allowed: {', '.join(KINDS)}")
+    limits = Limits(
+        whole("degree", degree, 1, MAX_EXPONENT),
+        whole("terms", terms, 1, _MOST_TERMS),
+        whole("size", size, 1, _MOST_SIZE),
+    )
+    yes_no_either("separable", separable)
+    yes_no_either("bounded", bounded)
+    if not isinstance(with_parameters, bool):
+        raise InputError("with_parameters", with_parameters, "must be True or False")
+    return formulas(plans(kinds, limits, separable, bounded), limits, with_parameters)

@@ -1,0 +1,124 @@
+"""Exact numbers: parameters, initial values and step sizes."""
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+
+from hypothesis import strategies as st
+
+from verify.errors import InputError
+from verify.exact import Exact, magnitude
+from verify.formula import parameter_name
+from verify.hamiltonian import Hamiltonian
+from verify.scene_values import InitialValue
+from verify.strategies.arguments import exactly, whole
+
+_FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
+_DENOMINATORS = (1, 2, 10, 3, 7, 100)
+_LONG = 10**40
+
+
+def parameters(
+    names_or_hamiltonian: Iterable[str] | Hamiltonian, *, size: int = 9
+) -> st.SearchStrategy[dict[str, Fraction]]:
+    """A value for each of these names, or for each parameter of H: ±n/d with n, d = 1 … size.
+
+    None is 0, so that no term of H vanishes; H may still be undefined for one, as log(a*q) is for
+    a < 0, and then `with_values` says so. Raises InputError for what is not a parameter's name.
+    """
+    given = names_or_hamiltonian
+    if isinstance(given, Hamiltonian):
+        names = given.parameters
+    elif isinstance(given, str) or not isinstance(given, Iterable):
+        raise InputError("names", given, "is not a list of names, nor a Hamiltonian")
+    else:
+        names = tuple(given)
+    for name in names:
+        if not isinstance(name, str):
+            raise InputError("parameter", name, "is not a name")
+        parameter_name(name)
+    whole("size", size, 1)
+    return st.fixed_dictionaries(dict.fromkeys(names, _signed(size)))
+
+
+def _signed(size: int) -> st.SearchStrategy[Fraction]:
+    """±n/d; the simplest is 1."""
+
+    def value(index: int) -> Fraction:
+        denominator, numerator = divmod(index // 2, size)
+        return Fraction((-1) ** index * (numerator + 1), denominator + 1)
+
+    return st.integers(0, 2 * size**2 - 1).map(value)
+
+
+def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrategy[InitialValue]:
+    """(q, p) as exact rationals with |q|, |p| ≤ most: decimals, halves, thirds and sevenths.
+
+    `extreme`: also exact zeros, 10^−300 … 10^300 of either sign, numbers that differ from whole
+    ones by 10^−300 … 0.1, and numbers of 40 digits, all of which may be beyond `most`. Raises
+    InputError for most ≤ 0 and for a float.
+    """
+    bound = exactly("most", most)
+    if bound <= 0:
+        raise InputError("most", most, "must be greater than 0")
+    if not isinstance(extreme, bool):
+        raise InputError("extreme", extreme, "must be True or False")
+    numbers = _coordinates(bound, extreme)
+    return st.builds(InitialValue, q=numbers, p=numbers)
+
+
+def _coordinates(most: Fraction, extreme: bool) -> st.SearchStrategy[Fraction]:
+    ordinary = [_multiples(most, d) for d in _DENOMINATORS if most * d >= 1]
+    ordinary = ordinary or [_multiples(most, math.ceil(10 / most))]
+    if not extreme:
+        return st.one_of(ordinary)
+    signs, exponents = st.sampled_from((1, -1)), st.integers(1, _FARTHEST)
+    whole_numbers = st.integers(-math.ceil(most), math.ceil(most))
+    return st.one_of(
+        *ordinary,
+        st.just(Fraction(0)),
+        st.builds(lambda sign, n: sign * Fraction(1, 10**n), signs, exponents),
+        st.builds(lambda sign, n: sign * Fraction(10**n), signs, exponents),
+        st.builds(lambda k, s, n: k + s * Fraction(1, 10**n), whole_numbers, signs, exponents),
+        _multiples(most, _LONG),
+    )
+
+
+def _multiples(most: Fraction, denominator: int) -> st.SearchStrategy[Fraction]:
+    """n/denominator up to ±most; the simplest is 0."""
+    top = math.floor(most * denominator)
+    return st.integers(-top, top).map(lambda n: Fraction(n, denominator))
+
+
+def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStrategy[Fraction]:
+    """Step sizes h with least ≤ h ≤ most: decimals of one or two digits, powers of two, thirds of
+    decimals, and the two ends. Arguments such as "1e-300" and "1e300" give extreme ones.
+
+    Raises InputError for least ≤ 0, least > most, and for a float.
+    """
+    low, high = exactly("least", least), exactly("most", most)
+    if low <= 0:
+        raise InputError("least", least, "must be greater than 0")
+    if low > high:
+        raise InputError("least", least, f"is greater than most={high}")
+    top, bottom = magnitude(high), magnitude(low)
+    tens = st.integers(0, top - bottom).map(lambda n: Fraction(10) ** (top - n))
+    twos = st.integers(0, _binary(high) - _binary(low)).map(
+        lambda n: Fraction(2) ** (_binary(high) - n)
+    )
+
+    def within(h: Fraction) -> Fraction:
+        return min(max(h, low), high)
+
+    digits = st.one_of(st.sampled_from((1, 2, 5)), st.integers(1, 99))
+    return st.one_of(
+        st.builds(lambda ten, n: within(ten * n), tens, digits),
+        twos.map(within),
+        st.builds(lambda ten, n: within(ten * n / 3), tens, st.sampled_from((1, 2, 5))),
+    )
+
+
+def _binary(x: Fraction) -> int:
+    """The exponent e of x > 0: 2^e ≤ x < 2^(e + 1)."""
+    e = x.numerator.bit_length() - x.denominator.bit_length()
+    return e if Fraction(2) ** e <= x else e - 1

@@ -1,0 +1,96 @@
+"""The terms that make a formula trigonometric, exponential or rational.
+
+Each is drawn as its numerator, its denominator, and whether its coefficient has to be positive.
+What is known of a term where H is to be `confining` (H → ∞ in every direction): it is bounded; or
+it is at most linear in one variable and bounded in the other, so that even powers of both outgrow
+it; or it is ≥ 0. Where H is to be `open` along the half-axis x → s·∞, y = 0, it stays bounded
+above there. Where H is `free`, nothing need be known.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from verify.strategies.terms import Drawer, combination, power, times
+
+Shape = Literal["confining", "open", "free"]
+Own = tuple[str, str, bool]  # numerator, denominator, whether the coefficient has to be positive
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """`mixed`: of both variables. An open H is so along x → direction·∞."""
+
+    shape: Shape
+    mixed: bool
+    x: str = "q"
+    y: str = "p"
+    direction: int = 1
+
+
+def trigonometric(d: Drawer, want: Wanted) -> Own:
+    function = d.pick(("cos", "sin"))
+    if not want.mixed:
+        return f"{function}({times(d.inner(), d.pick((want.x, want.y)))})", "", False
+    if d.whole(0, 3) == 3:  # it vanishes on both axes
+        outer, inner = d.pick((("p", "q"), ("q", "p")))
+        return f"{outer}*sin({times(d.inner(), inner)})", "", False
+    return f"{function}({combination(d.inner(), _either(d))})", "", False
+
+
+def exponential(d: Drawer, want: Wanted) -> Own:
+    bump = d.whole(0, 3) == 3
+    if want.mixed:
+        if bump:
+            return "exp(-p**2 - q**2)", "", False
+        return _mixed_exponential(d, want)
+    name = d.pick((want.x, want.y))
+    if bump:
+        return f"exp(-{name}**2)", "", False
+    if want.shape == "open" and name == want.x:
+        return f"exp({times(-want.direction * d.inner(), name)})", "", False
+    functions = ("exp", "cosh") if want.shape == "confining" else ("exp", "cosh", "sinh")
+    function = d.pick(functions)
+    k = _either(d) if function == "exp" else d.inner()
+    return f"{function}({times(k, name)})", "", want.shape == "confining"
+
+
+def _mixed_exponential(d: Drawer, want: Wanted) -> Own:
+    if want.shape == "open":
+        along, across = -want.direction * d.inner(), _either(d)
+        k, m = (along, across) if want.x == "p" else (across, along)
+        return f"exp({combination(k, m)})", "", False
+    function = d.pick(("exp", "cosh"))
+    return f"{function}({combination(d.inner(), _either(d))})", "", want.shape == "confining"
+
+
+def rational(d: Drawer, want: Wanted) -> Own:
+    """Over 1 + x² and the like, with any number ≥ 1 for the 1: no denominator vanishes."""
+    constant = d.whole(1, min(d.limits.size, 9))
+    if not want.mixed:
+        name = d.pick((want.x, want.y))
+        return d.pick(("", name)), f"{constant} + {name}**2", False
+    match d.whole(0, 2):
+        case 0:
+            return "p*q", f"{constant} + p**2 + q**2", False
+        case 1:
+            return "", f"{constant} + ({combination(1, _either(d))})**2", False
+    # y, which vanishes on the axis where H is open, has to stand above.
+    x, y = (want.x, want.y) if want.shape == "open" else d.pick((("q", "p"), ("p", "q")))
+    exponent = d.whole(1, 2)
+    positive = exponent == 2 and want.shape == "confining"
+    return power(y, exponent), f"{constant} + {x}**2", positive
+
+
+def _either(d: Drawer) -> int:
+    """±1 … ±3; the simplest is 1."""
+    index = d.whole(0, 5)
+    return -(index // 2 + 1) if index % 2 else index // 2 + 1
+
+
+OWN: dict[str, Callable[[Drawer, Wanted], Own]] = {
+    "trigonometric": trigonometric,
+    "exponential": exponential,
+    "rational": rational,
+}
+KINDS = ("polynomial", *OWN)

@@ -1,0 +1,141 @@
+"""Whole scenes: an H, a scheme that takes it, and a run of a few steps."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from hypothesis import reject
+from hypothesis import strategies as st
+
+from verify.errors import InputError
+from verify.hamiltonian import Hamiltonian
+from verify.runs import MAX_STEPS
+from verify.scene import Grid, Scene
+from verify.scene_values import InitialValue
+from verify.scheme import Scheme
+from verify.strategies.arguments import strategy_or_none, whole
+from verify.strategies.formulas import Formula
+from verify.strategies.hamiltonians import drawn_formulas
+from verify.strategies.numbers import initial_values as drawn_values
+from verify.strategies.numbers import parameters
+from verify.strategies.numbers import step_sizes as drawn_steps
+from verify.strategies.schemes import choices, needs_separable, takers
+
+
+def scenes(
+    *,
+    hamiltonians: st.SearchStrategy[Hamiltonian] | None = None,
+    schemes: st.SearchStrategy[Scheme] | None = None,
+    initial_values: st.SearchStrategy[InitialValue] | None = None,
+    step_sizes: st.SearchStrategy[Fraction] | None = None,
+    steps: tuple[int, int] = (1, 40),
+) -> st.SearchStrategy[Scene]:
+    """Valid scenes with one scheme and a `[grid]` of one step size, one initial value and at least
+    steps[0] and at most steps[1] steps.
+
+    Each part is drawn from the strategy of the same name in `verify.strategies`, or from the one
+    that is given; parameters of a given H that have no value are given one. A scheme that does not
+    take H is not drawn; only where both strategies are given can the two not fit, and then the
+    example is rejected. A scheme is named in its scene, so it has to be one that
+    `verify.schemes.get` finds. Shrinks towards lie1, one step of 1/10, H = p**2/2 + q**2/2.
+
+    Raises InputError for a bad argument when it is called.
+    """
+    given = {"hamiltonians": hamiltonians, "schemes": schemes, "initial_values": initial_values,
+             "step_sizes": step_sizes}  # fmt: skip
+    for name, strategy in given.items():
+        strategy_or_none(name, strategy)
+    if not isinstance(steps, Sequence) or len(steps) != 2:
+        raise InputError("steps", steps, "is not a pair: the least and the most steps")
+    least, most = (whole("steps", value, 1, MAX_STEPS) for value in steps)
+    if least > most:
+        raise InputError("steps", steps, "the first is greater than the second")
+    values = drawn_values() if initial_values is None else initial_values
+    sizes = drawn_steps() if step_sizes is None else step_sizes
+    grids = st.builds(_grid, st.integers(least, most), sizes, values)
+    if hamiltonians is not None:
+        return _of_hamiltonians(hamiltonians, schemes, grids)
+    if schemes is not None:
+        return _of_schemes(schemes, grids)
+    return _of_formulas(grids)
+
+
+def _grid(steps: int, step_size: Fraction, initial_value: InitialValue) -> Grid:
+    return Grid(steps=steps, step_sizes=(step_size,), initial_values=(initial_value,))
+
+
+def _of_formulas(grids: st.SearchStrategy[Grid]) -> st.SearchStrategy[Scene]:
+    found = choices()
+    of_any = st.sampled_from([scheme for scheme in found if not needs_separable(scheme)])
+    of_separable = st.sampled_from(found)
+    formulas = _formulas()
+
+    @st.composite
+    def drawn(draw: st.DrawFn) -> Scene:
+        formula = draw(formulas)
+        return _scene(formula, draw(of_separable if formula.separable else of_any), draw(grids))
+
+    return drawn()
+
+
+def _of_schemes(
+    schemes: st.SearchStrategy[Scheme], grids: st.SearchStrategy[Grid]
+) -> st.SearchStrategy[Scene]:
+    any_formula, separable = _formulas(), _formulas(separable=True)
+
+    @st.composite
+    def drawn(draw: st.DrawFn) -> Scene:
+        scheme = draw(schemes)
+        formula = draw(separable if needs_separable(scheme) else any_formula)
+        if scheme.generic is not None:
+            return _scene(formula, scheme, draw(grids))
+        try:
+            return _checked(formula.text, dict(formula.parameters), scheme, draw(grids))
+        except InputError:
+            reject()
+
+    return drawn()
+
+
+def _of_hamiltonians(
+    hamiltonians: st.SearchStrategy[Hamiltonian],
+    schemes: st.SearchStrategy[Scheme] | None,
+    grids: st.SearchStrategy[Grid],
+) -> st.SearchStrategy[Scene]:
+    found = choices()
+
+    @st.composite
+    def drawn(draw: st.DrawFn) -> Scene:
+        hamiltonian = draw(hamiltonians)
+        values = dict(hamiltonian.values)
+        if hamiltonian.symbols:
+            values |= draw(parameters(hamiltonian.symbols))
+            hamiltonian = hamiltonian.with_values(values)
+        own = st.sampled_from(takers(found, hamiltonian)) if schemes is None else schemes
+        try:
+            return _checked(hamiltonian.formula, values, draw(own), draw(grids))
+        except InputError:
+            reject()
+
+    return drawn()
+
+
+def _formulas(separable: bool | None = None) -> st.SearchStrategy[Formula]:
+    plain, named = (
+        drawn_formulas(separable=separable, with_parameters=named) for named in (False, True)
+    )
+    return st.one_of(plain, plain, named)
+
+
+def _scene(formula: Formula, scheme: Scheme, grid: Grid) -> Scene:
+    """What is valid by how it was made: looking at it again would make the step map of each."""
+    return Scene.model_construct(
+        hamiltonian=formula.text,
+        parameters=dict(formula.parameters),
+        schemes=(scheme.name,),
+        grid=grid,
+    )
+
+
+def _checked(formula: str, values: dict[str, Any], scheme: Scheme, grid: Grid) -> Scene:
+    return Scene(hamiltonian=formula, parameters=values, schemes=(scheme.name,), grid=grid)

@@ -1,0 +1,104 @@
+"""The schemes of the catalogue, by what they claim and by the H that they take."""
+
+from collections.abc import Iterable
+
+import sympy
+from hypothesis import strategies as st
+
+from verify import schemes as catalogue
+from verify.errors import InputError
+from verify.formula import symbol
+from verify.hamiltonian import Hamiltonian
+from verify.scheme import Scheme
+from verify.schemes.lie import eta_of
+from verify.strategies.arguments import whole, yes_no_either
+
+_LIE_AS_OFTEN = 3  # as each of the others: the family is what the toolkit is about
+
+
+def schemes(
+    *,
+    names: Iterable[str] | None = None,
+    hamiltonian: Hamiltonian | None = None,
+    area_preserving: bool | None = None,
+    explicit: bool | None = None,
+    symmetric: bool | None = None,
+    order: int | None = None,
+) -> st.SearchStrategy[Scheme]:
+    """Schemes of the catalogue, or of these names, that claim what is asked for.
+
+    `hamiltonian`: only schemes that take it; those for H = T(p) + V(q) only where it is so. A name
+    may be any that `verify.schemes.get` knows: a family's member such as `lie7`, or formulas of
+    one's own. Without names, `lie1` … `lie6` are drawn three times as often as each of the others.
+
+    Shrinks towards lie1, or the first of `names`. Raises InputError for an unknown name, and where
+    no scheme is left.
+    """
+    found = choices(names, hamiltonian, area_preserving, explicit, symmetric, order)
+    return st.sampled_from(found)
+
+
+def choices(
+    names: Iterable[str] | None = None,
+    hamiltonian: Hamiltonian | None = None,
+    area_preserving: bool | None = None,
+    explicit: bool | None = None,
+    symmetric: bool | None = None,
+    order: int | None = None,
+) -> list[Scheme]:
+    """The schemes to choose from; one that is to be drawn more often stands there more often."""
+    found = _named(names)
+    if hamiltonian is not None and not isinstance(hamiltonian, Hamiltonian):
+        raise InputError("hamiltonian", hamiltonian, "is not a Hamiltonian")
+    wanted = {"area_preserving": area_preserving, "explicit": explicit, "symmetric": symmetric}
+    for name, value in wanted.items():
+        if yes_no_either(name, value) is not None:
+            found = [scheme for scheme in found if getattr(scheme, name) == value]
+    if order is not None:
+        whole("order", order, 1)
+        found = [scheme for scheme in found if scheme.order == order]
+    if hamiltonian is not None:
+        found = takers(found, hamiltonian)
+    if not found:
+        raise InputError("schemes", "none", "no scheme claims all of that and takes that H")
+    return found
+
+
+def _named(names: Iterable[str] | None) -> list[Scheme]:
+    if names is None:
+        every = catalogue.names()
+        family = [name for name in every if eta_of(name)]
+        others = [name for name in every if not eta_of(name)]
+        return [catalogue.get(name) for name in (*family, *others, *family * (_LIE_AS_OFTEN - 1))]
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise InputError("names", names, "is not a list of schemes' names")
+    return [catalogue.get(name) for name in names]
+
+
+def takers(found: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
+    """Those of the schemes that take this H."""
+    separable = is_separable(hamiltonian)
+    return [scheme for scheme in found if takes(scheme, hamiltonian, separable)]
+
+
+def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
+    if scheme.generic is not None:
+        return separable or not needs_separable(scheme)
+    try:  # a scheme of the user's own: nothing else is known of it
+        scheme.step_map(hamiltonian)
+    except InputError:
+        return False
+    return True
+
+
+def needs_separable(scheme: Scheme) -> bool:
+    """Whether the scheme is known to be for H = T(p) + V(q) only."""
+    return bool(getattr(scheme.generic, "separable", False))
+
+
+def is_separable(hamiltonian: Hamiltonian) -> bool:
+    """Whether H = T(p) + V(q); terms of one variable each need no algebra."""
+    both = {symbol("p"), symbol("q")}
+    if not any(both <= term.free_symbols for term in sympy.Add.make_args(hamiltonian.exact)):
+        return True
+    return hamiltonian.field()[0].separable()

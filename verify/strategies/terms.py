@@ -1,0 +1,131 @@
+"""What formulas are drawn with: choices that always succeed, and sums of terms that never cancel.
+
+Everything is made from bounded integers and a few choices, and nothing is drawn and thrown away:
+so a draw takes few bytes, and shrinks by what its integers shrink to.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache
+from typing import TypeVar
+
+from hypothesis import strategies as st
+
+T = TypeVar("T")
+_MOST_INNER = 3  # the greatest k in sin(k*q)
+_HALF = Fraction(1, 2)
+
+
+# hypothesis makes a strategy of a range anew each time; there are few ranges.
+@lru_cache(maxsize=256)
+def _range(least: int, most: int) -> st.SearchStrategy[int]:
+    return st.integers(least, most)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """`degree` of the polynomial part, number of `terms`, `size` of numerators, denominators."""
+
+    degree: int
+    terms: int
+    size: int
+
+
+@dataclass(frozen=True)
+class Drawer:
+    """Draws the parts of a formula; each choice shrinks towards the first that is named."""
+
+    draw: st.DrawFn
+    limits: Limits
+
+    def whole(self, least: int, most: int) -> int:
+        return least if least == most else self.draw(_range(least, most))
+
+    def pick(self, choices: Sequence[T]) -> T:
+        return choices[self.whole(0, len(choices) - 1)]
+
+    def positive(self) -> Fraction:
+        """n/d with n, d = 1 … size; the simplest is 1."""
+        numerator, denominator = self._pair(self.whole(0, self.limits.size**2 - 1))
+        return Fraction(numerator, denominator)
+
+    def leading(self) -> Fraction:
+        """The same, where the simplest is 1/2: H shrinks towards p²/2 + q²/2."""
+        drawn = self.positive()
+        if self.limits.size > 1 and drawn in (1, _HALF):
+            return Fraction(3, 2) - drawn
+        return drawn
+
+    def signed(self) -> Fraction:
+        """n/d with n, d = 1 … size and either sign; the simplest is 1."""
+        index = self.whole(0, 2 * self.limits.size**2 - 1)
+        numerator, denominator = self._pair(index // 2)
+        return Fraction(-numerator if index % 2 else numerator, denominator)
+
+    def _pair(self, index: int) -> tuple[int, int]:
+        denominator, numerator = divmod(index, self.limits.size)
+        return numerator + 1, denominator + 1
+
+    def inner(self) -> int:
+        """The k of sin(k*q)."""
+        return self.whole(1, _MOST_INNER)
+
+    def even(self) -> int:
+        """An even power up to `degree`."""
+        return 2 * self.whole(1, self.limits.degree // 2)
+
+
+@dataclass
+class Sum:
+    """Terms by what stands in their numerator and denominator; a second one alike is left out."""
+
+    terms: dict[tuple[str, str], Fraction] = field(default_factory=dict)
+
+    def add(self, coefficient: Fraction, numerator: str, denominator: str = "") -> None:
+        self.terms.setdefault((numerator, denominator), coefficient)
+
+    def __len__(self) -> int:
+        return len(self.terms)
+
+    def written(self, names: dict[int, str]) -> str:
+        """The formula; `names`: what stands for the coefficient of which term."""
+        text = ""
+        for index, ((numerator, denominator), value) in enumerate(self.terms.items()):
+            given = index in names
+            minus = value < 0 and not given
+            over = 1 if given else value.denominator
+            many = names[index] if given else str(abs(value.numerator))
+            top = (
+                numerator
+                if many == "1" and numerator
+                else "*".join(filter(None, (many, numerator)))
+            )
+            part = "/".join(
+                [
+                    top,
+                    *([f"({denominator})"] if denominator else []),
+                    *([str(over)] if over > 1 else []),
+                ]
+            )
+            sign = (" - " if minus else " + ") if text else ("-" if minus else "")
+            text += sign + part
+        return text
+
+
+def power(name: str, exponent: int) -> str:
+    return name if exponent == 1 else f"{name}**{exponent}"
+
+
+def monomial(i: int, j: int) -> str:
+    """p^i q^j, one of i and j not 0."""
+    return "*".join(power(name, n) for name, n in (("p", i), ("q", j)) if n)
+
+
+def times(factor: int, name: str) -> str:
+    return {1: name, -1: f"-{name}"}.get(factor, f"{factor}*{name}")
+
+
+def combination(k: int, m: int) -> str:
+    """k·p + m·q, neither of them 0."""
+    return f"{times(k, 'p')} {'-' if m < 0 else '+'} {times(abs(m), 'q')}"
