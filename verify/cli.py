@@ -10,6 +10,7 @@ import click
 from verify import show
 from verify.cli_bench import bench
 from verify.cli_check import check
+from verify.cli_explore import explore
 from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
@@ -46,6 +47,7 @@ def cli(context: click.Context) -> None:
 
 cli.add_command(prove)
 cli.add_command(certificate)
+cli.add_command(explore)
 cli.add_command(flow)
 cli.add_command(stability)
 cli.add_command(check)

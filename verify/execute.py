@@ -21,6 +21,7 @@ from verify.perform import Result, perform, result_model
 from verify.planned import Plan
 from verify.runs import AUTO
 from verify.tasks import (
+    ExploreTask,
     FlowTask,
     LargestStepTask,
     RunTask,
@@ -38,6 +39,7 @@ _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs m
 _CASE_COST = 2_000_000  # about what a case costs that is judged, however short
 _CASES_OF_BISECTION = 20
 _POINT_COST = 30_000_000  # of a point of error against run time: some tenths of a second
+_SCENE_COST = 10_000  # of one property of one drawn scene
 _FLOW_COST, _FLOW_POINTS = 20_000_000, 20_000  # of a region carried by a map
 # In float64 steps; an arithmetic that is not listed counts as one in between.
 _STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000}
@@ -124,6 +126,8 @@ def cost(task: Task) -> int:
         return 3 * task.steps * _STEP_COST[AUTO]
     if isinstance(task, FlowTask):
         return _FLOW_COST + _FLOW_POINTS * task.steps
+    if isinstance(task, ExploreTask):
+        return _SCENE_COST * task.count * (len(task.properties) + len(task.claims))
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
         return task.steps * _STEP_COST.get(AUTO if checked else task.arithmetic, 500)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from verify.exact import text
+from verify.explore_results import ExploreResult, ShrunkResult
 from verify.flow_results import FlowImage
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
@@ -19,12 +20,14 @@ from verify.stability_results import LargestStepResult, StabilityMapResult, Stab
 from verify.step_map import grouped
 from verify.tasks import (
     EveryTask,
+    ExploreTask,
     FlowTask,
     GrowthTask,
     LargestStepTask,
     ProofTask,
     RunTask,
     SeparationTask,
+    ShrinkTask,
     StabilityMapTask,
     StabilityTask,
     Task,
@@ -43,6 +46,8 @@ Result = (
     | LargestStepResult
     | StabilityMapResult
     | FlowImage
+    | ExploreResult
+    | ShrunkResult
 )
 
 
@@ -105,6 +110,18 @@ def _flow(task: FlowTask, _: Keeper) -> FlowImage:
     from verify.flow import carry
 
     return carry(_given(task), task)
+
+
+def _explore(task: ExploreTask, _: Keeper) -> ExploreResult:
+    from verify.explore import look
+
+    return look(task)
+
+
+def _shrink(task: ShrinkTask, _: Keeper) -> ShrunkResult:
+    from verify.explore import shrink
+
+    return shrink(task)
 
 
 def _stability(task: StabilityTask, _: Keeper) -> StabilityResult:
@@ -181,5 +198,7 @@ KINDS: dict[str, Kind] = {
     "largest_step": Kind(_largest_step, LargestStepResult),
     "stability_map": Kind(_stability_map, StabilityMapResult),
     "flow": Kind(_flow, FlowImage),
+    "explore": Kind(_explore, ExploreResult),
+    "shrink": Kind(_shrink, ShrunkResult),
     "work_precision": Kind(_work_precision, WorkPrecisionResult),
 }

@@ -134,6 +134,38 @@ class FlowTask(_OfHamiltonian):
     distance: bool
 
 
+class Drawn(Frozen):
+    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all)."""
+
+    kinds: tuple[str, ...] = ()
+    degree: int = 6
+    schemes: tuple[str, ...] = ()
+
+
+class _OfProperties(_Task):
+    """`properties`: names of the catalogue; `claims`: claims to be looked at so, each as JSON."""
+
+    drawn: Drawn
+    seed: int
+    properties: tuple[str, ...]
+    claims: tuple[str, ...]
+
+
+class ExploreTask(_OfProperties):
+    """Hold properties against `count` drawn scenes: those of this seed from number `first` on."""
+
+    kind: Literal["explore"] = "explore"
+    first: int
+    count: int
+
+
+class ShrinkTask(_OfProperties):
+    """Shrink one drawn scene for which a property (the only one given) does not hold."""
+
+    kind: Literal["shrink"] = "shrink"
+    example: int
+
+
 Task = (
     ProofTask
     | RunTask
@@ -145,6 +177,8 @@ Task = (
     | LargestStepTask
     | StabilityMapTask
     | FlowTask
+    | ExploreTask
+    | ShrinkTask
 )
 
 

@@ -10,6 +10,7 @@ All numbers are exact rationals. Arguments are looked at when a strategy is made
 what is wrong with one. `st.from_type` knows the types that are drawn here: see `verify.drawn`.
 """
 
+from verify.strategies.hamiltonians import KINDS as KINDS
 from verify.strategies.hamiltonians import hamiltonians
 from verify.strategies.numbers import initial_values, parameters, step_sizes
 from verify.strategies.scenes import scenes

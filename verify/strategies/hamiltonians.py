@@ -8,7 +8,8 @@ from verify.errors import InputError
 from verify.formula import MAX_EXPONENT
 from verify.hamiltonian import Hamiltonian
 from verify.strategies.arguments import whole, yes_no_either
-from verify.strategies.formulas import KINDS, Formula, formulas, plans
+from verify.strategies.formulas import KINDS as KINDS
+from verify.strategies.formulas import Formula, formulas, plans
 from verify.strategies.terms import Limits
 
 _MOST_TERMS, _MOST_SIZE = 50, 10**9

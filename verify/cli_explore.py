@@ -1,0 +1,137 @@
+"""The command `verify explore`: properties, or a user's claims, over many drawn scenes."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify import show
+from verify.cli_input import writable
+from verify.cli_tasks import told, with_tasks
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.explore_results import ExploreReport
+
+FAILED = 1  # exit status
+_SEEDS = 2**32
+
+
+@click.command()
+@click.argument("claims", metavar="[CLAIMS]", required=False)
+@click.option(
+    "--property",
+    "names",
+    multiple=True,
+    metavar="NAME",
+    help="Only this property; repeatable. A wrong name lists them.",
+)
+@click.option("--examples", type=int, default=1000, metavar="N", help="Scenes; 1000.")
+@click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
+@click.option("--scheme", "schemes", multiple=True, metavar="NAME", help="Only this; repeatable.")
+@click.option(
+    "--kind",
+    "kinds",
+    multiple=True,
+    metavar="KIND",
+    help="polynomial, trigonometric, exponential or rational H only; repeatable.",
+)
+@click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most; 6.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default=Path("explored"),
+    metavar="DIR",
+    help="Where scenes that fail are written, and looked at again first; explored.",
+)
+@with_tasks
+def explore(
+    claims: str | None,
+    names: tuple[str, ...],
+    examples: int,
+    seed: int | None,
+    schemes: tuple[str, ...],
+    kinds: tuple[str, ...],
+    degree: int,
+    output: Path,
+    keep: Path | None,
+    workers: int | None,
+    as_json: bool,
+) -> None:
+    """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
+
+    A scene is a Hamiltonian, a scheme, a step size, an initial value and some steps. Scene K of
+    seed S is the same everywhere. Of each property that fails one scene is shrunk to the simplest,
+    and written as a file that `verify report` takes; exit status 1.
+
+    \b
+    verify explore --examples 100000 --workers 2 --seed 7
+    verify explore --property order-by-jets --scheme lie2 --kind polynomial
+    verify explore claims.toml --examples 500
+    """
+    import random
+
+    from verify.execute import Store
+    from verify.explore import Exploration, explore, found_earlier, keep_found
+    from verify.tasks import Drawn
+
+    asked = Exploration(
+        seed=random.SystemRandom().randrange(_SEEDS) if seed is None else seed,
+        examples=examples,
+        **_looks(claims, names),
+        drawn=Drawn(kinds=kinds, degree=degree, schemes=schemes),
+    )
+    if keep is not None:
+        writable(keep)
+    earlier = found_earlier(output) if output.is_dir() else []
+    with told(asked.plan().tasks, keep) as done:
+        report = explore(asked, Store(keep), workers=workers, done=done, earlier=earlier)
+    written = keep_found(report, output)
+    if as_json:
+        show.print_json(_as_json(report, written))
+    else:
+        _print(report, written)
+    if report.failures or any(each.message for each in report.again):
+        raise SystemExit(FAILED)
+
+
+def _looks(claims: str | None, names: Sequence[str]) -> dict[str, Any]:
+    """The properties and claims that are asked for: all properties where nothing is named."""
+    from verify import properties
+    from verify.claims_file import load_claims
+    from verify.explore_claims import claim_texts
+
+    for name in names:
+        properties.get(name)
+    if claims is None:
+        return {"properties": tuple(dict.fromkeys(names)) or properties.names()}
+    path = Path(claims)
+    if not path.is_file():
+        raise InputError("CLAIMS", claims, "is no file")
+    return {"properties": tuple(names), "claims": claim_texts(load_claims(path).claims)}
+
+
+def _as_json(report: "ExploreReport", written: Sequence[Path]) -> dict[str, Any]:
+    found = report.model_dump(mode="json")
+    for failure, path in zip(found["failures"], written, strict=True):
+        failure["file"] = str(path)
+    return found
+
+
+def _print(report: "ExploreReport", written: Sequence[Path]) -> None:
+    width = max(len(each.name) for each in report.properties)
+    for each in report.properties:
+        verdict = f"FAILS for {each.failures:,}" if each.failures else "holds"
+        click.echo(f"{each.name:{width}}  {verdict} of {each.looked_at:,}")
+    for again in report.again:
+        now = f"still fails: {again.message}" if again.message else "holds now"
+        click.echo(f"{again.file}: {again.property} {now}")
+    for failure, path in zip(report.failures, written, strict=True):
+        click.echo(f"\n{failure.property} fails at example {failure.example}, shrunk:")
+        click.echo("".join(f"  {line}\n" for line in failure.scene.splitlines()), nl=False)
+        click.echo(f"  → {path}, which `verify report` takes")
+    failing = sum(1 for each in report.properties if each.failures)
+    of = f"{report.examples:,} scenes of seed {report.seed}"
+    click.echo(f"{of}: {failing or 'no'} propert{'y fails' if failing == 1 else 'ies fail'}")

@@ -1,0 +1,223 @@
+"""Properties, or a user's claims, held against many drawn scenes.
+
+The work is cut into tasks of a stretch of scenes each. What is found does not depend on how it is
+cut, as scene k is made of the seed and k alone (see `verify.drawn_scenes`). Of every property that
+fails the first scene by number is shrunk.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from verify import properties
+from verify.drawn_scenes import drawn_scene, scenes_of, simplest
+from verify.errors import InputError
+from verify.example import Example
+from verify.execute import Done, Store, execute
+from verify.explore_claims import claim_property
+from verify.explore_results import (
+    ExploreReport,
+    ExploreResult,
+    Failure,
+    FoundAgain,
+    PropertySummary,
+    ShrunkResult,
+)
+from verify.keeping import name_of, write_atomically
+from verify.planned import Plan
+from verify.property import Property, Violation
+from verify.scene import Scene, load_scene
+from verify.scene_text import scene_text
+from verify.tasks import Drawn, ExploreTask, ShrinkTask
+
+MOST_EXAMPLES = 10**12
+_STRETCH, _MOST_TASKS = 50, 10_000  # scenes of a task, and tasks
+
+
+@dataclass(frozen=True)
+class Exploration:
+    """What is asked for: so many scenes of a seed, held against properties and claims.
+
+    `claims`: each as JSON, by `verify.explore_claims`. Raises InputError for an unknown property,
+    none at all, fewer than one example, and what scenes cannot be drawn of.
+    """
+
+    seed: int
+    examples: int
+    properties: tuple[str, ...]
+    claims: tuple[str, ...] = ()
+    drawn: Drawn = field(default_factory=Drawn)
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.examples <= MOST_EXAMPLES:
+            raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
+        if self.seed < 0:
+            raise InputError("seed", self.seed, "must be 0 or more")
+        if not self.looks:
+            raise InputError("properties", "", "give one at least")
+        scenes_of(self.drawn)
+
+    @property
+    def looks(self) -> tuple[Property, ...]:
+        return _looks(self.properties, self.claims)
+
+    def plan(self) -> Plan:
+        """The tasks, each of a stretch of scenes."""
+        plan = Plan()
+        size = max(_STRETCH, -(-self.examples // _MOST_TASKS))
+        for first in range(0, self.examples, size):
+            count = min(size, self.examples - first)
+            task = ExploreTask(
+                drawn=self.drawn,
+                seed=self.seed,
+                properties=self.properties,
+                claims=self.claims,
+                first=first,
+                count=count,
+            )
+            plan.need(task, "a stretch of drawn scenes")
+        return plan
+
+    def shrinking(self, failures: Sequence[Failure]) -> Plan:
+        """The tasks that shrink these failures."""
+        plan = Plan()
+        for failure in failures:
+            claims = tuple(c for c in self.claims if claim_property(c).name == failure.property)
+            task = ShrinkTask(
+                drawn=self.drawn,
+                seed=self.seed,
+                properties=() if claims else (failure.property,),
+                claims=claims,
+                example=failure.example,
+            )
+            plan.need(task, "it failed")
+        return plan
+
+
+def _looks(names: Sequence[str], claims: Sequence[str]) -> tuple[Property, ...]:
+    return (*map(properties.get, names), *map(claim_property, claims))
+
+
+# -- tasks ----------------------------------------------------------------------------------------
+
+
+def look(task: ExploreTask) -> ExploreResult:
+    """Holds each of the task's properties against each of its scenes."""
+    looked_at, failed = Counter[str](), Counter[str]()
+    first: dict[str, Failure] = {}
+    asked = _looks(task.properties, task.claims)
+    for number in range(task.first, task.first + task.count):
+        example = Example.of(drawn_scene(task.drawn, task.seed, number))
+        for each in asked:
+            spoke, wrong = outcome(each, example)
+            looked_at[each.name] += spoke
+            if wrong:
+                failed[each.name] += 1
+                found = Failure(property=each.name, example=number, message=wrong)
+                first.setdefault(each.name, found)
+    names = [each.name for each in asked]
+    return ExploreResult(
+        looked_at={name: looked_at[name] for name in names},
+        failed={name: failed[name] for name in names},
+        first=tuple(first.values()),
+    )
+
+
+def outcome(asked: Property, example: Example) -> tuple[bool, str]:
+    """Whether the property speaks of the example, and what is wrong; empty where nothing is."""
+    try:
+        return asked.holds(example), ""
+    except Violation as violation:
+        return True, str(violation)
+    except Exception as error:  # whatever the code under test may raise is a finding
+        return True, f"raised {type(error).__name__}: {' '.join(str(error).split())}"
+
+
+def shrink(task: ShrinkTask) -> ShrunkResult:
+    """The simplest scene for which the task's one property fails."""
+    (asked,) = _looks(task.properties, task.claims)
+    scene, message = simplest(
+        task.drawn, task.seed, task.example, lambda scene: outcome(asked, Example.of(scene))[1]
+    )
+    named = scene.model_copy(update={"name": asked.name})
+    origin = f"example {task.example} of seed {task.seed}, shrunk"
+    comment = f"{asked.name}: {asked.sentence}\n{message}\n{origin}"
+    return ShrunkResult(
+        property=asked.name,
+        example=task.example,
+        message=message,
+        scene=scene_text(named, comment=comment),
+    )
+
+
+# -- the whole ------------------------------------------------------------------------------------
+
+
+def explore(
+    asked: Exploration,
+    store: Store,
+    *,
+    workers: int | None = None,
+    done: Done | None = None,
+    earlier: Sequence[tuple[str, Scene]] = (),
+) -> ExploreReport:
+    """Looks at all examples, and shrinks the first failure of each property.
+
+    `earlier`: scenes found before, each with the name of the property that failed.
+    """
+    again = tuple(_again(asked, earlier))
+    plan = asked.plan()
+    results = execute(plan, store, workers=workers, done=done)
+    found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
+    first: dict[str, Failure] = {}
+    for result in found:
+        for failure in result.first:
+            first.setdefault(failure.property, failure)
+    shrinking = asked.shrinking(list(first.values()))
+    shrunk = execute(shrinking, store, workers=workers)
+    return ExploreReport(
+        seed=asked.seed,
+        examples=asked.examples,
+        properties=tuple(
+            PropertySummary(
+                name=each.name,
+                sentence=each.sentence,
+                looked_at=sum(r.looked_at[each.name] for r in found),
+                failures=sum(r.failed[each.name] for r in found),
+            )
+            for each in asked.looks
+        ),
+        failures=tuple(r for r in map(shrunk.get, shrinking.tasks) if isinstance(r, ShrunkResult)),
+        again=again,
+    )
+
+
+def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator[FoundAgain]:
+    by_name = {each.name: each for each in asked.looks}
+    for name, scene in earlier:
+        if name in by_name:
+            wrong = outcome(by_name[name], Example.of(scene))[1]
+            yield FoundAgain(file=f"{scene.name}.toml", property=name, message=wrong)
+
+
+# -- the scenes that were found -------------------------------------------------------------------
+
+
+def keep_found(report: ExploreReport, folder: Path) -> list[Path]:
+    """Writes each shrunk scene into the folder, under its property's name."""
+    written = []
+    for failure in report.failures:
+        path = folder / f"{failure.property}.{name_of(failure.scene)[:8]}.toml"
+        write_atomically(path, failure.scene)
+        written.append(path)
+    return written
+
+
+def found_earlier(folder: Path) -> list[tuple[str, Scene]]:
+    """The scenes that earlier explorations wrote there, each with its property's name."""
+    found = []
+    for path in sorted(folder.glob("*.toml")):
+        scene = load_scene(path)
+        found.append((path.stem.partition(".")[0], scene.model_copy(update={"name": path.stem})))
+    return found
