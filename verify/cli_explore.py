@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import show
+from verify.cli_hunt import hunt
 from verify.cli_input import writable
 from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
@@ -39,6 +40,14 @@ _SEEDS = 2**32
 )
 @click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most; 6.")
 @click.option(
+    "--maximise",
+    metavar="MEASURE",
+    help="Hunt for the worst scenes instead: rounding-share, digits-lost or growth.",
+)
+@click.option(
+    "--steps", type=int, default=100, metavar="N", help="Of each scene that is hunted; 100."
+)
+@click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
@@ -55,6 +64,8 @@ def explore(
     schemes: tuple[str, ...],
     kinds: tuple[str, ...],
     degree: int,
+    maximise: str | None,
+    steps: int,
     output: Path,
     keep: Path | None,
     workers: int | None,
@@ -70,6 +81,12 @@ def explore(
     verify explore --examples 100000 --workers 2 --seed 7
     verify explore --property order-by-jets --scheme lie2 --kind polynomial
     verify explore claims.toml --examples 500
+
+    With --maximise scenes are sought, of |q|, |p| up to 2 and step sizes 1/1000 … 1/10, in which
+    float64 or the scheme (lie2, or those of --scheme) does worst; DIR/index.html shows them.
+
+    \b
+    verify explore --maximise rounding-share --examples 2000 --seed 7 -o worst
     """
     import random
 
@@ -77,11 +94,18 @@ def explore(
     from verify.explore import Exploration, explore, found_earlier, keep_found
     from verify.tasks import Drawn
 
+    seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
+    drawn = Drawn(kinds=kinds, degree=degree, schemes=schemes)
+    if maximise is not None:
+        if claims or names:
+            raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
+        hunt(maximise, seed, examples, steps, drawn, output, keep, workers, as_json)
+        return
     asked = Exploration(
-        seed=random.SystemRandom().randrange(_SEEDS) if seed is None else seed,
+        seed=seed,
         examples=examples,
         **_looks(claims, names),
-        drawn=Drawn(kinds=kinds, degree=degree, schemes=schemes),
+        drawn=drawn,
     )
     if keep is not None:
         writable(keep)

@@ -23,6 +23,7 @@ from verify.runs import AUTO
 from verify.tasks import (
     ExploreTask,
     FlowTask,
+    HuntTask,
     LargestStepTask,
     RunTask,
     SeparationTask,
@@ -128,6 +129,8 @@ def cost(task: Task) -> int:
         return _FLOW_COST + _FLOW_POINTS * task.steps
     if isinstance(task, ExploreTask):
         return _SCENE_COST * task.count * (len(task.properties) + len(task.claims))
+    if isinstance(task, HuntTask):
+        return 10 * _SCENE_COST * task.count
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
         return task.steps * _STEP_COST.get(AUTO if checked else task.arithmetic, 500)

@@ -1,6 +1,6 @@
 """What an exploration found, and its report."""
 
-from verify.results import Frozen
+from verify.results import Frozen, Real, SeparationResult
 
 
 class Failure(Frozen):
@@ -47,6 +47,51 @@ class FoundAgain(Frozen):
     file: str
     property: str
     message: str
+
+
+class Worst(Frozen):
+    """A scene, as TOML, and lg of how bad it is."""
+
+    value: Real
+    scene: str
+
+
+class HuntResult(Frozen):
+    """The worst scenes of one island of a hunt, the worst first; so many were looked at."""
+
+    worst: tuple[Worst, ...]
+    examples: int
+
+
+class GalleryScene(Frozen):
+    """One of the worst scenes, as TOML, with lg of its measure.
+
+    `orbit`: points (q, p) of the hunt's run, with 40 digits. `separation`: its Λ over a longer run;
+    `meaningless_after`: the first checkpoint, in steps, at which rounding is as large as truncation
+    in the plain way.
+    """
+
+    value: Real
+    scene: str
+    orbit: tuple[tuple[str, str], ...]
+    separation: SeparationResult
+    meaningless_after: int | None
+
+
+class Gallery(Frozen):
+    """The worst scenes of a hunt, the worst first.
+
+    Initial values are in `reach` of 0 in p and q, and step sizes between the two of `step_sizes`.
+    """
+
+    measure: str
+    sentence: str
+    seed: int
+    examples: int
+    steps: int
+    reach: str
+    step_sizes: tuple[str, str]
+    scenes: tuple[GalleryScene, ...]
 
 
 class ExploreReport(Frozen):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from verify.exact import text
-from verify.explore_results import ExploreResult, ShrunkResult
+from verify.explore_results import ExploreResult, HuntResult, ShrunkResult
 from verify.flow_results import FlowImage
 from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
@@ -23,6 +23,7 @@ from verify.tasks import (
     ExploreTask,
     FlowTask,
     GrowthTask,
+    HuntTask,
     LargestStepTask,
     ProofTask,
     RunTask,
@@ -48,6 +49,7 @@ Result = (
     | FlowImage
     | ExploreResult
     | ShrunkResult
+    | HuntResult
 )
 
 
@@ -122,6 +124,12 @@ def _shrink(task: ShrinkTask, _: Keeper) -> ShrunkResult:
     from verify.explore import shrink
 
     return shrink(task)
+
+
+def _hunt(task: HuntTask, _: Keeper) -> HuntResult:
+    from verify.hunting import search
+
+    return search(task)
 
 
 def _stability(task: StabilityTask, _: Keeper) -> StabilityResult:
@@ -200,5 +208,6 @@ KINDS: dict[str, Kind] = {
     "flow": Kind(_flow, FlowImage),
     "explore": Kind(_explore, ExploreResult),
     "shrink": Kind(_shrink, ShrunkResult),
+    "hunt": Kind(_hunt, HuntResult),
     "work_precision": Kind(_work_precision, WorkPrecisionResult),
 }

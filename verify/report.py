@@ -12,6 +12,7 @@ from verify.claim_plan import add_claims
 from verify.claims import Claim
 from verify.exact import text
 from verify.execute import Done, Store, execute
+from verify.explore_results import Gallery
 from verify.findings import Findings
 from verify.flow_findings import flows_of
 from verify.keeping import versions
@@ -62,14 +63,30 @@ def make_report(
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         figures=tuple(figures),
         left_out=tuple(plan.left_out),
-        provenance=Provenance(
-            command=command,
-            versions=versions(),
-            machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
-            seconds=time.perf_counter() - begun,
-            kept=kept,
-            computed=len(plan.tasks) - kept,
-        ),
+        provenance=_provenance(command, begun, kept, len(plan.tasks) - kept),
+    )
+
+
+def gallery_report(gallery: Gallery, command: str, begun: float, computed: int) -> Report:
+    """The report of a hunt, which has a gallery and nothing else."""
+    return Report(
+        title=f"The worst scenes: {gallery.sentence}",
+        claims=(),
+        scenes=(),
+        gallery=gallery,
+        left_out=(),
+        provenance=_provenance(command, begun, 0, computed),
+    )
+
+
+def _provenance(command: str, begun: float, kept: int, computed: int) -> Provenance:
+    return Provenance(
+        command=command,
+        versions=versions(),
+        machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        seconds=time.perf_counter() - begun,
+        kept=kept,
+        computed=computed,
     )
 
 

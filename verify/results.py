@@ -10,7 +10,8 @@ from verify.verdict import Verdict
 _DECIMAL = r"^-?\d+(\.\d+)?(e[+-]\d+)?$"
 
 
-Seconds = Annotated[float, PlainSerializer(repr, str, when_used="json")]
+Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no exact value
+Seconds = Real
 
 
 class Frozen(BaseModel):

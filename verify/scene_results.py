@@ -1,5 +1,6 @@
 """What was found for a scene, and a whole report: results of all kinds put together."""
 
+from verify.explore_results import Gallery
 from verify.flow_results import FlowResult
 from verify.paper_figures import PaperFigure
 from verify.results import (
@@ -62,12 +63,16 @@ class Provenance(Frozen):
 
 
 class Report(Frozen):
-    """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again."""
+    """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
+
+    `gallery`: the worst scenes that a hunt found.
+    """
 
     title: str
     claims: tuple[ClaimResult, ...]
     scenes: tuple[SceneResult, ...]
     figures: tuple[PaperFigure, ...] = ()
+    gallery: Gallery | None = None
     left_out: tuple[tuple[str, str], ...]
     provenance: Provenance
 

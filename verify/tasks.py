@@ -166,6 +166,18 @@ class ShrinkTask(_OfProperties):
     example: int
 
 
+class HuntTask(_Task):
+    """Search one island for scenes that make a measure as large as can be."""
+
+    kind: Literal["hunt"] = "hunt"
+    drawn: Drawn
+    seed: int
+    measure: str
+    island: int
+    count: int
+    steps: int
+
+
 Task = (
     ProofTask
     | RunTask
@@ -179,6 +191,7 @@ Task = (
     | FlowTask
     | ExploreTask
     | ShrinkTask
+    | HuntTask
 )
 
 
