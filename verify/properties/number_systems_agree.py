@@ -12,7 +12,7 @@ from verify.balls import Ball, around, shown
 from verify.example import Example
 from verify.precision import working_precision
 from verify.property import Violation
-from verify.results import RunResult
+from verify.results import RunResult, Value
 from verify.runs import run
 
 _DIGITS = 30
@@ -30,7 +30,7 @@ def holds(example: Example) -> bool:
     if found is None:
         return False
     for quantity, value in found.values.items():
-        ours = around(Fraction(value.value), Fraction(value.bound))
+        ours = _ball(value)
         if not ours.overlaps(wanted[quantity]):
             within = f"{value.value} ± {value.bound}"
             true = shown(wanted[quantity], 20)
@@ -43,13 +43,18 @@ def _enclosed(example: Example) -> dict[str, Ball] | None:
         found = _run(example, "mpfr", 40)
         if found is None:
             return None
-        return {n: around(Fraction(v.value), Fraction(v.bound)) for n, v in found.values.items()}
+        return {n: _ball(v) for n, v in found.values.items()}
     start = example.p, example.q, example.step_size
     states = ball_steps(example.step_map, *start, example.steps)
     if states is None:
         return None
     with working_precision(BITS):
         return {"p": states[-1].p, "q": states[-1].q, "lambda": states[-1].product - 1}
+
+
+def _ball(value: Value) -> Ball:
+    with working_precision(BITS):
+        return around(Fraction(value.value), Fraction(value.bound))
 
 
 def _run(example: Example, arithmetic: str, digits: int) -> RunResult | None:

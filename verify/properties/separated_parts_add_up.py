@@ -52,7 +52,8 @@ def _must_be_true(example: Example, chain: Chain) -> None:
         return
     with working_precision(BITS):
         wanted = states[-1].product - 1
-    value, bound = chain.final("truncation")
-    if not around(value, bound).overlaps(wanted):
+        value, bound = chain.final("truncation")
+        found_there = around(value, bound)
+    if not found_there.overlaps(wanted):
         found = f"{decimal(value, 12)} ± {decimal(bound, 3)}"
         raise Violation(f"the truncation part is {found}, and truly {shown(wanted, 12)}")
