@@ -1,0 +1,224 @@
+"""Exploring: scenes by seed and number, what is counted, shrunk and kept; claims as properties."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from verify import properties
+from verify.claims_file import load_claims
+from verify.drawn_scenes import drawn_scene
+from verify.errors import InputError
+from verify.example import Example
+from verify.execute import Store
+from verify.explore import Exploration, explore, found_earlier, keep_found
+from verify.explore_claims import claim_property, claim_texts
+from verify.explore_results import ExploreReport
+from verify.property import Property, Violation
+from verify.scene import load_scene
+from verify.scene_text import scene_text
+from verify.tasks import Drawn
+
+CHEAP = ("quadratic-hamiltonians", "time-scaling")
+LIES = Drawn(schemes=("lie1", "lie2"), degree=3)
+
+
+def exploration(**changes: object) -> Exploration:
+    given = {"seed": 7, "examples": 30, "properties": CHEAP, "drawn": LIES}
+    return Exploration(**(given | changes))  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A property with a planted falsehood: no H has q³ in it."""
+
+    def holds(example: Example) -> bool:
+        if "q**3" in (example.scene.hamiltonian or ""):
+            raise Violation("it has q**3")
+        return True
+
+    made = Property("no-cubes", "No H has q³ in it, which is wrong.", holds)
+    monkeypatch.setitem(properties._all(), "no-cubes", made)
+
+
+# -- scenes ---------------------------------------------------------------------------------------
+
+
+def test_scene_k_of_a_seed_is_always_the_same() -> None:
+    forwards = [scene_text(drawn_scene(LIES, 7, k)) for k in range(12)]
+    backwards = [scene_text(drawn_scene(LIES, 7, k)) for k in reversed(range(12))]
+    assert forwards == backwards[::-1]
+    assert len(set(forwards)) > 8
+    assert forwards != [scene_text(drawn_scene(LIES, 8, k)) for k in range(12)]
+
+
+def test_what_is_asked_for_is_drawn() -> None:
+    scenes = [drawn_scene(LIES, 3, k) for k in range(40)]
+    assert {scene.schemes for scene in scenes} == {("lie1",), ("lie2",)}
+    rational = Drawn(kinds=("rational",), schemes=("lie1",))
+    assert all("/(" in (drawn_scene(rational, 3, k).hamiltonian or "") for k in range(10))
+
+
+def test_separable_schemes_get_separable_hamiltonians() -> None:
+    asked = Drawn(schemes=("stormer-verlet",), degree=4)
+    for k in range(20):
+        assert drawn_scene(asked, 1, k).exact_hamiltonian().field()[0].separable()
+
+
+# -- counting, shrinking --------------------------------------------------------------------------
+
+
+def test_examples_are_counted_and_properties_hold() -> None:
+    report = explore(exploration(), Store(None), workers=1)
+    assert (report.seed, report.examples, report.failures) == (7, 30, ())
+    assert [p.name for p in report.properties] == list(CHEAP)
+    assert all(p.failures == 0 and 0 < p.looked_at <= 30 for p in report.properties)
+
+
+def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = explore(exploration(), Store(None), workers=1)
+    monkeypatch.setattr("verify.explore._STRETCH", 7)
+    assert len(exploration().plan().tasks) == 5
+    assert explore(exploration(), Store(None), workers=1) == whole
+
+
+def failing(**changes: object) -> ExploreReport:
+    asked = exploration(properties=("no-cubes",), examples=120, **changes)
+    return explore(asked, Store(None), workers=1)
+
+
+@pytest.mark.usefixtures("odd_is_wrong")
+def test_a_failure_is_shrunk_to_the_simplest_scene(tmp_path: Path) -> None:
+    report = failing()
+    (summary,), (failure,) = report.properties, report.failures
+    assert summary.looked_at == 120
+    assert 0 < summary.failures < 120
+    assert failure.message == "it has q**3"
+    (path,) = keep_found(report, tmp_path)
+    scene = load_scene(path)
+    assert "q**3" in (scene.hamiltonian or "")
+    assert len(scene.hamiltonian or "") <= 20, "shrunk"
+    assert scene.schemes == ("lie1",)
+    assert scene.grid is not None
+    assert scene.grid.steps == 1
+    assert failing() == report, "the same each time"
+
+
+@pytest.mark.usefixtures("odd_is_wrong")
+def test_found_scenes_are_looked_at_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    keep_found(failing(), tmp_path)
+    asked = exploration(properties=("no-cubes",), examples=1)
+    report = explore(asked, Store(None), workers=1, earlier=found_earlier(tmp_path))
+    assert [again.message for again in report.again] == ["it has q**3"]
+    mended = Property("no-cubes", "Now anything goes with it.", lambda _: True)
+    monkeypatch.setitem(properties._all(), "no-cubes", mended)
+    report = explore(asked, Store(None), workers=1, earlier=found_earlier(tmp_path))
+    assert [again.message for again in report.again] == [""]
+
+
+def test_an_exception_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    def holds(_: Example) -> bool:
+        raise ZeroDivisionError("by\nzero")
+
+    made = Property("raises", "It divides by zero in every scene.", holds)
+    monkeypatch.setitem(properties._all(), "raises", made)
+    report = explore(exploration(properties=("raises",), examples=2), Store(None), workers=1)
+    assert report.properties[0].failures == 2
+    assert report.failures[0].message == "raised ZeroDivisionError: by zero"
+
+
+def test_kept_results_are_taken_up_and_give_the_same_report(tmp_path: Path) -> None:
+    first = explore(exploration(), Store(tmp_path), workers=1)
+    store = Store(tmp_path)
+    assert explore(exploration(), store, workers=1) == first
+    assert store.taken == len(exploration().plan().tasks)
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"examples": 0}, "examples"),
+        ({"seed": -1}, "seed"),
+        ({"properties": ("nothing",)}, "property"),
+        ({"properties": ()}, "properties"),
+        ({"drawn": Drawn(kinds=("blue",))}, "kinds"),
+        ({"drawn": Drawn(degree=0)}, "degree"),
+        ({"drawn": Drawn(schemes=("lie0",))}, "scheme"),
+    ],
+)
+def test_bad_arguments_are_named(changes: dict[str, object], name: str) -> None:
+    with pytest.raises(InputError) as error:
+        exploration(**changes)
+    assert error.value.name == name
+
+
+# -- claims ---------------------------------------------------------------------------------------
+
+CLAIMS = """
+[defaults]
+scheme = "lie2"
+system = "duffing"
+parameters = { delta = 1 }
+
+[[claim]]
+id = "third-order"
+kind = "order"
+order = 3
+at_least = true
+
+[[claim]]
+id = "fourth-order"
+kind = "order"
+order = 4
+at_least = true
+
+[[claim]]
+id = "small"
+kind = "bounded"
+bound = "1e300"
+step_size = 0.01
+steps = 5
+q = 1
+p = 0
+"""
+
+
+def claims_of(tmp_path: Path, text: str = CLAIMS) -> tuple[str, ...]:
+    path = tmp_path / "claims.toml"
+    path.write_text(text)
+    return claim_texts(load_claims(path).claims)
+
+
+def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
+    texts = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "small"')])
+    asked = exploration(properties=(), claims=texts, examples=25)
+    report = explore(asked, Store(None), workers=1)
+    true, false = report.properties
+    assert (true.name, true.failures) == ("third-order", 0)
+    assert true.looked_at == 25
+    assert (false.name, false.failures > 0) == ("fourth-order", True)
+    assert [f.property for f in report.failures] == ["fourth-order"]
+    shrunk = json.dumps(report.failures[0].scene)
+    assert "p**2/2 + q**2/2" not in shrunk, "for that H the claim holds: ΔJ is of order 4"
+
+
+def test_a_claim_on_a_run_is_asked_of_the_drawn_run(tmp_path: Path) -> None:
+    text = CLAIMS.partition("[[claim]]")[0] + CLAIMS[CLAIMS.index('[[claim]]\nid = "small"') :]
+    (claim,) = claims_of(tmp_path, text)
+    scene = drawn_scene(Drawn(schemes=("lie2",), degree=3), 5, 0)
+    assert claim_property(claim).holds(Example.of(scene))
+    (zero,) = claims_of(tmp_path, text.replace("1e300", "0"))
+    with pytest.raises(Violation):
+        claim_property(zero).holds(Example.of(scene))
+
+
+def test_a_claim_of_a_theorem_is_refused(tmp_path: Path) -> None:
+    text = '[[claim]]\nid = "t"\nkind = "theorem"\nname = "matrix-vector"\nscheme = "lie2"\n'
+    with pytest.raises(InputError, match="t"):
+        claims_of(tmp_path, text)
+
+
+def test_a_claim_keeps_its_own_scheme(tmp_path: Path) -> None:
+    (text, *_) = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "fourth')])
+    scene = drawn_scene(Drawn(schemes=("lie1",)), 5, 0)
+    assert claim_property(text).holds(Example.of(scene)), "of lie2, though lie1 was drawn"
