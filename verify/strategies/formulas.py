@@ -22,8 +22,9 @@ from verify.strategies.terms import Drawer, Limits, Sum, monomial, power
 
 NAMES = ("a", "b")
 # How often a shape is drawn, the simplest first; whether H → ∞ in every direction (None: unknown).
-_QUADRATIC = {"elliptic": True, "hyperbolic": False, "parabolic": False}
-_SHAPES = {"confining": (2, True), "open": (2, False), "free": (2, None)}
+_Shapes = dict[str, tuple[int, bool | None]]
+_QUADRATIC: _Shapes = {"elliptic": (1, True), "hyperbolic": (1, False), "parabolic": (1, False)}
+_SHAPES: _Shapes = {"confining": (2, True), "open": (2, False), "free": (2, None)}
 
 
 class Plan(NamedTuple):
@@ -50,10 +51,8 @@ def plans(
     found = []
     for kind in (kind for kind in KINDS if kind in kinds):
         for is_separable in (True, False):
-            shapes = [(shape, 1, is_bounded) for shape, is_bounded in _QUADRATIC.items()]
-            shapes = shapes if kind == "polynomial" else []
-            shapes += [(shape, *rest) for shape, rest in _SHAPES.items()]
-            for shape, often, is_bounded in shapes:
+            shapes = _SHAPES if kind != "polynomial" else _QUADRATIC | _SHAPES
+            for shape, (often, is_bounded) in shapes.items():
                 if separable in (None, is_separable) and (bounded is None or bounded == is_bounded):
                     found += [Plan(kind, is_separable, shape)] * often
     fitting = [plan for plan in found if _least_degree(plan) <= limits.degree]
@@ -91,11 +90,11 @@ def formulas(
         made = {"confining": _confining, "open": _open, "free": _free}[plan.shape](d, plan)
     named: dict[int, str] = {}
     if with_parameters:
-        for name in NAMES[: d.whole(1, min(len(NAMES), len(made)))]:
-            named.setdefault(d.whole(0, len(made) - 1), name)
+        chosen = {d.whole(0, len(made) - 1) for _ in range(d.whole(1, len(NAMES)))}
+        named = dict(zip(sorted(chosen), NAMES, strict=False))
     values = list(made.terms.values())
-    parameters = sorted((name, values[index]) for index, name in named.items())
-    return Formula(made.written(named), tuple(parameters), plan.separable)
+    parameters = tuple((name, values[index]) for index, name in named.items())
+    return Formula(made.written(named), parameters, plan.separable)
 
 
 def _quadratic(d: Drawer, plan: Plan) -> Sum:
