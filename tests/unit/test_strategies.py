@@ -147,6 +147,15 @@ def test_not_bounded_does_not_grow_along_some_ray(kind: str) -> None:
         assert not all(grows_along(h.exact, ray) for ray in rays), h
 
 
+def test_what_tells_growth_tells_the_two_apart() -> None:
+    """Controls of the checks above: a pendulum among the bounded, a quartic among the others."""
+    pendulum, quartic = (Hamiltonian.parse(f"p**2/2 + {v}").exact for v in ("cos(q)", "q**4"))
+    near, far = (least_on_circle(function_of(pendulum), r) for r in (10**3, 10**4))
+    assert not 0 < 10 * near < far
+    assert not grows_along(pendulum, (0, 1))
+    assert all(grows_along(quartic, ray) for ray in ((1, 0), (0, -1), (1, 1), (-3, 1)))
+
+
 def test_quadratic_forms_of_each_sort_occur() -> None:
     found = {"elliptic": 0, "hyperbolic": 0, "parabolic": 0}
     for h in fuzzed(s.hamiltonians(), 500):
