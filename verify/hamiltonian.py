@@ -1,6 +1,6 @@
 """A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy
 
+from verify.drawn import drawn_by
 from verify.errors import InputError
 from verify.exact import Exact, rational, text
 from verify.formula import parameter_name, parse, symbol, to_text
@@ -29,6 +30,7 @@ def _with_values(expression: sympy.Expr, values: tuple[tuple[str, Fraction], ...
     return result
 
 
+@drawn_by("hamiltonians")
 @dataclass(frozen=True)
 class Hamiltonian:
     """H(p, q) as an exact expression, with the values of those parameters that have one.
@@ -102,6 +104,21 @@ class Hamiltonian:
             "hamiltonian": self.formula,
             "parameters": {name: text(value) for name, value in self.values},
         }
+
+    def gradient(self) -> Callable[[float, float], tuple[float, float]]:
+        """(p, q) ↦ (H_p, H_q) in Python floats, for a step function of one's own.
+
+        Each is rounded at every operation, so its last digits are not known. It raises what `math`
+        raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H is not
+        defined. Raises InputError where a parameter has no value.
+        """
+        if self.symbols:
+            raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
+        p, q = symbol("p"), symbol("q")
+        slopes = self.exact.diff(p), self.exact.diff(q)
+        made: Callable[[float, float], tuple[float, float]]
+        made = sympy.lambdify((p, q), slopes, modules="math", cse=True)
+        return made
 
     def generic(self) -> "Hamiltonian":
         """H with its parameters as symbols, but for those of value 0, whose terms vanish.

@@ -51,6 +51,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify import systems
+from verify.drawn import drawn_by
 from verify.errors import InputError
 from verify.exact import text
 from verify.flow_sections import Flow
@@ -172,6 +173,7 @@ class Series(Frozen):
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "schemes")
 
 
+@drawn_by("scenes")
 class Scene(Frozen):
     """See the module's text for the keys."""
 

@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 from verify import arithmetic as number_systems
+from verify.drawn import drawn_by
 from verify.errors import InputError
 from verify.exact import positive, rational, text
 from verify.results import Frozen
@@ -32,6 +33,7 @@ def _known(name: str) -> str:
 ArithmeticName = Annotated[str, AfterValidator(_known)]
 
 
+@drawn_by("initial_values")
 class InitialValue(Frozen):
     q: Number
     p: Number

@@ -4,11 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from verify.conditions import ByConditions
+from verify.drawn import drawn_by
 from verify.generic import Generic
 from verify.hamiltonian import Hamiltonian
 from verify.step_map import StepMap
 
 
+@drawn_by("schemes")
 @dataclass(frozen=True)
 class Scheme:
     """A one-step scheme; tests hold its claims against proofs.

@@ -269,3 +269,21 @@ def test_a_system_has_the_equation_of_motion_it_is_named_for(name: str) -> None:
 def test_an_unknown_system_is_refused_with_the_known_ones(name: str) -> None:
     with pytest.raises(InputError, match=r"^system=.*allowed: .*duffing"):
         systems.get(name)
+
+
+@pytest.mark.parametrize("text", FORMULAS)
+def test_the_gradient_in_floats_is_that_of_sympy(text: str) -> None:
+    h = Hamiltonian.parse(text)
+    h = h.with_values(dict.fromkeys(h.parameters, "3/7"))
+    values = {sympy.Symbol(name, real=True): sympy.Rational(3, 7) for name in h.parameters}
+    by_sympy = plain(text).subs(values)
+    at = {P: sympy.Rational(5, 16), Q: sympy.Rational(3, 8)}  # floats, both
+    found = h.gradient()(0.3125, 0.375)
+    for slope, name in zip(found, (P, Q), strict=True):
+        assert type(slope) in (float, int)
+        assert slope == pytest.approx(float(by_sympy.diff(name).subs(at)), rel=1e-13, abs=1e-14)
+
+
+def test_a_gradient_wants_values() -> None:
+    with pytest.raises(InputError, match="parameter=delta: has no value"):
+        Hamiltonian.parse(DUFFING).gradient()

@@ -95,11 +95,13 @@ LIGHT = [
     "verify",
     "verify.cli",
     "verify.show",
+    "verify.drawn",
     "verify.errors",
     "verify.progress",
     "verify.verdict",
 ]
-SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2"}
+SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2",
+        "hypothesis"}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", LIGHT)
@@ -117,6 +119,17 @@ def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
 @every_module
 def test_numba_and_matplotlib_are_imported_only_where_they_are_used(path: Path) -> None:
     assert not roots(imported(path)) & {"numba", "matplotlib"}
+
+
+STRATEGIES = ("verify.strategies", "verify.explor")
+
+
+@every_module
+def test_hypothesis_is_imported_only_by_strategies_and_what_explores(path: Path) -> None:
+    drawing = name_of(path).startswith(STRATEGIES)
+    assert drawing or not roots(imported(path, everywhere=True)) & {"hypothesis"}
+    if not drawing:  # so that nothing else waits for hypothesis either
+        assert not any(name.startswith(STRATEGIES) for name in imported(path))
 
 
 def of_arrays(edges: dict[str, set[str]]) -> set[str]:

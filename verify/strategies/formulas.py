@@ -22,8 +22,12 @@ from verify.strategies.terms import Drawer, Limits, Sum, monomial, power
 
 NAMES = ("a", "b")
 # How often a shape is drawn, the simplest first; whether H → ∞ in every direction (None: unknown).
-_QUADRATIC = {"elliptic": True, "hyperbolic": False, "parabolic": False}
-_SHAPES = {"confining": (2, True), "open": (2, False), "free": (2, None)}
+_Tree = Sequence[Sequence[Sequence["Plan"]]]
+_Shapes = dict[str, tuple[int, bool | None]]
+_QUADRATIC: _Shapes = {"elliptic": (1, True), "hyperbolic": (1, False), "parabolic": (1, False)}
+_SHAPES: _Shapes = {"confining": (2, True), "open": (2, False), "free": (2, None)}
+_OWN_FIRST: _Shapes = {"open": (2, False)} | _SHAPES  # p**2/2 + cos(q) is the simplest
+_CHOICES = 16  # as many as the simplest formula of any plan takes
 
 
 class Plan(NamedTuple):
@@ -46,16 +50,17 @@ class Formula:
 def plans(
     kinds: Sequence[str], limits: Limits, separable: bool | None, bounded: bool | None
 ) -> list[Plan]:
-    """All that is asked for, the simplest first; one that is to be drawn twice as often twice."""
-    found = []
-    for kind in (kind for kind in KINDS if kind in kinds):
-        for is_separable in (True, False):
-            shapes = [(shape, 1, is_bounded) for shape, is_bounded in _QUADRATIC.items()]
-            shapes = shapes if kind == "polynomial" else []
-            shapes += [(shape, *rest) for shape, rest in _SHAPES.items()]
-            for shape, often, is_bounded in shapes:
-                if separable in (None, is_separable) and (bounded is None or bounded == is_bounded):
-                    found += [Plan(kind, is_separable, shape)] * often
+    """All that is asked for, the simplest first; one that is drawn twice as often stands twice."""
+    found = [
+        Plan(kind, is_separable, shape)
+        for kind in KINDS
+        if kind in kinds
+        for is_separable in (True, False)
+        if separable in (None, is_separable)
+        for shape, (often, is_bounded) in _shapes(kind).items()
+        if bounded is None or bounded == is_bounded
+        for _ in range(often)
+    ]
     fitting = [plan for plan in found if _least_degree(plan) <= limits.degree]
     if not fitting:
         least = min(map(_least_degree, found))
@@ -64,6 +69,22 @@ def plans(
         least = min(map(_least_terms, fitting))
         raise InputError("terms", limits.terms, f"must be {least} or more for such an H")
     return [plan for plan in fitting if _least_terms(plan) <= limits.terms]
+
+
+def _shapes(kind: str) -> _Shapes:
+    return _QUADRATIC | _SHAPES if kind == "polynomial" else _OWN_FIRST
+
+
+def _tree(choices: Sequence[Plan]) -> _Tree:
+    """The plans by their kind, then by whether they are separable.
+
+    Each is a choice of its own, and so shrinks by itself.
+    """
+    tree: dict[str, dict[bool, list[Plan]]] = {}
+    for plan in choices:
+        tree.setdefault(plan.kind, {}).setdefault(plan.separable, []).append(plan)
+    found = [list(by_separable.values()) for by_separable in tree.values()]
+    return [*found, *found[:1]] if "polynomial" in tree else found  # for its quadratic forms
 
 
 def _least_degree(plan: Plan) -> int:
@@ -78,24 +99,30 @@ def _least_terms(plan: Plan) -> int:
     return 2 if plan.shape == "hyperbolic" and plan.separable else 1
 
 
-@st.composite
 def formulas(
-    draw: st.DrawFn, choices: Sequence[Plan], limits: Limits, with_parameters: bool
-) -> Formula:
+    choices: Sequence[Plan], limits: Limits, with_parameters: bool
+) -> st.SearchStrategy[Formula]:
     """A formula of one of the plans; its parameters are names for some of its coefficients."""
+    return _formulas(_tree(choices), limits, with_parameters)
+
+
+@st.composite
+def _formulas(draw: st.DrawFn, tree: _Tree, limits: Limits, with_parameters: bool) -> Formula:
     d = Drawer(draw, limits)
-    plan = d.pick(choices)
+    plan = d.pick(d.pick(d.pick(tree)))
     if plan.shape in _QUADRATIC:
         made = _quadratic(d, plan)
     else:
         made = {"confining": _confining, "open": _open, "free": _free}[plan.shape](d, plan)
+    d.pad(_CHOICES)
     named: dict[int, str] = {}
     if with_parameters:
-        for name in NAMES[: d.whole(1, min(len(NAMES), len(made)))]:
-            named.setdefault(d.whole(0, len(made) - 1), name)
+        chosen = {d.whole(0, len(made) - 1) for _ in range(d.whole(1, len(NAMES)))}
+        d.pad(_CHOICES + 3)
+        named = dict(zip(sorted(chosen), NAMES, strict=False))
     values = list(made.terms.values())
-    parameters = sorted((name, values[index]) for index, name in named.items())
-    return Formula(made.written(named), tuple(parameters), plan.separable)
+    parameters = tuple((name, values[index]) for index, name in named.items())
+    return Formula(made.written(named), parameters, plan.separable)
 
 
 def _quadratic(d: Drawer, plan: Plan) -> Sum:

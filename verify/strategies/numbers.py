@@ -16,6 +16,7 @@ from verify.strategies.arguments import exactly, whole
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
 _DENOMINATORS = (1, 2, 10, 3, 7, 100)
 _LONG = 10**40
+_DIGITS = (1, 2, 5, *range(3, 100))
 
 
 def parameters(
@@ -101,21 +102,26 @@ def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStr
         raise InputError("least", least, "must be greater than 0")
     if low > high:
         raise InputError("least", least, f"is greater than most={high}")
-    top, bottom = magnitude(high), magnitude(low)
-    tens = st.integers(0, top - bottom).map(lambda n: Fraction(10) ** (top - n))
-    twos = st.integers(0, _binary(high) - _binary(low)).map(
-        lambda n: Fraction(2) ** (_binary(high) - n)
-    )
+    decades = magnitude(high) - magnitude(low) + 1
+    twos = _binary(high) - _binary(low) + 1
+
+    def decimal(index: int) -> Fraction:
+        digits, down = divmod(index, decades)
+        exponent = magnitude(high) - down
+        return Fraction(_DIGITS[digits]) * (
+            10**exponent if exponent >= 0 else Fraction(1, 10**-exponent)
+        )
 
     def within(h: Fraction) -> Fraction:
         return min(max(h, low), high)
 
-    digits = st.one_of(st.sampled_from((1, 2, 5)), st.integers(1, 99))
-    return st.one_of(
-        st.builds(lambda ten, n: within(ten * n), tens, digits),
-        twos.map(within),
-        st.builds(lambda ten, n: within(ten * n / 3), tens, st.sampled_from((1, 2, 5))),
-    )
+    # One choice each beside that of the form: the simplest is a decimal.
+    forms = [
+        st.integers(0, decades * len(_DIGITS) - 1).map(decimal),
+        st.integers(0, twos - 1).map(lambda n: Fraction(2) ** (_binary(high) - n)),
+        st.integers(0, decades * 3 - 1).map(lambda n: decimal(n) / 3),
+    ]
+    return st.one_of([form.map(within) for form in forms])
 
 
 def _binary(x: Fraction) -> int:

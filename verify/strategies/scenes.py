@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
 
 from hypothesis import reject
 from hypothesis import strategies as st
@@ -15,7 +14,7 @@ from verify.scene_values import InitialValue
 from verify.scheme import Scheme
 from verify.strategies.arguments import strategy_or_none, whole
 from verify.strategies.formulas import Formula
-from verify.strategies.hamiltonians import drawn_formulas
+from verify.strategies.hamiltonians import drawn_formulas, made
 from verify.strategies.numbers import initial_values as drawn_values
 from verify.strategies.numbers import parameters
 from verify.strategies.numbers import step_sizes as drawn_steps
@@ -89,10 +88,7 @@ def _of_schemes(
         formula = draw(separable if needs_separable(scheme) else any_formula)
         if scheme.generic is not None:
             return _scene(formula, scheme, draw(grids))
-        try:
-            return _checked(formula.text, dict(formula.parameters), scheme, draw(grids))
-        except InputError:
-            reject()
+        return _fitting(made(formula), scheme, draw(grids))
 
     return drawn()
 
@@ -107,15 +103,11 @@ def _of_hamiltonians(
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
         hamiltonian = draw(hamiltonians)
-        values = dict(hamiltonian.values)
         if hamiltonian.symbols:
-            values |= draw(parameters(hamiltonian.symbols))
-            hamiltonian = hamiltonian.with_values(values)
+            values = draw(parameters(hamiltonian.symbols))
+            hamiltonian = hamiltonian.with_values(dict(hamiltonian.values) | values)
         own = st.sampled_from(takers(found, hamiltonian)) if schemes is None else schemes
-        try:
-            return _checked(hamiltonian.formula, values, draw(own), draw(grids))
-        except InputError:
-            reject()
+        return _fitting(hamiltonian, draw(own), draw(grids))
 
     return drawn()
 
@@ -137,5 +129,13 @@ def _scene(formula: Formula, scheme: Scheme, grid: Grid) -> Scene:
     )
 
 
-def _checked(formula: str, values: dict[str, Any], scheme: Scheme, grid: Grid) -> Scene:
-    return Scene(hamiltonian=formula, parameters=values, schemes=(scheme.name,), grid=grid)
+def _fitting(hamiltonian: Hamiltonian, scheme: Scheme, grid: Grid) -> Scene:
+    """The scene of parts that others drew; rejected where the scheme does not take H."""
+    if not takers([scheme], hamiltonian):
+        reject()
+    return Scene(
+        hamiltonian=hamiltonian.formula,
+        parameters=dict(hamiltonian.values),
+        schemes=(scheme.name,),
+        grid=grid,
+    )

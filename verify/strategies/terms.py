@@ -32,15 +32,27 @@ class Limits:
     size: int
 
 
-@dataclass(frozen=True)
+@dataclass
 class Drawer:
-    """Draws the parts of a formula; each choice shrinks towards the first that is named."""
+    """Draws the parts of a formula; each choice shrinks towards the first that is named.
+
+    For hypothesis the simplest example is one of the fewest choices, and only then that of the
+    least: so `pad` makes the choices of a short formula as many as those of any simple one.
+    """
 
     draw: st.DrawFn
     limits: Limits
+    choices: int = 0
 
     def whole(self, least: int, most: int) -> int:
-        return least if least == most else self.draw(_range(least, most))
+        if least == most:
+            return least
+        self.choices += 1
+        return self.draw(_range(least, most))
+
+    def pad(self, choices: int) -> None:
+        while self.choices < choices:
+            self.whole(0, 1)
 
     def pick(self, choices: Sequence[T]) -> T:
         return choices[self.whole(0, len(choices) - 1)]
