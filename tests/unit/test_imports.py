@@ -121,15 +121,16 @@ def test_numba_and_matplotlib_are_imported_only_where_they_are_used(path: Path) 
     assert not roots(imported(path)) & {"numba", "matplotlib"}
 
 
-STRATEGIES = ("verify.strategies", "verify.explor")
+EXPLORING = {"verify.drawn_scenes", "verify.explore", "verify.gallery", "verify.hunting"}
 
 
-@every_module
-def test_hypothesis_is_imported_only_by_strategies_and_what_explores(path: Path) -> None:
-    drawing = name_of(path).startswith(STRATEGIES)
-    assert drawing or not roots(imported(path, everywhere=True)) & {"hypothesis"}
-    if not drawing:  # so that nothing else waits for hypothesis either
-        assert not any(name.startswith(STRATEGIES) for name in imported(path))
+def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
+    """What imports it when it is imported, itself or by what it imports."""
+    edges = {name: imported(path) for name, path in NAMES.items()}
+    slow = {name for name, names in edges.items() if "hypothesis" in roots(names)}
+    while more := {name for name in edges if edges[name] & slow} - slow:
+        slow |= more
+    assert {name for name in slow if not name.startswith("verify.strategies")} == EXPLORING
 
 
 def of_arrays(edges: dict[str, set[str]]) -> set[str]:
