@@ -1,0 +1,114 @@
+"""`verify explore`: the same from a seed everywhere, interrupted and resumed, claims, bad input."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.test_command_line import apart, here, json_of
+from tests.end_to_end.test_report_command import interrupt, started
+
+QUICK = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
+         "--scheme", "lie2", "--degree", "3", "--seed", "5", "--json")  # fmt: skip
+FALSE = """
+[[claim]]
+id = "fourth-order"
+statement = "ΔJ of lie2 is O(h⁴)."
+kind = "order"
+scheme = "lie2"
+hamiltonian = "p**2/2 + q**2/2"
+order = 4
+at_least = true
+"""
+
+
+def test_the_same_seed_gives_the_same_bytes_on_one_worker_and_on_two(tmp_path: Path) -> None:
+    one, two = (
+        apart(*QUICK, "--examples", "120", "--workers", n, cwd=tmp_path) for n in ("1", "2")
+    )
+    assert (one.returncode, one.stderr) == (0, "")
+    assert one.stdout == two.stdout
+    found = json_of(one.stdout)
+    assert (found["examples"], found["seed"], found["failures"]) == (120, 5, [])
+    assert not (tmp_path / "explored").exists(), "nothing failed, nothing is written"
+
+
+def test_an_interrupted_exploration_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    asked = (*QUICK, "--examples", "1000", "--keep", str(tmp_path / "kept"), "--workers", "1",
+             "-o", str(tmp_path / "found"))  # fmt: skip
+    with started(*asked) as process:
+        until = time.monotonic() + 60
+        while len(list((tmp_path / "kept").glob("*.json"))) < 2:
+            assert time.monotonic() < until
+            assert process.poll() is None, "it is done before it is interrupted"
+            time.sleep(0.02)
+        status, out, err = interrupt(process)
+    assert (status, out) == (130, "")
+    assert "of 20 tasks are kept in" in err
+    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "kept").glob("*.json")}
+    resumed = apart(*asked)
+    assert resumed.returncode == 0
+    assert {p: p.stat().st_mtime_ns for p in kept} == kept, "what was finished is not done again"
+    fresh = apart(*QUICK, "--examples", "1000", "--workers", "1", cwd=tmp_path)
+    assert resumed.stdout == fresh.stdout
+
+
+def test_a_false_claim_is_shrunk_to_a_scene_that_report_takes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("claims.toml").write_text(FALSE)
+    asked = ("explore", "claims.toml", "--examples", "20", "--seed", "1", "--degree", "3",
+             "--kind", "polynomial", "--workers", "1", "--json")  # fmt: skip
+    status, out, _ = here(capsys, *asked)
+    assert status == 1
+    (failure,) = json_of(out)["failures"]
+    assert failure["property"] == "fourth-order"
+    path = Path(failure["file"])
+    assert path.read_text() == failure["scene"]
+    assert here(capsys, "report", str(path), "-o", "page", "--workers", "1")[0] == 0
+    assert Path("page/index.html").exists()
+    status, out, _ = here(capsys, *asked[:-1])
+    assert status == 1
+    assert "still fails" in out
+    assert "FAILS for" in out
+    assert "1 property fails" in out
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (("--examples", "0"), "examples=0"),
+        (("--examples", "1e6"), "not a valid integer"),
+        (("--seed", "-1"), "seed=-1"),
+        (("--property", "nothing"), "property=nothing: unknown; allowed: area-errors-compose"),
+        (("--kind", "blue"), "kinds=blue: unknown; allowed: polynomial"),
+        (("--degree", "0"), "degree=0"),
+        (("--scheme", "lie0"), "scheme=lie0"),
+        (("missing.toml",), "CLAIMS=missing.toml: is no file"),
+        (("--maximise", "size"), "maximise=size: unknown; allowed: rounding-share"),
+        (("--maximise", "growth", "--property", "time-scaling"), "--maximise=growth: takes no"),
+        (("--maximise", "growth", "--steps", "1"), "steps=1"),
+        (("--maximise", "growth", "--examples", "0"), "examples=0"),
+        (("--workers", "0"), "--workers"),
+    ],
+)
+def test_bad_input_is_one_line(
+    more: tuple[str, ...],
+    said: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, out, err = here(capsys, "explore", *more)
+    assert (status, out) == (2, "")
+    assert said in err
+    assert err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_a_seed_one_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ("explore", "--property", "quadratic-hamiltonians", "--examples", "1", "--json")
+    seeds = {json_of(here(capsys, *asked)[1])["seed"] for _ in range(2)}
+    assert len(seeds) == 2
