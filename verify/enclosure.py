@@ -18,8 +18,15 @@ _FAR_POINTS = 200
 def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) -> Any:
     """A ball (flint.arb) that contains x at the point, or None where x is not defined.
 
-    Leaves flint's global context as it was.
+    Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
     """
+    if ring.in_variables(x):
+        at = [flint.fmpq()] * ring.room
+        for name, power in zip(ring.variables, x.degrees()[ring.room :], strict=True):
+            value = point[name] if power else Fraction()
+            at.append(flint.fmpq(value.numerator, value.denominator))
+        with working_precision(precision):
+            return flint.arb(x(*at))
     with working_precision(precision):
         exact = {
             name: flint.arb(flint.fmpq(at.numerator, at.denominator)) for name, at in point.items()

@@ -30,16 +30,27 @@ def embed(
 
     Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
-    levels = _levels(expressions)
-    powers = {node for node in _nodes(expressions) if isinstance(node, sympy.Pow)}
-    room = 6 * sum(len(level) for level in levels) + 4 * len(powers) + 2 * len(variables)
-    builder = _Builder(Ring(variables, room), _root_degrees(powers), most_terms)
-    try:
-        for level in levels:
-            builder.functions(level)
-        return builder.ring, [builder.element(e) for e in expressions]
-    except RingFullError as error:
-        raise InputError("formula", str(expressions[0]), f"is too involved: {error}") from None
+    nodes = _nodes(expressions)
+    levels = _levels(nodes)
+    powers = {node for node in nodes if node.is_Pow and not _is_natural(node.exp)}
+    functions, rest = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
+    # What is multiplied out is the faster the fewer generators there are, present or not: the
+    # usual number is tried first.
+    most = 6 * (functions + rest + len(variables))
+    usual = min(2 * functions + 2 * rest, most)
+    for room in (usual, most):
+        builder = _Builder(Ring(variables, room, spare=0), _root_degrees(powers), most_terms)
+        try:
+            for level in levels:
+                builder.functions(level)
+            return builder.ring, [builder.element(e) for e in expressions]
+        except RingFullError as error:
+            problem = f"is too involved: {error}"
+    raise InputError("formula", str(expressions[0]), problem)
+
+
+def _is_natural(exponent: sympy.Expr) -> bool:
+    return bool(exponent.is_Integer and exponent >= 0)
 
 
 def _nodes(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
@@ -63,8 +74,8 @@ def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
     return degrees
 
 
-def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
-    """The function applications in the expressions by depth of nesting, innermost first."""
+def _levels(nodes: set[sympy.Expr]) -> list[list[sympy.Expr]]:
+    """The function applications among the nodes by depth of nesting, innermost first."""
     depth: dict[sympy.Expr, int] = {}
 
     @cache
@@ -78,8 +89,10 @@ def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
             depth[node] = inner
         return inner
 
-    for expression in expressions:
-        visit(expression)
+    for node in nodes:
+        # sympy's own test for exp is slow; a polynomial needs none.
+        if not (node.is_Symbol or node.is_Rational or node.is_Add or node.is_Mul):
+            visit(node)
     top = max(depth.values(), default=0)
     return [
         sorted((e for e, d in depth.items() if d == level), key=sympy.default_sort_key)

@@ -1,5 +1,6 @@
 """A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,6 +15,8 @@ from verify.formula import parameter_name, parse, symbol, to_text
 from verify.generators import MAX_TERMS, embed
 from verify.ring import Poly, Ring
 from verify.substitution import substitute
+
+_MOST_KEPT = 2000  # terms of a bracket, beyond which it is made anew for each scheme
 
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
@@ -115,9 +118,24 @@ class Hamiltonian:
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
     ) -> tuple["VectorField", list[Poly]]:
         """The vector field of `exact`, and the other expressions as elements of its ring."""
-        variables = ("p", "q", "h", *self.symbols)
-        ring, elements = embed([self.exact, *others], variables, most_terms)
-        return VectorField.of(ring, elements[0]), elements[1:]
+        if not others and most_terms == MAX_TERMS:
+            return _field_of(self), []
+        return _embedded(self, others, most_terms)
+
+
+def _embedded(
+    hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
+) -> tuple["VectorField", list[Poly]]:
+    variables = ("p", "q", "h", *hamiltonian.symbols)
+    ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
+    return VectorField.of(ring, elements[0]), elements[1:]
+
+
+# Several schemes are proved for one H after another: what they share is made once. Few, since a
+# field keeps what was derived along it.
+@lru_cache(maxsize=8)
+def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
+    return _embedded(hamiltonian, (), MAX_TERMS)[0]
 
 
 @dataclass(frozen=True)
@@ -144,9 +162,29 @@ class VectorField:
             result.append(self.derive(result[-1]))
         return result
 
+    @cached_property
+    def _kept(self) -> "_Kept":
+        return _Kept(self)
+
+    def power(self, name: str, n: int) -> Poly:
+        """Xⁿ y of y = p or q, made once."""
+        return self._kept.power(name, n)
+
     def along(self, name: str, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y] of y = p or q."""
-        return self.powers(self.ring.variable(name), most)
+        """[y, X y, …, X^most y] of y = p or q, each made once."""
+        return [self._kept.power(name, n) for n in range(most + 1)]
+
+    def bracket_of_powers(self, k: int, m: int) -> Poly:
+        """∂(Xᵏp, Xᵐq)/∂(p, q)."""
+        return self._kept.bracket(k, m)
+
+    def truncated(self, eta: int) -> tuple[Poly, Poly]:
+        """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""
+        return self._kept.truncated(eta)
+
+    def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
+        """The η whose `truncated` these very objects are; None for any other elements."""
+        return self._kept.truncated_at(p_next, q_next)
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
         """∂(x, y)/∂(p, q)."""
@@ -156,3 +194,56 @@ class VectorField:
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""
         return self.ring.decide(self.ring.diff(self.h_p, "q")).zero is True
+
+
+class _Kept:
+    """The powers of X on p and q along a field, with their gradients and brackets, each made once.
+
+    By keys rather than in lists, so that two threads may make the same one.
+    """
+
+    def __init__(self, field: VectorField) -> None:
+        self.field = field
+        self._powers: dict[tuple[str, int], Poly] = {}
+        self._gradients: dict[tuple[str, int], tuple[Poly, Poly]] = {}
+        self._brackets: dict[tuple[int, int], Poly] = {}
+        self._truncated: dict[int, tuple[Poly, Poly]] = {}
+
+    def power(self, name: str, n: int) -> Poly:
+        if n == 0:
+            return self.field.ring.variable(name)
+        if (name, n) not in self._powers:
+            y_p, y_q = self.gradient(name, n - 1)
+            next_one = self.field.h_p * y_q - self.field.h_q * y_p
+            self._powers[name, n] = self.field.ring.reduce(next_one)
+        return self._powers[name, n]
+
+    def gradient(self, name: str, n: int) -> tuple[Poly, Poly]:
+        if (name, n) not in self._gradients:
+            diff, y = self.field.ring.diff, self.power(name, n)
+            self._gradients[name, n] = diff(y, "p"), diff(y, "q")
+        return self._gradients[name, n]
+
+    def bracket(self, k: int, m: int) -> Poly:
+        if (k, m) in self._brackets:
+            return self._brackets[k, m]
+        (x_p, x_q), (y_p, y_q) = self.gradient("p", k), self.gradient("q", m)
+        found = x_p * y_q - x_q * y_p
+        if len(found) <= _MOST_KEPT:
+            self._brackets[k, m] = found
+        return found
+
+    def truncated(self, eta: int) -> tuple[Poly, Poly]:
+        if eta not in self._truncated:
+            ring = self.field.ring
+            below = self.truncated(eta - 1) if eta else (ring.zero, ring.zero)
+            factor = ring.variable("h") ** eta / math.factorial(eta)
+            p, q = (x + factor * self.power(name, eta) for x, name in zip(below, "pq", strict=True))
+            self._truncated[eta] = p, q
+        return self._truncated[eta]
+
+    def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
+        for eta, (p, q) in self._truncated.items():
+            if p is p_next and q is q_next:
+                return eta
+        return None
