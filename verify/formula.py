@@ -6,6 +6,7 @@ parameter name), exact numbers, + − * / ** (also written ^), `pi`, and the fun
 """
 
 import ast
+import math
 import operator
 import re
 import warnings
@@ -159,6 +160,11 @@ def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str)
         raise InputError(source, text, f"is not defined: the root of {base} < 0")
 
 
+def _is_of_name(x: sympy.Expr) -> bool:
+    """Whether it is a name or a power of one with an integer exponent."""
+    return bool(x.is_Symbol or (x.is_Pow and x.base.is_Symbol and x.exp.is_Integer))
+
+
 class _Reader:
     """Turns one syntax tree into an expression; each method takes a node and its depth."""
 
@@ -263,11 +269,15 @@ class _Reader:
         value = self.read(first, depth + 1)
         if ast.Add in kinds:
             return self.finite(sympy.Add(value, *self.terms(chain, depth)))
-        for step in reversed(chain):
-            right = self.read(step.right, depth + 1)
-            if isinstance(step.op, ast.Div) and right.is_zero:
+        factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
+        if value.is_Rational and all(op is ast.Mult and _is_of_name(x) for op, x in factors):
+            # sympy remembers a product of names, and makes a number times it at once.
+            value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
+            return self.finite(-value if minus else value)
+        for op, right in factors:
+            if op is ast.Div and right.is_zero:
                 raise self.fail("division by zero")
-            value = _APPLY[type(step.op)](value, right)
+            value = _APPLY[op](value, right)
         return self.finite(-value if minus else value)
 
     def terms(self, chain: list[ast.BinOp], depth: int) -> Iterator[sympy.Expr]:

@@ -50,7 +50,7 @@ def embed(
 
 
 def _is_natural(exponent: sympy.Expr) -> bool:
-    return bool(exponent.is_Integer and exponent >= 0)
+    return bool(exponent.is_Integer and exponent.p >= 0)
 
 
 def _nodes(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
@@ -266,6 +266,8 @@ class _Builder:
     def power(self, node: sympy.Expr) -> Poly:
         base = self.element(node.base)
         n, degree = int(node.exp.p), int(node.exp.q)
+        if degree == 1 and n > 0 and node.base.is_Symbol:
+            return base**n
         if degree == 1:
             return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
         finest = self.root_degrees[node.base]

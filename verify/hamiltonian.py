@@ -1,6 +1,5 @@
 """A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -9,14 +8,13 @@ from typing import Any
 
 import sympy
 
+from verify.along import Along
 from verify.errors import InputError
 from verify.exact import Exact, rational, text
 from verify.formula import parameter_name, parse, symbol, to_text
 from verify.generators import MAX_TERMS, embed
 from verify.ring import Poly, Ring
 from verify.substitution import substitute
-
-_MOST_KEPT = 2000  # terms of a bracket, beyond which it is made anew for each scheme
 
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
@@ -67,6 +65,8 @@ class Hamiltonian:
                 raise InputError("parameter", name, f"H has no such parameter; it has: {known}")
             if value is not None:
                 given[name] = rational(value, f"parameter {name}")
+        if not given and not self.values:
+            return self
         return _with_values(self.expression, tuple(sorted(given.items())))
 
     @cached_property
@@ -163,8 +163,8 @@ class VectorField:
         return result
 
     @cached_property
-    def _kept(self) -> "_Kept":
-        return _Kept(self)
+    def _kept(self) -> Along:
+        return Along(self.ring, self.h_p, self.h_q)
 
     def power(self, name: str, n: int) -> Poly:
         """Xⁿ y of y = p or q, made once."""
@@ -174,9 +174,10 @@ class VectorField:
         """[y, X y, …, X^most y] of y = p or q, each made once."""
         return [self._kept.power(name, n) for n in range(most + 1)]
 
-    def bracket_of_powers(self, k: int, m: int) -> Poly:
-        """∂(Xᵏp, Xᵐq)/∂(p, q)."""
-        return self._kept.bracket(k, m)
+    def taylor(self, name: str, most: int) -> dict[int, Poly]:
+        """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
+        terms = {n: self._kept.term(name, n) for n in range(most + 1)}
+        return {n: x for n, x in terms.items() if x != 0}
 
     def truncated(self, eta: int) -> tuple[Poly, Poly]:
         """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""
@@ -186,6 +187,10 @@ class VectorField:
         """The η whose `truncated` these very objects are; None for any other elements."""
         return self._kept.truncated_at(p_next, q_next)
 
+    def delta_j(self, n: int, eta: int) -> Poly:
+        """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
+        return self._kept.delta_j(n, eta)
+
     def bracket(self, x: Poly, y: Poly) -> Poly:
         """∂(x, y)/∂(p, q)."""
         diff, multiply = self.ring.diff, self.ring.multiply
@@ -194,56 +199,3 @@ class VectorField:
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""
         return self.ring.decide(self.ring.diff(self.h_p, "q")).zero is True
-
-
-class _Kept:
-    """The powers of X on p and q along a field, with their gradients and brackets, each made once.
-
-    By keys rather than in lists, so that two threads may make the same one.
-    """
-
-    def __init__(self, field: VectorField) -> None:
-        self.field = field
-        self._powers: dict[tuple[str, int], Poly] = {}
-        self._gradients: dict[tuple[str, int], tuple[Poly, Poly]] = {}
-        self._brackets: dict[tuple[int, int], Poly] = {}
-        self._truncated: dict[int, tuple[Poly, Poly]] = {}
-
-    def power(self, name: str, n: int) -> Poly:
-        if n == 0:
-            return self.field.ring.variable(name)
-        if (name, n) not in self._powers:
-            y_p, y_q = self.gradient(name, n - 1)
-            next_one = self.field.h_p * y_q - self.field.h_q * y_p
-            self._powers[name, n] = self.field.ring.reduce(next_one)
-        return self._powers[name, n]
-
-    def gradient(self, name: str, n: int) -> tuple[Poly, Poly]:
-        if (name, n) not in self._gradients:
-            diff, y = self.field.ring.diff, self.power(name, n)
-            self._gradients[name, n] = diff(y, "p"), diff(y, "q")
-        return self._gradients[name, n]
-
-    def bracket(self, k: int, m: int) -> Poly:
-        if (k, m) in self._brackets:
-            return self._brackets[k, m]
-        (x_p, x_q), (y_p, y_q) = self.gradient("p", k), self.gradient("q", m)
-        found = x_p * y_q - x_q * y_p
-        if len(found) <= _MOST_KEPT:
-            self._brackets[k, m] = found
-        return found
-
-    def truncated(self, eta: int) -> tuple[Poly, Poly]:
-        if eta not in self._truncated:
-            ring = self.field.ring
-            below = self.truncated(eta - 1) if eta else (ring.zero, ring.zero)
-            factor = ring.variable("h") ** eta / math.factorial(eta)
-            p, q = (x + factor * self.power(name, eta) for x, name in zip(below, "pq", strict=True))
-            self._truncated[eta] = p, q
-        return self._truncated[eta]
-
-    def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
-        for eta, (p, q) in self._truncated.items():
-            if p is p_next and q is q_next:
-                return eta
-        return None

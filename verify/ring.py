@@ -108,7 +108,7 @@ class Ring:
         """The generators in x that are no variables, arguments apart."""
         if len(self.generators) == len(self.variables):
             return []
-        return [index for index, power in enumerate(x.degrees()[: self.room]) if power]
+        return [index for index, power in enumerate(x.degrees()[: self.room]) if power > 0]
 
     def in_variables(self, x: Poly) -> bool:
         """Whether x is a polynomial in the variables alone."""
@@ -155,7 +155,7 @@ class Ring:
         return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
-        return any(g.kind == "variable" and str(g.expression) == name for g in self.used(x))
+        return any(g.kind == "variable" and g.name == name for g in self.used(x))
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
         """x as a polynomial in one variable: {power: coefficient}, the coefficients non-zero.

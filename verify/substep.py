@@ -4,7 +4,6 @@
 u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels where it is in closed form.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -88,8 +87,7 @@ class Substep:
         """The coefficients in h of p' and q'; None where the map is no polynomial in h."""
         ring, pair = self.ring, (self.p_next, self.q_next)
         if self._eta is not None:
-            p, q = (self.field.along(name, self._eta) for name in ("p", "q"))
-            return _over_factorials(p), _over_factorials(q)
+            return self.field.taylor("p", self._eta), self.field.taylor("q", self._eta)
         if h_inside(ring, *pair):
             return None
         return ring.powers(pair[0], "h"), ring.powers(pair[1], "h")
@@ -124,6 +122,8 @@ class Substep:
         orders of a high scheme's ΔJ that vanish are seen without the thousands of terms of those
         that do not.
         """
+        if self._eta is not None:
+            return self.field.delta_j(n, self._eta)
         if n not in self._coefficients:
             total = -self.ring.one if n == 0 else self.ring.zero
             for k in range(n + 1):
@@ -137,10 +137,6 @@ class Substep:
 
     def _bracket(self, k: int, m: int) -> Poly:
         """∂(x, y)/∂(p, q) of the coefficients x of hᵏ in p' and y of hᵐ in q'."""
-        if self._eta is not None:
-            if max(k, m) > self._eta:
-                return 0
-            return self.field.bracket_of_powers(k, m) / (math.factorial(k) * math.factorial(m))
         x_p, x_q, y_p, y_q = self._gradients
         if k not in x_p or m not in y_p:
             return 0
@@ -175,10 +171,6 @@ class Substep:
         if degree is None:
             return ring.vanishes(self.delta_j) is True
         return all(ring.vanishes(self.coefficient(n)) is True for n in range(degree + 1))
-
-
-def _over_factorials(powers: Sequence[Poly]) -> dict[int, Poly]:
-    return {n: x / math.factorial(n) for n, x in enumerate(powers) if x != 0}
 
 
 def h_inside(ring: Ring, *elements: Poly) -> bool:

@@ -19,7 +19,7 @@ Draw = Callable[[random.Random], str]
 
 
 def number(rng: random.Random) -> str:
-    return f"{rng.choice((-1, 1)) * rng.randint(1, 99)}/{rng.randint(1, 99)}"
+    return f"{rng.choice((-1, 1)) * rng.randint(1, 9)}/{rng.randint(1, 9)}"
 
 
 def sparse(rng: random.Random) -> str:
