@@ -19,7 +19,6 @@ sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -31,8 +30,9 @@ import sympy
 from verify.decision import Decision as Decision
 from verify.decision import decided
 from verify.formula import symbol, to_text
-from verify.generator import Generator, rational_of, written
+from verify.generator import Generator, rational_of
 from verify.generator import Poly as Poly
+from verify.writing import as_expression, as_it_stands
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
@@ -179,26 +179,13 @@ class Ring:
 
     def expression(self, x: Poly) -> sympy.Expr:
         """x as an expression, its terms as they stand in the ring."""
-        terms = []
-        for monomial, coefficient in x.to_dict().items():
-            factors = [self._expression(k) ** int(n) for k, n in enumerate(monomial) if n]
-            terms.append(sympy.Mul(rational_of(coefficient), *factors))
-        return sympy.Add(*terms)
-
-    def _expression(self, index: int) -> sympy.Expr:
-        g = self._by_index[index]
-        if g.expression is not None:
-            return g.expression
-        if index not in self._written:
-            self._written[index] = written(g, self.expression(g.argument))
-        return self._written[index]
+        return as_expression(self, x, self._written)
 
     def text(self, x: Poly) -> str:
         """x as a formula: factored where it has few terms, else as it stands in the ring."""
         if len(x) <= _MOST_FACTORED:
             return to_text(self.factored(x))
-        made = {f"g{g.index}_": f"({to_text(g.expression)})" for g in self.generators}
-        return re.sub(r"\bg\d+_", lambda name: made[name[0]], str(x)).replace("^", "**")
+        return as_it_stands(self, x)
 
     def factored(self, x: Poly) -> sympy.Expr:
         """x as an expression, factored into irreducible polynomials in the generators."""
