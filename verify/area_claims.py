@@ -7,7 +7,8 @@ from verify.claims import AreaClaim, ConvergenceOrderClaim, OrderClaim
 from verify.exact_claims import step_map_of
 from verify.findings import Checks, Findings, result
 from verify.formula import to_text
-from verify.proof.order import MOST_ORDERS, convergence_of, leading_of
+from verify.proof.expansion import MOST_ORDERS
+from verify.proof.order import convergence_of, leading_of
 from verify.results import ClaimResult
 from verify.step_map import StepMap
 from verify.verdict import Verdict

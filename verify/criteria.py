@@ -16,7 +16,7 @@ from fractions import Fraction
 from math import log10
 
 from verify.balls import ball, precision, slope
-from verify.proof.order import MOST_ORDERS
+from verify.proof.expansion import MOST_ORDERS
 from verify.results import CriterionResult, ProofResult, RunResult
 from verify.verdict import Verdict
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +19,15 @@ _FAR_POINTS = 200
 def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) -> Any:
     """A ball (flint.arb) that contains x at the point, or None where x is not defined.
 
-    Leaves flint's global context as it was.
+    Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
     """
+    if ring.in_variables(x):
+        at = [flint.fmpq()] * ring.room
+        for name, power in zip(ring.variables, x.degrees()[ring.room :], strict=True):
+            value = point[name] if power > 0 else Fraction()  # the degree of 0 is −1
+            at.append(flint.fmpq(value.numerator, value.denominator))
+        with working_precision(precision):
+            return flint.arb(x(*at))
     with working_precision(precision):
         exact = {
             name: flint.arb(flint.fmpq(at.numerator, at.denominator)) for name, at in point.items()
@@ -39,7 +47,7 @@ def enclose_over(
         if g.index in values:
             pass
         elif g.kind == "variable":
-            values[g.index] = box[str(g.expression)]
+            values[g.index] = box[g.name]
         elif g.kind == "pi":
             values[g.index] = flint.arb.pi()
         elif g.kind == "solved":
@@ -100,13 +108,8 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
     Without a pattern that a formula could share, and of both signs, since a root or a logarithm
     may be defined on one side only, or far out; the same points in every call.
     """
-    primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
-    size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(len(names))]
-    signs = list(product((1, -1), repeat=min(len(names), 4))) or [()]
-    for scale in (Fraction(1), Fraction(1, 16)):
-        for sign in signs:
-            full = (*sign, *(1 for _ in names[len(sign) :]))
-            yield {n: scale * s * v for n, s, v in zip(names, full, size, strict=True)}
+    for values in _near(len(names)):
+        yield dict(zip(names, values, strict=True))
     state = 12345
     for count in range(_FAR_POINTS):
         point = {}
@@ -117,3 +120,17 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
             value = Fraction(state % 4096 + 1, 4096) * scale
             point[name] = value if state >> 29 & 1 else -value
         yield point
+
+
+@lru_cache(maxsize=16)
+def _near(count: int) -> list[tuple[Fraction, ...]]:
+    """So many coordinates of each of the first points."""
+    primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
+    size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(count)]
+    signs = list(product((1, -1), repeat=min(count, 4))) or [()]
+    found = []
+    for scale in (Fraction(1), Fraction(1, 16)):
+        for sign in signs:
+            full = (*sign, *(1 for _ in range(count - len(sign))))
+            found.append(tuple(scale * s * v for s, v in zip(full, size, strict=True)))
+    return found

@@ -19,7 +19,8 @@ from verify.errors import InputError
 from verify.findings import Checks, Findings, result
 from verify.formula import parse, symbol, to_text
 from verify.hamiltonian import Hamiltonian
-from verify.proof.order import Expansion, convergence_of
+from verify.proof.expansion import Expansion
+from verify.proof.order import convergence_of
 from verify.results import ClaimResult
 from verify.ring import Decision, Poly, Ring
 from verify.schemes import get

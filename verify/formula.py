@@ -6,10 +6,12 @@ parameter name), exact numbers, + − * / ** (also written ^), `pi`, and the fun
 """
 
 import ast
+import math
 import operator
 import re
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import sympy
@@ -41,18 +43,18 @@ NOT_SMOOTH = frozenset(
 )
 _NOT_NUMBERS = frozenset({"nan", "NaN", "inf", "Inf", "infinity", "Infinity", "oo"})
 RESERVED = frozenset({"p", "q", "h", "t", "pi", *FUNCTIONS, *NOT_SMOOTH, *_NOT_NUMBERS})
-_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo, sympy.AccumBounds)
+_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
 _NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
 _CHAINS = ((ast.Add, ast.Sub), (ast.Mult, ast.Div))
 _APPLY: dict[type, Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
+_SHORT = 18  # digits of a number that is surely within the limits
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 
 
+@lru_cache(maxsize=256)
 def symbol(name: str) -> sympy.Symbol:
     """The one symbol of that name: real, so that √(q²) is |q| and is seen not to be smooth."""
     return sympy.Symbol(name, real=True)
@@ -117,19 +119,38 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
 
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     """The expression itself, where it is finite, real, smooth and of bounded size."""
-    if result.has(*_INFINITE):
+    numbers, powers, others = _by_kind(result)
+    if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
-    if result.has(*_NOT_SMOOTH_NODES):
+    if any(isinstance(node, _NOT_SMOOTH_NODES) for node in others):
         raise InputError(source, text, "is not smooth: the root of an even power is |x|")
-    for number in result.atoms(sympy.Rational):
+    for number in numbers:
         if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
             raise InputError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
-    for power in result.atoms(sympy.Pow):
+    for power in powers:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             _check_power(power.base, power.exp, source, text)
-    if result.has(sympy.I) or any(f.args[0].is_nonpositive for f in result.atoms(sympy.log)):
+    logarithms = (node for node in others if isinstance(node, sympy.log))
+    if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
+
+
+def _by_kind(expression: sympy.Expr) -> tuple[list[Any], list[Any], list[Any]]:
+    """The rational numbers, the powers, and what is no sum, product or name, within it."""
+    numbers, powers, others = [], [], []
+    waiting = [expression]
+    while waiting:
+        node = waiting.pop()
+        if node.is_Rational:
+            numbers.append(node)
+            continue
+        if node.is_Pow:
+            powers.append(node)
+        elif not (node.is_Add or node.is_Mul or node.is_Symbol):
+            others.append(node)
+        waiting += node.args
+    return numbers, powers, others
 
 
 def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
@@ -137,6 +158,11 @@ def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str)
         raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
         raise InputError(source, text, f"is not defined: the root of {base} < 0")
+
+
+def _is_of_name(x: sympy.Expr) -> bool:
+    """Whether it is a name or a power of one with an integer exponent."""
+    return bool(x.is_Symbol or (x.is_Pow and x.base.is_Symbol and x.exp.is_Integer))
 
 
 class _Reader:
@@ -169,9 +195,11 @@ class _Reader:
 
     def number(self, node: ast.Constant) -> sympy.Expr:
         # The source text, not node.value: that is already a rounded float.
-        written = ast.get_source_segment(self.line, node) or ""
+        written = self.line[node.col_offset : node.end_col_offset]
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
             raise self.fail(f"{written!r} is not a number")
+        if written.isdecimal() and len(written) <= _SHORT:
+            return sympy.Integer(int(written))
         value = rational(written, self.source)
         return sympy.Rational(value.numerator, value.denominator)
 
@@ -239,12 +267,24 @@ class _Reader:
         else:
             minus = False
         value = self.read(first, depth + 1)
+        if ast.Add in kinds:
+            return self.finite(sympy.Add(value, *self.terms(chain, depth)))
+        factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
+        if value.is_Rational and all(op is ast.Mult and _is_of_name(x) for op, x in factors):
+            # sympy remembers a product of names, and makes a number times it at once.
+            value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
+            return self.finite(-value if minus else value)
+        for op, right in factors:
+            if op is ast.Div and right.is_zero:
+                raise self.fail("division by zero")
+            value = _APPLY[op](value, right)
+        return self.finite(-value if minus else value)
+
+    def terms(self, chain: list[ast.BinOp], depth: int) -> Iterator[sympy.Expr]:
+        """What a chain of + and − adds to its left end, summed at once as it may be long."""
         for step in reversed(chain):
             right = self.read(step.right, depth + 1)
-            if isinstance(step.op, ast.Div) and right.is_zero:
-                raise self.fail("division by zero")
-            value = _APPLY[type(step.op)](value, right)
-        return self.finite(-value if minus else value)
+            yield -right if isinstance(step.op, ast.Sub) else right
 
     def power(self, base: sympy.Expr, exponent: sympy.Expr) -> sympy.Expr:
         if not exponent.is_Rational:

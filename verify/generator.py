@@ -25,6 +25,12 @@ class Generator:
     argument: Poly = None
     degree: int = 1
 
+    @property
+    def name(self) -> str:
+        """Of a variable."""
+        assert self.kind == "variable"  # noqa: S101 - the caller looks at the kind
+        return str(self.expression.name)  # type: ignore[union-attr]
+
 
 def written(g: Generator, argument: sympy.Expr) -> sympy.Expr:
     """The generator's function of an expression."""

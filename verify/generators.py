@@ -6,20 +6,25 @@ sines (and of all exponentials) decide together over which basis they are expand
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache
 
 import flint
 import sympy
 
 from verify.errors import InputError
+from verify.functions_in import (
+    EXPONENTIAL,
+    OTHER,
+    TRIGONOMETRIC,
+    is_exponential_power,
+    is_natural,
+    levels_of,
+    subexpressions,
+)
 from verify.lattice import lattice
 from verify.ring import Poly, Ring, RingFullError
 
 MAX_TERMS = 20000
 _MOST_BITS = 12  # of a number under a root, before it is scaled
-_TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
-_EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
-_OTHER = (sympy.log, sympy.atan)
 _HYPERBOLIC = (sympy.sinh, sympy.cosh, sympy.tanh)
 
 
@@ -30,28 +35,23 @@ def embed(
 
     Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
-    levels = _levels(expressions)
-    powers = {node for node in _nodes(expressions) if isinstance(node, sympy.Pow)}
-    room = 6 * sum(len(level) for level in levels) + 4 * len(powers) + 2 * len(variables)
-    builder = _Builder(Ring(variables, room), _root_degrees(powers), most_terms)
-    try:
-        for level in levels:
-            builder.functions(level)
-        return builder.ring, [builder.element(e) for e in expressions]
-    except RingFullError as error:
-        raise InputError("formula", str(expressions[0]), f"is too involved: {error}") from None
-
-
-def _nodes(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
-    """All subexpressions, each once: a composition has the same ones in many places."""
-    seen: set[sympy.Expr] = set()
-    stack = list(expressions)
-    while stack:
-        node = stack.pop()
-        if node not in seen:
-            seen.add(node)
-            stack += node.args
-    return seen
+    nodes = subexpressions(expressions)
+    levels = levels_of(nodes)
+    powers = {node for node in nodes if node.is_Pow and not is_natural(node.exp)}
+    functions, rest = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
+    # What is multiplied out is the faster the fewer generators there are, present or not: the
+    # usual number is tried first.
+    most = 6 * (functions + rest + len(variables))
+    usual = min(2 * functions + 2 * rest, most)
+    for room in (usual, most):
+        builder = _Builder(Ring(variables, room, spare=0), _root_degrees(powers), most_terms)
+        try:
+            for level in levels:
+                builder.functions(level)
+            return builder.ring, [builder.element(e) for e in expressions]
+        except RingFullError as error:
+            problem = f"is too involved: {error}"
+    raise InputError("formula", str(expressions[0]), problem)
 
 
 def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
@@ -63,37 +63,8 @@ def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
     return degrees
 
 
-def _levels(expressions: Sequence[sympy.Expr]) -> list[list[sympy.Expr]]:
-    """The function applications in the expressions by depth of nesting, innermost first."""
-    depth: dict[sympy.Expr, int] = {}
-
-    @cache
-    def visit(node: sympy.Expr) -> int:
-        inner = max((visit(a) for a in node.args), default=0)
-        if _is_exponential_power(node):
-            inner = visit(sympy.log(node.base)) + 1
-            depth[node] = inner
-        elif isinstance(node, (*_TRIGONOMETRIC, *_EXPONENTIAL, *_OTHER)):
-            inner += 1
-            depth[node] = inner
-        return inner
-
-    for expression in expressions:
-        visit(expression)
-    top = max(depth.values(), default=0)
-    return [
-        sorted((e for e, d in depth.items() if d == level), key=sympy.default_sort_key)
-        for level in range(1, top + 1)
-    ]
-
-
-def _is_exponential_power(node: sympy.Expr) -> bool:
-    """Whether node is u**v as sympy writes exp(v log u), with v not a rational number."""
-    return bool(node.is_Pow and not isinstance(node, sympy.exp) and not node.exp.is_Rational)
-
-
 def _argument(function: sympy.Expr) -> sympy.Expr:
-    if _is_exponential_power(function):
+    if is_exponential_power(function):
         return function.exp * sympy.log(function.base)
     return function.args[0] if function.args else sympy.S.One  # e is exp(1)
 
@@ -119,11 +90,11 @@ class _Builder:
 
     def functions(self, level: Sequence[sympy.Expr]) -> None:
         """Generators for one level of functions, whose arguments are elements by now."""
-        self.family([f for f in level if isinstance(f, _TRIGONOMETRIC)], self.circle)
-        exponentials = [f for f in level if isinstance(f, _EXPONENTIAL) or f.is_Pow]
+        self.family([f for f in level if isinstance(f, TRIGONOMETRIC)], self.circle)
+        exponentials = [f for f in level if isinstance(f, EXPONENTIAL) or f.is_Pow]
         self.family(exponentials, self.exponential)
         for function in level:
-            if isinstance(function, _OTHER):
+            if isinstance(function, OTHER):
                 self.other(function)
 
     def family(
@@ -142,7 +113,7 @@ class _Builder:
             for k, b in enumerate(basis)
         ]
         for function, row in zip(functions, multiples, strict=True):
-            trigonometric = isinstance(function, _TRIGONOMETRIC)
+            trigonometric = isinstance(function, TRIGONOMETRIC)
             even, odd = ring.one, ring.zero
             for k, value in zip(row, values, strict=True):
                 c, s = value(k)
@@ -253,6 +224,8 @@ class _Builder:
     def power(self, node: sympy.Expr) -> Poly:
         base = self.element(node.base)
         n, degree = int(node.exp.p), int(node.exp.q)
+        if degree == 1 and n > 0 and node.base.is_Symbol:
+            return base**n
         if degree == 1:
             return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
         finest = self.root_degrees[node.base]

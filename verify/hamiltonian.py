@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy
 
+from verify.along import Along
 from verify.drawn import drawn_by
 from verify.errors import InputError
 from verify.exact import Exact, rational, text
@@ -66,6 +67,8 @@ class Hamiltonian:
                 raise InputError("parameter", name, f"H has no such parameter; it has: {known}")
             if value is not None:
                 given[name] = rational(value, f"parameter {name}")
+        if not given and not self.values:
+            return self
         return _with_values(self.expression, tuple(sorted(given.items())))
 
     @cached_property
@@ -132,9 +135,24 @@ class Hamiltonian:
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
     ) -> tuple["VectorField", list[Poly]]:
         """The vector field of `exact`, and the other expressions as elements of its ring."""
-        variables = ("p", "q", "h", *self.symbols)
-        ring, elements = embed([self.exact, *others], variables, most_terms)
-        return VectorField.of(ring, elements[0]), elements[1:]
+        if not others and most_terms == MAX_TERMS:
+            return _field_of(self), []
+        return _embedded(self, others, most_terms)
+
+
+def _embedded(
+    hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
+) -> tuple["VectorField", list[Poly]]:
+    variables = ("p", "q", "h", *hamiltonian.symbols)
+    ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
+    return VectorField.of(ring, elements[0]), elements[1:]
+
+
+# Several schemes are proved for one H after another: what they share is made once. Few, since a
+# field keeps what was derived along it.
+@lru_cache(maxsize=8)
+def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
+    return _embedded(hamiltonian, (), MAX_TERMS)[0]
 
 
 @dataclass(frozen=True)
@@ -161,9 +179,34 @@ class VectorField:
             result.append(self.derive(result[-1]))
         return result
 
+    @cached_property
+    def _kept(self) -> Along:
+        return Along(self.ring, self.h_p, self.h_q)
+
+    def power(self, name: str, n: int) -> Poly:
+        """Xⁿ y of y = p or q, made once."""
+        return self._kept.power(name, n)
+
     def along(self, name: str, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y] of y = p or q."""
-        return self.powers(self.ring.variable(name), most)
+        """[y, X y, …, X^most y] of y = p or q, each made once."""
+        return [self._kept.power(name, n) for n in range(most + 1)]
+
+    def taylor(self, name: str, most: int) -> dict[int, Poly]:
+        """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
+        terms = {n: self._kept.term(name, n) for n in range(most + 1)}
+        return {n: x for n, x in terms.items() if x != 0}
+
+    def truncated(self, eta: int) -> tuple[Poly, Poly]:
+        """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""
+        return self._kept.truncated(eta)
+
+    def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
+        """The η whose `truncated` these very objects are; None for any other elements."""
+        return self._kept.truncated_at(p_next, q_next)
+
+    def delta_j(self, n: int, eta: int) -> Poly:
+        """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
+        return self._kept.delta_j(n, eta)
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
         """∂(x, y)/∂(p, q)."""

@@ -18,35 +18,25 @@ Functions of sums are expanded over a basis of the lattice that their arguments 
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
-import re
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from itertools import islice
 from typing import Any
 
 import flint
 import sympy
 
-from verify.enclosure import enclose, points
+from verify.decision import Decision as Decision
+from verify.decision import decided
 from verify.formula import symbol, to_text
-from verify.generator import Generator, rational_of, written
+from verify.generator import Generator, rational_of
 from verify.generator import Poly as Poly
+from verify.writing import as_expression, as_it_stands
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
 _MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
-_FIRST_POINTS = 4
-_PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
-
-
-@dataclass(frozen=True)
-class Decision:
-    """Whether an element is zero: True, False or None (undecided), with the witness of False."""
-
-    zero: bool | None
-    witness: dict[str, Fraction] = field(default_factory=dict)
-    enclosure: str = ""
 
 
 def _occurring(x: Poly) -> list[int]:
@@ -60,9 +50,9 @@ class RingFullError(Exception):
 class Ring:
     """The ring of the given variables with room for `room` generators; see `generators.embed`."""
 
-    def __init__(self, variables: Sequence[str], room: int) -> None:
+    def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE) -> None:
         self.variables = tuple(variables)
-        self.room = room + _SPARE
+        self.room = room + spare
         names = [f"g{k}_" for k in range(self.room)]
         # Lexicographic with the newest generator first: relations then reduce to older ones.
         self.context = flint.fmpq_mpoly_ctx.get([*names, *self.variables], flint.Ordering.lex)
@@ -72,6 +62,7 @@ class Ring:
             for k, name in enumerate(self.variables)
         ]
         self._by_index = {g.index: g for g in self.generators}
+        self._at = {name: self.room + k for k, name in enumerate(self.variables)}
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
@@ -94,7 +85,7 @@ class Ring:
         return self.context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def variable(self, name: str) -> Poly:
-        return self._gens[self.room + self.variables.index(name)]
+        return self._gens[self._at[name]]
 
     def reduce(self, x: Poly) -> Poly:
         """The normal form of x modulo the relations, newest generator first."""
@@ -108,11 +99,20 @@ class Ring:
 
     def diff(self, x: Poly, name: str) -> Poly:
         """∂x/∂name in normal form, by the chain rule over the generators."""
-        total = x.derivative(self.room + self.variables.index(name))
-        for index, power in enumerate(x.degrees()[: self.room]):
-            if power:
-                total += x.derivative(index) * self._partial(index, name)
+        total = x.derivative(self._at[name])
+        for index in self._functions_in(x):
+            total += x.derivative(index) * self._partial(index, name)
         return self.reduce(total)
+
+    def _functions_in(self, x: Poly) -> list[int]:
+        """The generators in x that are no variables, arguments apart."""
+        if len(self.generators) == len(self.variables):
+            return []
+        return [index for index, power in enumerate(x.degrees()[: self.room]) if power > 0]
+
+    def in_variables(self, x: Poly) -> bool:
+        """Whether x is a polynomial in the variables alone."""
+        return not self._functions_in(x)
 
     def _partial(self, index: int, name: str) -> Poly:
         """The partial derivative of a generator; that of a stage has a name of its own, too."""
@@ -128,9 +128,8 @@ class Ring:
     def terms_of_diff(self, x: Poly, name: str) -> int:
         """A bound of the number of terms of ∂x/∂name, without making it."""
         total = len(x)
-        for index, power in enumerate(x.degrees()[: self.room]):
-            if power:
-                total += len(x.derivative(index)) * len(self._partial(index, name))
+        for index in self._functions_in(x):
+            total += len(x.derivative(index)) * len(self._partial(index, name))
         return total
 
     def used(self, *elements: Poly, solved: bool = True) -> list[Generator]:
@@ -156,44 +155,37 @@ class Ring:
         return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
-        return any(g.kind == "variable" and str(g.expression) == name for g in self.used(x))
+        return any(g.kind == "variable" and g.name == name for g in self.used(x))
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
         """x as a polynomial in one variable: {power: coefficient}, the coefficients non-zero.
 
         The caller sees to it that no generator in x depends on that variable.
         """
-        return self._split(x, self.room + self.variables.index(name))
+        return self.split(x, self._at[name])
 
-    def _split(self, x: Poly, at: int) -> dict[int, Poly]:
-        split: dict[int, dict[tuple[int, ...], Any]] = {}
-        for monomial, coefficient in x.to_dict().items():
-            rest = (*monomial[:at], 0, *monomial[at + 1 :])
-            split.setdefault(int(monomial[at]), {})[rest] = coefficient
-        return {power: self.context.from_dict(part) for power, part in split.items()}
+    def split(self, x: Poly, at: int) -> dict[int, Poly]:
+        """x as a polynomial in the generator of that index; `powers` for a variable.
+
+        By Taylor's theorem at 0, so that no term passes through Python.
+        """
+        found = {}
+        for power in range(x.degrees()[at] + 1):
+            part = x.subs({at: 0})
+            if part != 0:
+                found[power] = part / math.factorial(power)
+            x = x.derivative(at)
+        return found
 
     def expression(self, x: Poly) -> sympy.Expr:
         """x as an expression, its terms as they stand in the ring."""
-        terms = []
-        for monomial, coefficient in x.to_dict().items():
-            factors = [self._expression(k) ** int(n) for k, n in enumerate(monomial) if n]
-            terms.append(sympy.Mul(rational_of(coefficient), *factors))
-        return sympy.Add(*terms)
-
-    def _expression(self, index: int) -> sympy.Expr:
-        g = self._by_index[index]
-        if g.expression is not None:
-            return g.expression
-        if index not in self._written:
-            self._written[index] = written(g, self.expression(g.argument))
-        return self._written[index]
+        return as_expression(self, x, self._written)
 
     def text(self, x: Poly) -> str:
         """x as a formula: factored where it has few terms, else as it stands in the ring."""
         if len(x) <= _MOST_FACTORED:
             return to_text(self.factored(x))
-        made = {f"g{g.index}_": f"({to_text(g.expression)})" for g in self.generators}
-        return re.sub(r"\bg\d+_", lambda name: made[name[0]], str(x)).replace("^", "**")
+        return as_it_stands(self, x)
 
     def factored(self, x: Poly) -> sympy.Expr:
         """x as an expression, factored into irreducible polynomials in the generators."""
@@ -301,36 +293,13 @@ class Ring:
 
     def decide(self, x: Poly) -> Decision:
         """Whether x is the zero function; see the module's contract."""
+        return decided(self, self.reduce(x))
+
+    def vanishes(self, x: Poly) -> bool | None:
+        """`decide(x).zero`, without the witness where that is not needed for it."""
         x = self.reduce(x)
         if x == 0:
-            return Decision(True)
-        names = [str(g.expression) for g in self.used(x) if g.kind == "variable"]
-        # A point usually tells at once; clearing denominators can be long work.
-        found = self._witness(x, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
-        if found is None and self.clear_inverses(x) == 0:
-            return Decision(True)
-        for precision in _PRECISIONS:
-            found = found or self._witness(x, points(names), precision)
-        return found or Decision(None)
-
-    def _witness(
-        self, x: Poly, at: Iterable[dict[str, Fraction]], precision: int
-    ) -> Decision | None:
-        for point in at:
-            value = enclose(self, x, point, precision)
-            if value is not None and not value.contains(0):
-                return Decision(False, point, value.str(12))
-        return None
-
-    def clear_inverses(self, x: Poly) -> Poly:
-        """x times the powers of denominators that remove every inverse, in normal form."""
-        for g in reversed([g for g in self.generators if g.kind == "inverse"]):
-            parts = self._split(x, g.index)
-            highest = max(parts, default=0)
-            if highest:
-                total = self.zero
-                for power in range(highest + 1):  # Horner's rule in the denominator
-                    total = self.reduce(total * g.argument) if power else total
-                    total += parts.get(power, self.zero)
-                x = self.reduce(total)
-        return x
+            return True
+        if self.in_variables(x):
+            return False  # a polynomial that is not 0 is not the zero function
+        return decided(self, x).zero

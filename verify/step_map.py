@@ -2,12 +2,10 @@
 
 A map is a composition of substeps, each with its own exact closed form: one for the Lie-derivative
 scheme, two shears for symplectic Euler; or one in stages (see `verify.stages`), for a Runge–Kutta
-scheme. ΔJ of a substep is written with its increments u = p' − p, v = q' − q as
-u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels where it is in closed form, and 1 + ΔJ of
-the composition is the product along it.
+scheme; see `verify.substep`. 1 + ΔJ of the composition is the product along it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,8 +17,10 @@ from verify.errors import InputError
 from verify.formula import parse, symbol, to_text
 from verify.hamiltonian import Hamiltonian, VectorField
 from verify.ring import Poly, Ring
-from verify.series import Series, at_point, partials
+from verify.series import Series
 from verify.stages import chained
+from verify.substep import Substep as Substep
+from verify.substep import h_inside as h_inside
 
 Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
 P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
@@ -31,138 +31,6 @@ _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it s
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 _MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
-
-
-@dataclass(frozen=True)
-class Substep:
-    """(p, q) → (p', q') as elements of the ring of the Hamiltonian's vector field.
-
-    `conditions`: what is known exactly to suffice for ΔJ ≡ 0, for every H, where all of it holds;
-    for a map that is given by equations, whose ΔJ the ring does not decide.
-    """
-
-    field: VectorField
-    p_next: Poly
-    q_next: Poly
-    conditions: tuple[Condition, ...] = ()
-
-    @property
-    def ring(self) -> Ring:
-        return self.field.ring
-
-    @property
-    def increments(self) -> tuple[Poly, Poly]:
-        return (
-            self.p_next - self.ring.variable("p"),
-            self.q_next - self.ring.variable("q"),
-        )
-
-    @cached_property
-    def jacobian(self) -> tuple[Poly, Poly, Poly, Poly]:
-        """∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q."""
-        diff = self.ring.diff
-        return (
-            diff(self.p_next, "p"),
-            diff(self.p_next, "q"),
-            diff(self.q_next, "p"),
-            diff(self.q_next, "q"),
-        )
-
-    @property
-    def staged(self) -> bool:
-        """Whether it is made from stages that have names; see `verify.stages`."""
-        return any(g.kind == "stage" for g in self.ring.used(self.p_next, self.q_next))
-
-    @cached_property
-    def solved(self) -> bool:
-        """Whether it is given by equations; see `verify.solved`."""
-        return any(g.kind == "solved" for g in self.ring.used(self.p_next, self.q_next))
-
-    @cached_property
-    def delta_j(self) -> Poly:
-        a, u_q, v_p, d = self.jacobian
-        u_p, v_q = a - 1, d - 1
-        if self.staged:
-            u_p, u_q, v_p, v_q = map(self.ring.named, (u_p, u_q, v_p, v_q))
-        return self.ring.reduce(u_p + v_q + u_p * v_q - u_q * v_p)
-
-    @property
-    def length(self) -> int:
-        """How many terms there are in all its parts."""
-        used = self.ring.used(self.p_next, self.q_next)
-        arguments = [g.argument for g in used if g.argument is not None]
-        return sum(map(len, [self.p_next, self.q_next, *arguments]))
-
-    @property
-    def terms_of_delta_j(self) -> int:
-        """A bound of the number of terms that ΔJ has when it is written out."""
-        bound = self.ring.terms_of_diff
-        u_p, u_q = (bound(self.p_next, name) for name in ("p", "q"))
-        v_p, v_q = (bound(self.q_next, name) for name in ("p", "q"))
-        return u_p + v_q + u_p * v_q + u_q * v_p
-
-    @cached_property
-    def _by_powers(self) -> tuple[dict[int, Poly], ...] | None:
-        """J − 1 entry by entry as polynomials in h; None where the map is no polynomial in h."""
-        if h_inside(self.ring, self.p_next, self.q_next):
-            return None
-        a, b, c, d = self.jacobian
-        return tuple(self.ring.powers(x, "h") for x in (a - 1, b, c, d - 1))
-
-    @property
-    def degree(self) -> int | None:
-        """A bound on the degree of ΔJ in h; None where the map is no polynomial in h."""
-        if self._by_powers is None:
-            return None
-        return 2 * max(max(part, default=0) for part in self._by_powers)
-
-    def coefficient(self, n: int) -> Poly:
-        """The coefficient of hⁿ in ΔJ, of a map that is a polynomial in h.
-
-        By convolution of the entries' coefficients: the orders of a high scheme's ΔJ that vanish
-        are seen without the thousands of terms of those that do not.
-        """
-        assert self._by_powers is not None  # noqa: S101 - the caller looks at `degree`
-        u_p, u_q, v_p, v_q = self._by_powers
-        total = self.ring.zero
-        total += u_p.get(n, 0)
-        total += v_q.get(n, 0)
-        for k in range(n + 1):
-            for sign, x, y in ((1, u_p, v_q), (-1, u_q, v_p)):
-                if k in x and n - k in y:
-                    total += sign * x[k] * y[n - k]
-        return self.ring.reduce(total)
-
-    def taylor(self, p: Series, q: Series) -> tuple[Series, Series] | None:
-        """The substep's Taylor series in h at the point (p, q) + O(h) that is given by its series.
-
-        None where the map is no polynomial in h, or does not begin with (p, q).
-        """
-        ring, start = self.ring, [self.ring.variable(name) for name in ("p", "q")]
-        if h_inside(ring, self.p_next, self.q_next):
-            return None
-        u, v = (x - Series.of(ring, [y], x.most) for x, y in zip((p, q), start, strict=True))
-        result = []
-        for y, own in zip((self.p_next, self.q_next), start, strict=True):
-            powers = ring.powers(y, "h")
-            if powers.get(0) != own:
-                return None
-            total = Series.of(ring, [], p.most)
-            for n, x in powers.items():
-                if n <= p.most:
-                    total += at_point(partials(ring, x), u, v).shifted(n)
-            result.append(total)
-        return result[0], result[1]
-
-    @cached_property
-    def preserves_area(self) -> bool:
-        """True where ΔJ is shown to be the zero function."""
-        if self.conditions or self.solved:
-            return bool(self.conditions) and all(c.holds is True for c in self.conditions)
-        ring, degree = self.ring, self.degree
-        if degree is None:
-            return ring.decide(self.delta_j).zero is True
-        return all(ring.decide(self.coefficient(n)).zero is True for n in range(degree + 1))
 
 
 @dataclass(frozen=True)
@@ -351,9 +219,3 @@ def grouped(ring: Ring, x: Poly) -> sympy.Expr:
 def _by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Expr:
     """Σ hⁿ cₙ, each coefficient factored."""
     return sympy.Add(*(H_STEP**n * ring.factored(c) for n, c in sorted(coefficients.items())))
-
-
-def h_inside(ring: Ring, *elements: Poly) -> bool:
-    """Whether h occurs inside a generator, so that x is not a polynomial in h."""
-    arguments: Sequence[Poly] = [g.argument for g in ring.used(*elements) if g.argument is not None]
-    return any(ring.depends(a, "h") for a in arguments)

@@ -16,7 +16,8 @@ from verify.proof.order import prove
 from verify.property import Violation
 from verify.scene import scene_from
 from verify.schemes import get
-from verify.step_map import StepMap, Substep
+from verify.step_map import StepMap
+from verify.substep import Substep
 
 Patch = pytest.MonkeyPatch
 Plant = Callable[[Example, Patch], Example]

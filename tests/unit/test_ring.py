@@ -287,3 +287,31 @@ def test_deciding_leaves_every_global_precision_as_it_was(text: str) -> None:
     _, ring, x = embedded(text)
     ring.decide(ring.diff(x, "q"))
     assert (flint.ctx.prec, mpmath.mp.prec) == before
+
+
+POWERS = ["(p + 2*q - b)**3 + b", "a*b**2*sin(q)/(1 + q**2) + b - p", "0*b", "3"]
+VANISHING_OR_NOT = ["q - q", "sin(q)**2 + cos(q)**2 - 1", "p*q/10**30", "sin(q) - q", "3"]
+
+
+@pytest.mark.parametrize("text", POWERS)
+def test_an_element_is_the_sum_of_its_powers_of_a_variable(text: str) -> None:
+    ring, x = element(text)
+    powers = ring.powers(x, "b")
+    assert sum((ring.variable("b") ** n * part for n, part in powers.items()), ring.zero) == x
+    assert all(part != 0 and not ring.depends(part, "b") for part in powers.values())
+
+
+@pytest.mark.parametrize("text", VANISHING_OR_NOT)
+def test_what_vanishes_is_decided_as_with_a_witness(text: str) -> None:
+    ring, x = element(text)
+    assert ring.vanishes(x) is ring.decide(x).zero
+    assert ring.vanishes(x + ring.variable("q") / 10**30) is False
+
+
+def test_a_polynomial_is_evaluated_exactly() -> None:
+    ring, x = element("p**2*q/3 - a")
+    ball = enclose(ring, x, {"p": Fraction(1, 2), "q": Fraction(3), "a": Fraction(1, 8)}, 64)
+    assert ball == flint.arb(1) / 8
+    assert ball.rad() == 0
+    with pytest.raises(KeyError):
+        enclose(ring, x, {"p": Fraction(1), "q": Fraction(1)}, 64)

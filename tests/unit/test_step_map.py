@@ -1,5 +1,6 @@
 """Step maps: ΔJ against det J − 1 by other means, compositions, and users' own maps."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -291,3 +292,35 @@ def test_the_proof_for_an_involved_hamiltonian_ends(text: str) -> None:
         assert prove(scheme.step_map(Hamiltonian.parse(text)), scheme).convergence_order == 2
 
     assert outcome(work) in ("done", "InputError")
+
+
+# -- what a field has made of the flow --------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", [*POLYNOMIAL, "p**2/2 - cos(q)", "exp(p) + exp(-a*q)"])
+def test_coefficients_known_by_construction_are_those_that_are_split_off(text: str) -> None:
+    for eta in (1, 2, 3, 4):
+        (step,) = schemes.get(f"lie{eta}").step_map(Hamiltonian.parse(text)).substeps
+        # The same elements as other objects: nothing is known of them.
+        copied = replace(step, p_next=step.p_next + 0, q_next=step.q_next + 0)
+        assert step.field.truncated_at(step.p_next, step.q_next) == eta
+        assert step.field.truncated_at(copied.p_next, copied.q_next) is None
+        assert (step.terms, step.degree) == (copied.terms, copied.degree)
+        for n in range(2 * eta + 1):
+            assert step.coefficient(n) == copied.coefficient(n)
+
+
+@pytest.mark.parametrize("eta", [1, 2, 3, 4])
+def test_an_error_planted_in_a_lie_map_is_refuted_whatever_its_field_has_made(eta: int) -> None:
+    scheme, h = schemes.get(f"lie{eta}"), Hamiltonian.parse("p**2/2 + q**4/4")
+    right = scheme.step_map(h)
+    assert prove(right, scheme).verdict is Verdict.PROVED
+    (step,) = right.substeps
+    slip = step.ring.variable("h") ** eta * step.ring.variable("p") / 10**20
+    for wrong in (
+        replace(step, p_next=step.p_next + slip),
+        replace(step, q_next=step.q_next - slip),
+        replace(step, p_next=step.field.truncated(eta - 1)[0]),
+    ):
+        proof = prove(StepMap(h, (wrong,)), scheme)
+        assert (proof.verdict, proof.convergence_order) == (Verdict.REFUTED, eta - 1)

@@ -51,7 +51,7 @@ from functools import lru_cache
 
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
-from verify.proof.order import Expansion
+from verify.proof.expansion import Expansion
 from verify.proof.telescoping import potential_of_lie
 from verify.ring import Poly, Ring
 from verify.schemes import get

@@ -5,25 +5,22 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
 
 import sympy
 
 from verify.conditions import Condition
-from verify.errors import InputError
-from verify.formula import checked
 from verify.generators import embed
 from verify.hamiltonian import VectorField
+from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_left
 from verify.ring import Decision, Poly, Ring
 from verify.scheme import Scheme
 from verify.series import Series, delta_j
-from verify.step_map import H_STEP, StepMap, h_inside
+from verify.step_map import StepMap
 from verify.verdict import Verdict
 
-MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
 _FIRST_ORDERS = 6  # of them, those that are made at once
 
 
@@ -42,7 +39,7 @@ class Proof:
     verdict: Verdict
     reason: str
     order: int | None
-    first: "Leading"
+    first: Leading
     area_preserving: bool | None
     convergence_order: int | None
     step_map: StepMap = field(repr=False, compare=False)
@@ -71,84 +68,6 @@ class Proof:
         from verify.notebook import proof_latex
 
         return proof_latex(self)
-
-
-@dataclass(frozen=True)
-class Leading:
-    """The first coefficient in h that is not shown to vanish: of h^`power`, as a ring's element.
-
-    `decision.zero` is False at a proved leading term, None at an undecided one, and True where
-    every coefficient vanishes (`power` is None then). False with `power` None: ΔJ is not zero, but
-    its leading term lies beyond the orders looked at.
-    """
-
-    power: int | None
-    decision: Decision
-    element: tuple[Ring, Poly] | None = None
-
-    @cached_property
-    def coefficient(self) -> sympy.Expr:
-        """As an expression; 0 where there is none."""
-        if self.element is None:
-            return sympy.S.Zero
-        ring, x = self.element
-        return ring.factored(x)
-
-    @property
-    def text(self) -> str:
-        """As a formula."""
-        if self.element is None:
-            return "0"
-        ring, x = self.element
-        return ring.text(x)
-
-
-_VANISHES = Leading(None, Decision(True))
-
-
-class Expansion:
-    """The Taylor coefficients in h, at h = 0, of a ring element."""
-
-    def __init__(self, ring: Ring, x: Poly) -> None:
-        self.ring = ring
-        self.polynomial = not h_inside(ring, x)
-        self._powers = ring.powers(x, "h") if self.polynomial else {}
-        self._derivatives = [x]
-
-    @property
-    def length(self) -> int:
-        """How many coefficients there are to look at."""
-        return max(self._powers, default=0) + 1 if self.polynomial else MOST_ORDERS + 1
-
-    def coefficient(self, n: int) -> tuple[Ring, Poly]:
-        """The coefficient of hⁿ, with the ring that it is an element of."""
-        if self.polynomial:
-            return self.ring, self._powers.get(n, self.ring.zero)
-        while len(self._derivatives) <= n:
-            self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
-        value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
-        try:
-            checked(value, "map", str(value))
-        except InputError as error:
-            raise InputError("map", error.value, "is not smooth in h at h = 0") from None
-        ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
-        return ring, x
-
-    def leading(self) -> Leading:
-        found = _first(self.coefficient, self.length)
-        if found is None and not self.polynomial:
-            return Leading(self.length, Decision(None))
-        return found or _VANISHES
-
-
-def _first(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
-    """The first of the coefficients that is not shown to vanish; None where all are."""
-    for n in range(length):
-        ring, x = coefficient(n)
-        decision = ring.decide(x)
-        if decision.zero is not True:
-            return Leading(n, decision, (ring, x))
-    return None
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
@@ -213,30 +132,30 @@ class _BySeries:
 def leading_of(step_map: StepMap) -> Leading:
     """The first coefficient in h of ΔJ that is not shown to vanish."""
     if step_map.preserves_area:
-        return _VANISHES
+        return VANISHES
     series = _BySeries(step_map)
     if series.usable:
         return _leading_by(series, step_map)
     step = step_map.flat
     if step.preserves_area:
-        return _VANISHES
+        return VANISHES
     if step.degree is None:
         leading = Expansion(step.ring, step.delta_j).leading()
         if leading.decision.zero is None and leading.power == MOST_ORDERS + 1:
             # All coefficients looked at vanish; ΔJ itself may still be shown not to.
             return Leading(None, step.ring.decide(step.delta_j))
         return leading
-    found = _first(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
-    return found or _VANISHES
+    found = first_left(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
+    return found or VANISHES
 
 
 def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
-    found = _first(series.of_delta_j, MOST_ORDERS + 1)
+    found = first_left(series.of_delta_j, MOST_ORDERS + 1)
     if found is not None:
         return found
     whole = step_map.whole
     if whole.preserves_area:
-        return _VANISHES
+        return VANISHES
     if step_map.solved:
         return Leading(MOST_ORDERS + 1, Decision(None))
     decision = whole.ring.decide(whole.delta_j)
@@ -266,15 +185,15 @@ def convergence_of(step_map: StepMap) -> Convergence:
     if series.usable:
         return _convergence_by(series)
     step = step_map.flat
-    ring = step.ring
-    pairs = [(step.p_next, ring.variable("p")), (step.q_next, ring.variable("q"))]
-    expansions = [(Expansion(ring, x), [y]) for x, y in pairs]
-    most = max(MOST_ORDERS, *(e.length for e, _ in expansions))
+    ring, names = step.ring, ("p", "q")
+    expansions = [
+        Expansion(ring, x, terms)
+        for x, terms in zip((step.p_next, step.q_next), step.terms or (None, None), strict=True)
+    ]
+    most = max(MOST_ORDERS, *(e.length for e in expansions))
     for n in range(most + 1):
-        for expansion, flow in expansions:
-            if n == len(flow):
-                flow.append(step.field.derive(flow[-1]))
-            agrees = _agrees(expansion, n, ring, flow[n])
+        for expansion, name in zip(expansions, names, strict=True):
+            agrees = _agrees(expansion, n, ring, step.field.power(name, n))
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)
     return Convergence(None, True)
@@ -286,7 +205,7 @@ def _convergence_by(series: _BySeries) -> Convergence:
         field, own = series.coefficients(n)
         flow = own if flow is None else (field.derive(flow[0]), field.derive(flow[1]))
         for x, y in zip(own, flow, strict=True):
-            agrees = field.ring.decide(x - y / math.factorial(n)).zero
+            agrees = field.ring.vanishes(x - y / math.factorial(n))
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)
     return Convergence(None, True)
@@ -296,10 +215,10 @@ def _agrees(expansion: Expansion, n: int, ring: Ring, flow: Poly) -> bool | None
     """Whether the coefficient of hⁿ is `flow`/n!; None where that is not decided."""
     own, x = expansion.coefficient(n)
     if own is ring:
-        return ring.decide(x - flow / math.factorial(n)).zero
+        return ring.vanishes(x - flow / math.factorial(n))
     gap = own.expression(x) - ring.expression(flow) / math.factorial(n)
     common, (difference,) = embed([gap], ring.variables)
-    return common.decide(difference).zero
+    return common.vanishes(difference)
 
 
 def _verdict(

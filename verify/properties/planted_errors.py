@@ -4,7 +4,8 @@ from verify.errors import InputError
 from verify.example import Example
 from verify.proof.order import prove
 from verify.property import Violation
-from verify.step_map import StepMap, Substep
+from verify.step_map import StepMap
+from verify.substep import Substep
 from verify.verdict import Verdict
 
 

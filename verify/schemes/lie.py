@@ -8,13 +8,11 @@ it with L_{−H_q} p = −H_q = X p and L_{H_p} q = H_p = X q (where the paper w
 series of the flow, cut off after h^η.
 """
 
-import math
 import re
 
 from verify.errors import InputError
 from verify.generic import TaylorSeries
 from verify.hamiltonian import Hamiltonian
-from verify.ring import Poly
 from verify.scheme import Scheme
 from verify.step_map import StepMap, Substep
 
@@ -52,12 +50,4 @@ def eta_of(name: str) -> int | None:
 def lie_map(hamiltonian: Hamiltonian, eta: int) -> StepMap:
     """The step map of lieη, exact, for any H."""
     field, _ = hamiltonian.field()
-    ring = field.ring
-    h = ring.variable("h")
-
-    def series(y: Poly) -> Poly:
-        terms = field.powers(y, eta)
-        return sum((h**n * x / math.factorial(n) for n, x in enumerate(terms)), ring.zero)
-
-    step = Substep(field, series(ring.variable("p")), series(ring.variable("q")))
-    return StepMap(hamiltonian, (step,))
+    return StepMap(hamiltonian, (Substep(field, *field.truncated(eta)),))

@@ -1,0 +1,57 @@
+"""Which functions and powers expressions are made of, innermost first."""
+
+from collections.abc import Sequence
+from functools import cache
+
+import sympy
+
+TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
+EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
+OTHER = (sympy.log, sympy.atan)
+
+
+def subexpressions(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
+    """All subexpressions, each once: a composition has the same ones in many places."""
+    seen: set[sympy.Expr] = set()
+    stack = list(expressions)
+    while stack:
+        node = stack.pop()
+        if node not in seen:
+            seen.add(node)
+            stack += node.args
+    return seen
+
+
+def levels_of(nodes: set[sympy.Expr]) -> list[list[sympy.Expr]]:
+    """The function applications among the nodes by depth of nesting, innermost first."""
+    depth: dict[sympy.Expr, int] = {}
+
+    @cache
+    def visit(node: sympy.Expr) -> int:
+        inner = max((visit(a) for a in node.args), default=0)
+        if is_exponential_power(node):
+            inner = visit(sympy.log(node.base)) + 1
+            depth[node] = inner
+        elif isinstance(node, (*TRIGONOMETRIC, *EXPONENTIAL, *OTHER)):
+            inner += 1
+            depth[node] = inner
+        return inner
+
+    for node in nodes:
+        # sympy's own test for exp is slow; a polynomial needs none.
+        if not (node.is_Symbol or node.is_Rational or node.is_Add or node.is_Mul):
+            visit(node)
+    top = max(depth.values(), default=0)
+    return [
+        sorted((e for e, d in depth.items() if d == level), key=sympy.default_sort_key)
+        for level in range(1, top + 1)
+    ]
+
+
+def is_exponential_power(node: sympy.Expr) -> bool:
+    """Whether node is u**v as sympy writes exp(v log u), with v not a rational number."""
+    return bool(node.is_Pow and not isinstance(node, sympy.exp) and not node.exp.is_Rational)
+
+
+def is_natural(exponent: sympy.Expr) -> bool:
+    return bool(exponent.is_Integer and exponent.p >= 0)

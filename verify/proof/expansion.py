@@ -1,0 +1,100 @@
+"""The Taylor coefficients in h of a ring element, and the first of them that does not vanish."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy
+
+from verify.errors import InputError
+from verify.formula import checked
+from verify.generators import embed
+from verify.ring import Decision, Poly, Ring
+from verify.step_map import H_STEP
+from verify.substep import h_inside
+
+MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
+
+
+@dataclass(frozen=True)
+class Leading:
+    """The first coefficient in h that is not shown to vanish: of h^`power`, as a ring's element.
+
+    `decision.zero` is False at a proved leading term, None at an undecided one, and True where
+    every coefficient vanishes (`power` is None then). False with `power` None: ΔJ is not zero, but
+    its leading term lies beyond the orders looked at.
+    """
+
+    power: int | None
+    decision: Decision
+    element: tuple[Ring, Poly] | None = None
+
+    @cached_property
+    def coefficient(self) -> sympy.Expr:
+        """As an expression; 0 where there is none."""
+        if self.element is None:
+            return sympy.S.Zero
+        ring, x = self.element
+        return ring.factored(x)
+
+    @property
+    def text(self) -> str:
+        """As a formula."""
+        if self.element is None:
+            return "0"
+        ring, x = self.element
+        return ring.text(x)
+
+
+VANISHES = Leading(None, Decision(True))
+
+
+class Expansion:
+    """The Taylor coefficients in h, at h = 0, of a ring element.
+
+    `terms`: those that are not 0, where the element is known to be a polynomial in h.
+    """
+
+    def __init__(self, ring: Ring, x: Poly, terms: Mapping[int, Poly] | None = None) -> None:
+        self.ring = ring
+        if terms is None and not h_inside(ring, x):
+            terms = ring.powers(x, "h")
+        self.polynomial = terms is not None
+        self._powers = terms or {}
+        self._derivatives = [x]
+
+    @property
+    def length(self) -> int:
+        """How many coefficients there are to look at."""
+        return max(self._powers, default=0) + 1 if self.polynomial else MOST_ORDERS + 1
+
+    def coefficient(self, n: int) -> tuple[Ring, Poly]:
+        """The coefficient of hⁿ, with the ring that it is an element of."""
+        if self.polynomial:
+            return self.ring, self._powers.get(n, self.ring.zero)
+        while len(self._derivatives) <= n:
+            self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
+        value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
+        try:
+            checked(value, "map", str(value))
+        except InputError as error:
+            raise InputError("map", error.value, "is not smooth in h at h = 0") from None
+        ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
+        return ring, x
+
+    def leading(self) -> Leading:
+        found = first_left(self.coefficient, self.length)
+        if found is None and not self.polynomial:
+            return Leading(self.length, Decision(None))
+        return found or VANISHES
+
+
+def first_left(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
+    """The first of the coefficients that is not shown to vanish; None where all are."""
+    for n in range(length):
+        ring, x = coefficient(n)
+        decision = ring.decide(x)
+        if decision.zero is not True:
+            return Leading(n, decision, (ring, x))
+    return None
