@@ -4,7 +4,7 @@ import os
 import signal
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from tests.unit.sent import killed, killed_once, process, square, wrong
 from tests.unit.test_execute import CONTENT, kept_in, plain
 from tests.unit.test_scene import DUFFING, load
 from verify import cluster as clusters
+from verify import executors
 from verify.cluster import connected
 from verify.errors import InputError, PlaceError
 from verify.execute import execute
@@ -59,7 +60,7 @@ def right(found: list[tuple[str, int]], count: int) -> bool:
     return sorted(found) == sorted((str(k), k * k) for k in range(count))
 
 
-def collect(found: list[tuple[str, int]], address: str, calls: list[Call]) -> None:
+def collect(found: list[tuple[str, int]], address: str, calls: Iterable[Call]) -> None:
     with opened(Where(cluster=address)) as place:
         for each in performed(place, calls):
             found.append(each)
@@ -204,6 +205,39 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
     assert {file: file.read_bytes() for file in before} == before
     assert provenance(folder).kept == len(before)
     assert findings(folder) == findings(whole)
+
+
+@pytest.mark.parametrize(
+    ("gone", "said"),
+    [
+        ("workers", "has had no worker for a minute"),
+        ("scheduler", "is gone, or has been restarted"),
+    ],
+)
+def test_a_cluster_that_ends_is_told_and_not_waited_for(
+    monkeypatch: pytest.MonkeyPatch, gone: str, said: str
+) -> None:
+    monkeypatch.setattr(clusters, "_LOOK", 0.1)
+    monkeypatch.setattr(clusters, "_FORSAKEN", 0.3)
+    monkeypatch.setattr(executors, "_LOOK", 0.1)
+    found: list[tuple[str, int]] = []
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0"
+    ) as made:
+        calls = (Call(name, square, (3, seconds)) for name, seconds in _ending(made, gone, found))
+        with pytest.raises(PlaceError, match=said):
+            collect(found, made.scheduler_address, calls)
+    assert found[0] == ("0", 9), "what was finished is not lost"
+
+
+def _ending(cluster: Any, gone: str, found: list[Any]) -> Iterator[tuple[str, float]]:
+    """Names and seconds of calls; with the first result there, the cluster ends."""
+    for k in range(100):
+        if found and gone == "workers":
+            cluster.scale(0)
+        elif found:
+            cluster.close()
+        yield str(k), 0.2
 
 
 # -- addresses ------------------------------------------------------------------------------------
