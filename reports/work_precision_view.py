@@ -115,7 +115,7 @@ def _computed(found: WorkPrecisionResult) -> str:
     return (
         f"Reference: {found.reference}, its bound estimated by a second evaluation with more "
         "digits. "
-        f"Run times: {found.clock}, the least and the median of "
+        f"Run times: {found.clock} on {found.machine}, the least and the median of "
         f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
         "takes is subtracted, compilation is apart. The loops are compiled and step the state "
         f"alone. A point is limited by rounding where that may be more than "

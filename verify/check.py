@@ -12,6 +12,7 @@ from verify.claims import EXACT, Claim
 from verify.claims_file import ClaimsFile
 from verify.errors import InputError
 from verify.execute import Done, Store, execute
+from verify.executors import ANYWHERE, Where
 from verify.findings import Findings
 from verify.perform import Result
 from verify.planned import Plan
@@ -28,7 +29,7 @@ class Check:
     known: dict[str, Result]
 
     def run(
-        self, store: Store, *, workers: int | None = None, done: Done | None = None
+        self, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
     ) -> list[ClaimResult]:
         """Each claim's verdict, in their order. InputError names the claim and its line.
 
@@ -38,7 +39,7 @@ class Check:
         exact = [isinstance(claim, EXACT) for claim in self.claims]
         for claim in compress(self.claims, exact):
             found[claim.id] = self._judge(claim, {})
-        results = execute(self.plan, store, workers=workers, done=done)
+        results = execute(self.plan, store, where=where, done=done)
         for claim in compress(self.claims, map(not_, exact)):
             found[claim.id] = self._judge(claim, {**self.known, **results})
         return [found[claim.id] for claim in self.claims]

@@ -3,7 +3,7 @@
 import os
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,9 +15,12 @@ from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
 from verify.cli_stability import stability
-from verify.cli_tasks import json_option, told, workers_option
-from verify.errors import InputError
+from verify.cli_tasks import json_option, told, with_where
+from verify.errors import InputError, PlaceError
 from verify.show_plan import print_plan
+
+if TYPE_CHECKING:
+    from verify.executors import Where
 
 INTERRUPTED = 130
 BAD_INPUT = 2
@@ -197,10 +200,10 @@ def plan(scene: str, as_json: bool) -> None:
     help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
     "repository; given twice, both.",
 )
-@workers_option
+@with_where
 @json_option
 def report(
-    scene: str, output: Path | None, formats: tuple[str, ...], workers: int | None, as_json: bool
+    scene: str, output: Path | None, formats: tuple[str, ...], where: "Where", as_json: bool
 ) -> None:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
@@ -230,7 +233,7 @@ def report(
             claim_scenes=claim_scenes,
             figures=file.figures if file else (),
             plan=planned,
-            workers=workers,
+            where=where,
             done=done,
         )
     written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
@@ -255,11 +258,14 @@ def _writer(name: str) -> Any:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line and exit: 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
+    """Run the command line and exit.
+
+    0 done, 1 a check failed, 2 bad input or workers lost, 130 interrupted.
+    """
     try:
         cli.main(args=arguments, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
-    except InputError as error:
+    except (InputError, PlaceError) as error:
         _fail(str(error))
     except click.ClickException as error:
         _fail(error.format_message())

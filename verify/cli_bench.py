@@ -1,5 +1,6 @@
 """The command `verify bench`: error against run time of one scene."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -7,11 +8,13 @@ import click
 
 from verify import show_bench
 from verify.cli_input import target
+from verify.cli_tasks import cluster_option
 from verify.errors import InputError
 from verify.show import print_json
 
 if TYPE_CHECKING:
     from verify.scene import Scene
+    from verify.tasks import WorkPrecisionTask
     from verify.work_precision_results import WorkPrecisionResult
 
 
@@ -20,8 +23,9 @@ if TYPE_CHECKING:
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw it there."
 )
+@cluster_option
 @click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
-def bench(scene: str, output: Path | None, as_json: bool) -> None:
+def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -> None:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 
     \b
@@ -33,7 +37,7 @@ def bench(scene: str, output: Path | None, as_json: bool) -> None:
     asked = [each for each in scenes if each.work_precision]
     if not asked:
         raise InputError("scene", scene, "has no [work_precision]")
-    found = [(each.name, _measured(each)) for each in asked]
+    found = list(_measured(asked) if cluster is None else _measured_there(asked, cluster))
     for name, result in found:
         if output is not None:
             several = len(found) > 1
@@ -44,18 +48,36 @@ def bench(scene: str, output: Path | None, as_json: bool) -> None:
         print_json(show_bench.bench_json(found))
 
 
-def _measured(scene: "Scene") -> "WorkPrecisionResult":
+def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
     from verify import peers
     from verify.progress import progress_bar
-    from verify.section_plan import work_precision_task
     from verify.work_precision import work_precision
 
+    for scene in scenes:
+        task = _task(scene)
+        total = len(task.schemes) * len(task.step_sizes)
+        total += sum(len(peers.get(name).TOLERANCES) for name in task.peers)
+        with progress_bar(f"{scene.name}, errors", total, unit="") as advance:
+            yield scene.name, work_precision(scene.exact_hamiltonian(), task, advance)
+
+
+def _measured_there(
+    scenes: "list[Scene]", cluster: str
+) -> "Iterator[tuple[str, WorkPrecisionResult]]":
+    """On the cluster, one after another: the times are of the machine that each result names."""
+    from verify.executors import Call, Where, opened, performed
+    from verify.perform import perform
+
+    calls = [Call(each.name, perform, (_task(each),), f"scene {each.name}") for each in scenes]
+    with opened(Where(cluster=cluster)) as place:
+        yield from performed(place, calls, one_by_one=True)
+
+
+def _task(scene: "Scene") -> "WorkPrecisionTask":
+    from verify.section_plan import work_precision_task
+
     assert scene.work_precision is not None  # noqa: S101 - the caller's condition
-    task = work_precision_task(scene, scene.work_precision)
-    total = len(task.schemes) * len(task.step_sizes)
-    total += sum(len(peers.get(name).TOLERANCES) for name in task.peers)
-    with progress_bar(f"{scene.name}, errors", total, unit="") as advance:
-        return work_precision(scene.exact_hamiltonian(), task, advance)
+    return work_precision_task(scene, scene.work_precision)
 
 
 def _draw(result: "WorkPrecisionResult", path: Path) -> None:

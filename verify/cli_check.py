@@ -11,6 +11,7 @@ from verify.cli_input import paper_folder, writable
 from verify.cli_tasks import told, with_tasks
 
 if TYPE_CHECKING:
+    from verify.executors import Where
     from verify.results import ClaimResult
 
 REFUTED = 1  # exit status
@@ -23,7 +24,7 @@ REFUTED = 1  # exit status
 )
 @with_tasks
 def check(
-    claims: str, only: tuple[str, ...], keep: Path | None, workers: int | None, as_json: bool
+    claims: str, only: tuple[str, ...], keep: Path | None, where: "Where", as_json: bool
 ) -> None:
     """Check the claims in CLAIMS (a TOML file, or `paper`); exit status 1 where one is refuted.
 
@@ -70,7 +71,7 @@ def check(
     if keep is not None:
         writable(keep)
     with told(prepared.plan.tasks, keep) as done:
-        found = prepared.run(Store(keep), workers=workers, done=done)
+        found = prepared.run(Store(keep), where=where, done=done)
     if as_json:
         keys = {"id", "kind", "source", "statement", "verdict", "evidence"}
         show.print_json({"claims": [c.model_dump(mode="json", include=keys) for c in found]})

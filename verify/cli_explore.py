@@ -13,6 +13,7 @@ from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
+    from verify.executors import Where
     from verify.explore_results import ExploreReport
 
 FAILED = 1  # exit status
@@ -68,7 +69,7 @@ def explore(
     steps: int,
     output: Path,
     keep: Path | None,
-    workers: int | None,
+    where: "Where",
     as_json: bool,
 ) -> None:
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
@@ -99,7 +100,7 @@ def explore(
     if maximise is not None:
         if claims or names:
             raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
-        hunt(maximise, seed, examples, steps, drawn, output, keep, workers, as_json)
+        hunt(maximise, seed, examples, steps, drawn, output, keep, where, as_json)
         return
     asked = Exploration(
         seed=seed,
@@ -111,7 +112,7 @@ def explore(
         writable(keep)
     earlier = found_earlier(output) if output.is_dir() else []
     with told(asked.plan().tasks, keep) as done:
-        report = explore(asked, Store(keep), workers=workers, done=done, earlier=earlier)
+        report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)
     written = keep_found(report, output)
     if as_json:
         show.print_json(_as_json(report, written))

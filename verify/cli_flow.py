@@ -13,6 +13,7 @@ from verify.errors import InputError
 from verify.exact import short
 
 if TYPE_CHECKING:
+    from verify.executors import Where
     from verify.flow_results import FlowImage, FlowResult
 
 NO_RESULT = 1  # exit status
@@ -21,7 +22,7 @@ NO_RESULT = 1  # exit status
 @click.command()
 @click.argument("scene", metavar="SCENE")
 @with_tasks
-def flow(scene: str, keep: Path | None, workers: int | None, as_json: bool) -> None:
+def flow(scene: str, keep: Path | None, where: "Where", as_json: bool) -> None:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
     SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
@@ -46,7 +47,7 @@ def flow(scene: str, keep: Path | None, workers: int | None, as_json: bool) -> N
     if keep is not None:
         writable(keep)
     with told(plan.tasks, keep) as done:
-        results = execute(plan, Store(keep), workers=workers, done=done)
+        results = execute(plan, Store(keep), where=where, done=done)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
     if as_json:
         show.print_json(flow_json(found))

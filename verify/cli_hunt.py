@@ -11,6 +11,7 @@ from verify.cli_input import writable
 from verify.cli_tasks import told
 
 if TYPE_CHECKING:
+    from verify.executors import Where
     from verify.explore_results import Gallery
     from verify.results import SeparationResult
     from verify.tasks import Drawn
@@ -24,7 +25,7 @@ def hunt(
     drawn: "Drawn",
     output: Path,
     keep: Path | None,
-    workers: int | None,
+    where: "Where",
     as_json: bool,
 ) -> None:
     """Hunts, writes the worst scenes and the page that shows them, and tells what was found."""
@@ -41,12 +42,12 @@ def hunt(
         writable(keep)
     store, begun = Store(keep), time.perf_counter()
     with told(asked.plan().tasks, keep) as done:
-        worst = hunt(asked, store, workers=workers, done=done)
-    shown = gallery(asked, worst, store, workers=workers)
+        worst = hunt(asked, store, where=where, done=done)
+    shown = gallery(asked, worst, store, where=where)
     for place, each in enumerate(shown.scenes, start=1):
         write_atomically(output / f"worst-{place}.toml", each.scene)
     command = f"verify explore --maximise {measure} --examples {examples} --seed {seed}"
-    page = write(gallery_report(shown, command, begun, len(asked.plan().tasks)), output)
+    page = write(gallery_report(shown, command, begun, len(asked.plan().tasks), where), output)
     if as_json:
         show.print_json({"examples": examples, "failures": [], "seed": seed}
                         | {"gallery": shown.model_dump(mode="json")})  # fmt: skip

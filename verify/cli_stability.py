@@ -12,6 +12,7 @@ from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
+    from verify.executors import Where
     from verify.scene import Scene
     from verify.stability_findings import StabilityFindings
 
@@ -29,7 +30,7 @@ def stability(
     linear: bool,
     scheme: str | None,
     keep: Path | None,
-    workers: int | None,
+    where: "Where",
     as_json: bool,
 ) -> None:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
@@ -52,11 +53,11 @@ def stability(
         raise InputError("SCENE", "", "is missing; or give --linear --scheme NAME")
     if scheme is not None:
         raise InputError("--scheme", scheme, "goes with --linear; a scene names its own schemes")
-    _of_scenes(scene, target(scene)[1], keep, workers, as_json)
+    _of_scenes(scene, target(scene)[1], keep, where, as_json)
 
 
 def _of_scenes(
-    given: str, scenes: "list[Scene]", keep: Path | None, workers: int | None, as_json: bool
+    given: str, scenes: "list[Scene]", keep: Path | None, where: "Where", as_json: bool
 ) -> None:
     from verify.execute import Store, execute
     from verify.stability_findings import findings_of
@@ -69,7 +70,7 @@ def _of_scenes(
     if keep is not None:
         writable(keep)
     with told(plan.tasks, keep) as done:
-        results = execute(plan, Store(keep), workers=workers, done=done)
+        results = execute(plan, Store(keep), where=where, done=done)
     found = findings_of(scenes, results)
     if as_json:
         show.print_json(found.as_json())

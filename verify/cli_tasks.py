@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,14 +21,31 @@ keep_option = click.option(
 workers_option = click.option(
     "--workers", type=click.IntRange(1, 256), help="Processes; by the work there is."
 )
+cluster_option = click.option(
+    "--cluster",
+    metavar="ADDRESS",
+    help="Run them on the Dask cluster whose scheduler is there, tcp://HOST:PORT.",
+)
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="One JSON object on standard output."
 )
 
 
+def with_where(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with --workers and --cluster, which it gets as one `where`."""
+
+    @wraps(command)
+    def given(*args: Any, workers: int | None, cluster: str | None, **options: Any) -> Any:
+        from verify.executors import Where
+
+        return command(*args, where=Where(workers, cluster), **options)
+
+    return workers_option(cluster_option(given))
+
+
 def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --keep, --workers and --json."""
-    return keep_option(workers_option(json_option(command)))
+    """The command with --keep, --workers, --cluster and --json."""
+    return keep_option(with_where(json_option(command)))
 
 
 @contextmanager

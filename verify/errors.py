@@ -1,4 +1,4 @@
-"""The one error a user's input can cause."""
+"""The errors that a user is told in one line: of input, and of where the work is done."""
 
 
 class InputError(ValueError):
@@ -16,6 +16,13 @@ class InputError(ValueError):
     def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
         """As a worker process sends it: by its three parts, not by its message."""
         return type(self), (self.name, _short(self.value), self.problem)
+
+
+class PlaceError(RuntimeError):
+    """The place where tasks run fails them: workers lost, a scheduler gone, other code there.
+
+    One line. The command line turns it into exit status 2; what was finished is kept.
+    """
 
 
 def _short(value: object) -> str:

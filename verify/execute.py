@@ -1,22 +1,19 @@
-"""Tasks → results, on this process or a pool over the cores; what is finished is kept.
+"""Tasks → results, wherever they are performed; what is finished is kept.
 
 Each result is written by itself, atomically, as soon as it is there, under a name made of the task
 and of this package's own source: an interrupted job goes on from there, and no result of other
 code is taken for one of this.
 """
 
-import contextlib
-import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from pydantic import ValidationError
 
+from verify.executors import ANYWHERE, HERE, Call, Place, Where, opened, performed
 from verify.float_bounds import DIRECT_STEPS
-from verify.keeping import Keeper, fingerprint, write_atomically
+from verify.keeping import NOTHING, Keeper, fingerprint, write_atomically
 from verify.perform import Result, perform, result_model
 from verify.planned import Plan
 from verify.runs import AUTO
@@ -79,12 +76,14 @@ class Store:
 
 
 def execute(
-    plan: Plan, store: Store, *, workers: int | None = None, done: Done | None = None
+    plan: Plan, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
 ) -> dict[str, Result]:
     """All results of the plan by task key; those in the store are taken from there.
 
-    `workers`: None picks by the work there is; 1 stays in this process. On an interruption what
-    is finished is in the store already.
+    On an interruption what is finished is in the store already. A task on a cluster keeps no
+    checkpoints, since its machine need not have the store's folder. Times are measured when no
+    other task is under way: in this process, or on a cluster by the worker that has the task.
+    PlaceError where the workers fail a task again and again.
     """
     results: dict[str, Result] = {}
 
@@ -100,17 +99,31 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
+
+    def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
+        for name, result in performed(place, _calls(tasks, store, place), one_by_one=one_by_one):
+            store.put(name, result)
+            finish(name, result)
+
+    if not waiting:
+        return results
     together = {name: task for name, task in waiting.items() if not task.alone}
-    for name, result in _performed(together, _workers(together, workers), store):
-        store.put(name, result)
-        finish(name, result)
-    for name, task in waiting.items():
-        if name in together:
-            continue
-        result = perform(task, store.keeper(name))  # here, when no other is under way
-        store.put(name, result)
-        finish(name, result)
+    alone = {name: task for name, task in waiting.items() if task.alone}
+    with opened(_enough(together, where)) as place:
+        take(place, together)
+        if not place.local:
+            take(place, alone, one_by_one=True)
+    if place.local:
+        with opened(HERE) as place:
+            take(place, alone)
     return results
+
+
+def told(task: Task) -> str:
+    """The task in some words, for an error."""
+    given = task.model_dump(mode="json", exclude={"kind"})
+    words = [f"{k}={v}" for k, v in given.items() if isinstance(v, str | int)]
+    return f"{task.kind} of {', '.join(words)}"
 
 
 def cost(task: Task) -> int:
@@ -137,56 +150,17 @@ def cost(task: Task) -> int:
     return 1
 
 
-def _workers(tasks: Mapping[str, Task], asked: int | None) -> int:
-    if asked is not None:
-        return max(1, asked)
+def _enough(tasks: Mapping[str, Task], where: Where) -> Where:
+    """Where nothing is said of where: so many processes as are worth their start."""
+    if where != ANYWHERE:
+        return where
     if sum(map(cost, tasks.values())) < _WORTH_A_POOL:
-        return 1
-    return max(1, min(os.cpu_count() or 1, len(tasks)))
+        return HERE
+    return Where(workers=max(1, min(os.cpu_count() or 1, len(tasks))))
 
 
-def _performed(
-    tasks: Mapping[str, Task], workers: int, store: Store
-) -> Iterator[tuple[str, Result]]:
+def _calls(tasks: Mapping[str, Task], store: Store, place: Place) -> Iterator[Call]:
     # Longest first, so that no worker is left with a long one at the end.
-    order = sorted(tasks, key=lambda name: -cost(tasks[name]))
-    if workers == 1:
-        for name in order:
-            yield name, perform(tasks[name], store.keeper(name))
-        return
-    with _pool(workers) as executor:
-        futures: dict[Future[Result], str] = {
-            executor.submit(perform, tasks[name], store.keeper(name)): name for name in order
-        }
-        try:
-            for future in as_completed(futures):
-                name = futures.pop(future)
-                yield name, future.result()
-        except KeyboardInterrupt:
-            # What other workers had just finished is not lost either.
-            for future, name in futures.items():
-                if future.done() and not future.cancelled() and future.exception() is None:
-                    store.put(name, future.result())
-            raise
-
-
-@contextlib.contextmanager
-def _pool(workers: int) -> Iterator[Executor]:
-    """A process pool that an interruption ends at once."""
-    # Spawned, not forked: this process may have threads (the progress bar's, a kernel's).
-    context = multiprocessing.get_context("spawn")
-    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupts)
-    try:
-        yield executor
-    except BaseException:
-        # The executor has no public way to end a task that is running.
-        for process in (executor._processes or {}).values():
-            process.terminate()
-        executor.shutdown(wait=False, cancel_futures=True)
-        raise
-    executor.shutdown()
-
-
-def _ignore_interrupts() -> None:
-    # Ctrl-C reaches the whole process group; the parent alone answers it.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in sorted(tasks, key=lambda name: -cost(tasks[name])):
+        keeper = store.keeper(name) if place.local else NOTHING
+        yield Call(name, perform, (tasks[name], keeper), told(tasks[name]))

@@ -15,6 +15,7 @@ from verify.drawn_scenes import drawn_scene, scenes_of, simplest
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Done, Store, execute
+from verify.executors import ANYWHERE, Where
 from verify.explore_claims import claim_property
 from verify.explore_results import (
     ExploreReport,
@@ -158,7 +159,7 @@ def explore(
     asked: Exploration,
     store: Store,
     *,
-    workers: int | None = None,
+    where: Where = ANYWHERE,
     done: Done | None = None,
     earlier: Sequence[tuple[str, Scene]] = (),
 ) -> ExploreReport:
@@ -168,14 +169,14 @@ def explore(
     """
     again = tuple(_again(asked, earlier))
     plan = asked.plan()
-    results = execute(plan, store, workers=workers, done=done)
+    results = execute(plan, store, where=where, done=done)
     found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
     first: dict[str, Failure] = {}
     for result in found:
         for failure in result.first:
             first.setdefault(failure.property, failure)
     shrinking = asked.shrinking(list(first.values()))
-    shrunk = execute(shrinking, store, workers=workers)
+    shrunk = execute(shrinking, store, where=where)
     return ExploreReport(
         seed=asked.seed,
         examples=asked.examples,

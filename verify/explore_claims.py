@@ -11,6 +11,7 @@ from verify.claims import KINDS, Claim, FlowClaim, TheoremClaim
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Store, execute
+from verify.executors import HERE
 from verify.findings import Findings
 from verify.planned import Plan
 from verify.property import Property, Violation
@@ -53,7 +54,7 @@ def _holds(claim: Claim, example: Example) -> bool:
     scenes = {_NAME: scene}
     plan = Plan()
     known = add_claims(plan, [claim], scenes)
-    results = execute(plan, Store(None), workers=1)
+    results = execute(plan, Store(None), where=HERE)
     found = check_claim(claim, Findings(scenes, {**known, **results}))
     if found.verdict is Verdict.REFUTED:
         raise Violation(found.evidence)

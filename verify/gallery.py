@@ -7,6 +7,7 @@ from tomllib import loads
 from verify.exact import decimal
 from verify.example import Example
 from verify.execute import Done, Store, execute
+from verify.executors import ANYWHERE, Where
 from verify.explore_results import Gallery, GalleryScene, Worst
 from verify.hunting import REACH, STEP_SIZES, Hunt
 from verify.measures import MEASURES, orbit
@@ -25,14 +26,14 @@ def gallery(
     worst: Sequence[Worst],
     store: Store,
     *,
-    workers: int | None = None,
+    where: Where = ANYWHERE,
     done: Done | None = None,
 ) -> Gallery:
     """The scenes with what is shown of them, over runs longer than those of the hunt."""
     plan, tasks = Plan(), [_task(each, asked) for each in worst]
     for task in tasks:
         plan.need(task, "the gallery of the worst scenes")
-    results = execute(plan, store, workers=workers, done=done)
+    results = execute(plan, store, where=where, done=done)
     found = [results[key(task)] for task in tasks]
     return Gallery(
         measure=asked.measure,

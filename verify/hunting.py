@@ -16,6 +16,7 @@ from verify import schemes, strategies
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Done, Store, execute
+from verify.executors import ANYWHERE, Where
 from verify.explore_results import HuntResult, Worst
 from verify.measures import MEASURES, Measure
 from verify.neighbouring_scenes import neighbours
@@ -75,11 +76,11 @@ class Hunt:
 
 
 def hunt(
-    asked: Hunt, store: Store, *, workers: int | None = None, done: Done | None = None
+    asked: Hunt, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
 ) -> tuple[Worst, ...]:
     """The worst scenes found, the worst first."""
     plan = asked.plan()
-    results = execute(plan, store, workers=workers, done=done)
+    results = execute(plan, store, where=where, done=done)
     return asked.worst(r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult))
 
 

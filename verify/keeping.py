@@ -4,6 +4,7 @@ import contextlib
 import hashlib
 import json
 import os
+import platform
 import sys
 import tempfile
 import time
@@ -37,6 +38,11 @@ def versions() -> dict[str, str]:
     """The versions that a result depends on."""
     python = ".".join(map(str, sys.version_info[:3]))
     return {"Python": python} | {name: version(name) for name in _VERSIONED}
+
+
+def machine() -> str:
+    """What this process runs on, as a report tells it."""
+    return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
 
 
 @cache

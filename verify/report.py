@@ -1,7 +1,5 @@
 """Scenes and claims → a Report of results: plans, executes, judges. Makes no page."""
 
-import os
-import platform
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -12,10 +10,11 @@ from verify.claim_plan import add_claims
 from verify.claims import Claim
 from verify.exact import text
 from verify.execute import Done, Store, execute
+from verify.executors import ANYWHERE, Where
 from verify.explore_results import Gallery
 from verify.findings import Findings
 from verify.flow_findings import flows_of
-from verify.keeping import versions
+from verify.keeping import machine, versions
 from verify.paper_figures import PaperFigure
 from verify.plan import plan_scenes, series_task
 from verify.planned import Plan
@@ -39,7 +38,7 @@ def make_report(
     claim_scenes: Mapping[str, Scene] | None = None,
     figures: Sequence[PaperFigure] = (),
     plan: Plan | None = None,
-    workers: int | None = None,
+    where: Where = ANYWHERE,
     done: Done | None = None,
 ) -> Report:
     """Compute what the scenes and claims need, and judge.
@@ -53,8 +52,9 @@ def make_report(
     spoken_of = {**(claim_scenes or {}), **own}
     known = add_claims(plan, claims, spoken_of)
     before = store.taken
-    results = execute(plan, store, workers=workers, done=done)
+    results = execute(plan, store, where=where, done=done)
     kept = store.taken - before
+    computed = len(plan.tasks) - kept
     findings = Findings(own, results)
     of_claims = Findings(spoken_of, {**known, **results})
     return Report(
@@ -63,11 +63,13 @@ def make_report(
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         figures=tuple(figures),
         left_out=tuple(plan.left_out),
-        provenance=_provenance(command, begun, kept, len(plan.tasks) - kept),
+        provenance=_provenance(command, begun, kept, computed, where),
     )
 
 
-def gallery_report(gallery: Gallery, command: str, begun: float, computed: int) -> Report:
+def gallery_report(
+    gallery: Gallery, command: str, begun: float, computed: int, where: Where
+) -> Report:
     """The report of a hunt, which has a gallery and nothing else."""
     return Report(
         title=f"The worst scenes: {gallery.sentence}",
@@ -75,15 +77,15 @@ def gallery_report(gallery: Gallery, command: str, begun: float, computed: int) 
         scenes=(),
         gallery=gallery,
         left_out=(),
-        provenance=_provenance(command, begun, 0, computed),
+        provenance=_provenance(command, begun, 0, computed, where),
     )
 
 
-def _provenance(command: str, begun: float, kept: int, computed: int) -> Provenance:
+def _provenance(command: str, begun: float, kept: int, computed: int, where: Where) -> Provenance:
     return Provenance(
         command=command,
         versions=versions(),
-        machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        machine=f"{machine()}, and a cluster" if where.cluster and computed else machine(),
         seconds=time.perf_counter() - begun,
         kept=kept,
         computed=computed,

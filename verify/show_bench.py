@@ -62,8 +62,8 @@ def print_bench(name: str, result: "WorkPrecisionResult") -> None:
     for what, why in result.left_out:
         console.print(f"not drawn: {what} ({why})")
     console.print(
-        f"{result.clock}, {result.repeats} rounds; reference: {result.reference}, to within "
-        f"{result.reference_bound}; {result.seconds:.3g} s in all"
+        f"{result.clock} on {result.machine}, {result.repeats} rounds; reference: "
+        f"{result.reference}, to within {result.reference_bound}; {result.seconds:.3g} s in all"
     )
 
 

@@ -17,6 +17,7 @@ from verify.errors import InputError
 from verify.exact import text, upper
 from verify.exact_solution import exact_solution
 from verify.hamiltonian import Hamiltonian
+from verify.keeping import machine
 from verify.peer import Answer, InitialValueProblem, PeerError, Solver
 from verify.proof.exact_flow import NoFlowError
 from verify.results import RunResult
@@ -80,6 +81,7 @@ def work_precision(
         scale=problem.scale,
         reference=problem.solution.method,
         reference_bound=upper(problem.solution.bound),
+        machine=machine(),
         lines=(*lines, *drawn),
         comparisons=comparisons(lines, problem.scale),
         systems=tuple(_systems(problem, task)),

@@ -136,8 +136,9 @@ class WorkPrecisionResult(Frozen):
 
     `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
-    that may be a greater share of an error limits it. `reference_bound`: of p and of q. `left_out`:
-    peers with the reason. `systems` are of one scheme at one step size.
+    that may be a greater share of an error limits it. `reference_bound`: of p and of q. `machine`:
+    the one that the run times are of. `left_out`: peers with the reason. `systems` are of one
+    scheme at one step size.
     """
 
     hamiltonian: str
@@ -152,6 +153,7 @@ class WorkPrecisionResult(Frozen):
     scale: str
     reference: str
     reference_bound: str
+    machine: str
     lines: tuple[WorkLine, ...]
     comparisons: tuple[ComparisonResult, ...]
     systems: tuple[SystemPoint, ...]

@@ -95,6 +95,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     """Wall seconds, steps, the fewest digits that are known, and how often each kind of bound."""
     from verify.cli_input import target
     from verify.execute import Store, execute
+    from verify.executors import Where
     from verify.plan import plan_scenes
     from verify.results import RunResult
 
@@ -106,7 +107,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
         grid = scene.grid.model_copy(update=asked | shorter)
         chosen.append(scene.with_only(schemes=("lie2",), grid=grid))
     begun = time.perf_counter()
-    results = execute(plan_scenes(chosen), Store(None), workers=CORES).values()
+    results = execute(plan_scenes(chosen), Store(None), where=Where(CORES)).values()
     seconds = time.perf_counter() - begun
     runs = [r for r in results if isinstance(r, RunResult)]
     digits = min((known_digits(r.values[x].value) for r in runs for x in r.values), default=0)

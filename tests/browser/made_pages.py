@@ -7,6 +7,7 @@ from typing import Any
 from reports.page import render
 from verify.claims import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
 from verify.execute import Store
+from verify.executors import HERE
 from verify.paper_figures import PaperFigure
 from verify.report import make_report
 from verify.scene import scene_from
@@ -87,7 +88,7 @@ def _report(
 ) -> Report:
     command = "verify report"
     return make_report(
-        title, [scene], claims, Store(None), command=command, figures=figures, workers=1
+        title, [scene], claims, Store(None), command=command, figures=figures, where=HERE
     )
 
 

@@ -32,6 +32,7 @@ from verify.claims import KINDS
 from verify.claims_file import load_claims
 from verify.exact import decimal
 from verify.execute import Store
+from verify.executors import HERE
 from verify.findings import Findings
 from verify.formula import to_text
 from verify.scene import Scene
@@ -186,7 +187,7 @@ def verdicts_of(content: str) -> dict[str, Verdict]:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "claims.toml"
         path.write_text(content)
-        found = prepare(load_claims(path)).run(Store(None), workers=1)
+        found = prepare(load_claims(path)).run(Store(None), where=HERE)
     return {claim.id: claim.verdict for claim in found}
 
 

@@ -75,7 +75,8 @@ def result(*lines: WorkLine, **changes: Any) -> WorkPrecisionResult:
         "hamiltonian": "p**2/2 - cos(q)", "parameters": {}, "time": "1", "q": "1", "p": "0",
         "repeats": 5, "clock": "processor time", "overhead": 1e-8, "rounding_share": "0.05",
         "scale": "1",
-        "reference": "a flow", "reference_bound": "1e-40", "lines": lines, "comparisons": (),
+        "reference": "a flow", "reference_bound": "1e-40", "machine": "Linux x86_64, 2 cores",
+        "lines": lines, "comparisons": (),
         "systems": (), "systems_scheme": "lie2", "systems_step_size": "0.1", "left_out": (),
         "seconds": 1.0,
     }  # fmt: skip

@@ -21,6 +21,7 @@ from verify.claims import Claim
 from verify.claims_file import load_claims
 from verify.errors import InputError
 from verify.execute import Store, execute
+from verify.executors import HERE
 from verify.findings import Findings
 from verify.plan import plan_scenes
 from verify.results import ClaimResult
@@ -48,7 +49,7 @@ def proofs_alone(scene: Scene) -> Scene:
 def proved() -> Findings:
     """The paper's scenes with their proofs and no run."""
     scenes = {name: proofs_alone(scene) for name, scene in SCENES.items()}
-    return Findings(scenes, execute(plan_scenes(list(scenes.values())), Store(None), workers=1))
+    return Findings(scenes, execute(plan_scenes(list(scenes.values())), Store(None), where=HERE))
 
 
 # -- what is true, without verify -----------------------------------------------------------------
@@ -225,7 +226,9 @@ def test_an_equation_of_one_scheme_is_refuted_for_another(
     id_: str, scheme: str, proved: Findings
 ) -> None:
     scenes = {n: s.model_copy(update={"schemes": (scheme,)}) for n, s in proved.scenes.items()}
-    findings = Findings(scenes, execute(plan_scenes(list(scenes.values())), Store(None), workers=1))
+    findings = Findings(
+        scenes, execute(plan_scenes(list(scenes.values())), Store(None), where=HERE)
+    )
     claim = CLAIMS[id_].model_copy(update={"scheme": scheme})
     assert verdicts([claim], findings) == [Verdict.REFUTED]
 
@@ -247,7 +250,7 @@ def short() -> tuple[Findings, dict[str, ClaimResult]]:
         assert scene.grid is not None
         grid = scene.grid.model_copy(update={"time": Fraction(2), "separate": False})
         scenes[name] = proofs_alone(scene).model_copy(update={"grid": grid})
-    results = execute(plan_scenes(list(scenes.values())), Store(None), workers=1)
+    results = execute(plan_scenes(list(scenes.values())), Store(None), where=HERE)
     findings = Findings(scenes, results)
     return findings, {r.id: r for r in check_claims(list(CLAIMS.values()), findings)}
 

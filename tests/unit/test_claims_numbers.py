@@ -6,6 +6,7 @@ from pathlib import Path
 from verify.check import prepare
 from verify.claims_file import load_claims
 from verify.execute import Store
+from verify.executors import HERE
 from verify.results import ClaimResult
 from verify.verdict import Verdict
 
@@ -28,7 +29,7 @@ p = 0
 def check_file(folder: Path, content: str) -> dict[str, ClaimResult]:
     path = folder / "claims.toml"
     path.write_text(content)
-    return {found.id: found for found in prepare(load_claims(path)).run(Store(None), workers=1)}
+    return {found.id: found for found in prepare(load_claims(path)).run(Store(None), where=HERE)}
 
 
 def test_numbers_of_one_run_are_enclosed_or_refuted_in_a_file_that_stands_alone(

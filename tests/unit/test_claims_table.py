@@ -21,6 +21,7 @@ from tests.unit.by_hand import (
 from verify.check_claims import check_claims
 from verify.claims import TableClaim
 from verify.execute import Store, execute
+from verify.executors import HERE
 from verify.findings import Findings
 from verify.plan import plan_scenes
 from verify.verdict import Verdict
@@ -97,7 +98,7 @@ def test_a_table_row_from_our_own_runs_is_measured_and_refuted_with_a_digit_chan
     scene = made_scene(step_sizes=("0.05", "0.1"), starts=(("1.5", "0"),))
     grid = scene.grid.model_copy(update={"time": Fraction(5)})  # type: ignore[union-attr]
     scene = scene.model_copy(update={"grid": grid})
-    findings = Findings({"made": scene}, execute(plan_scenes([scene]), Store(None), workers=1))
+    findings = Findings({"made": scene}, execute(plan_scenes([scene]), Store(None), where=HERE))
     runs = findings.runs(scene, "lie2")
     logarithms = [mpmath.nstr(mpmath.log10(r.values["mse"].value), 15) for r in runs]
     printed = [f"{Decimal(x):.4f}" for x in logarithms]

@@ -18,6 +18,7 @@ from verify import execute as execution
 from verify import keeping
 from verify.errors import InputError
 from verify.execute import Store, execute
+from verify.executors import HERE, Where
 from verify.keeping import fingerprint, write_atomically
 from verify.perform import Result
 from verify.plan import plan_scenes
@@ -68,7 +69,7 @@ def test_every_task_is_performed_once_and_its_result_kept(
     tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen = count_tasks(monkeypatch)
-    results = execute(plan, kept_in(tmp_path), workers=1)
+    results = execute(plan, kept_in(tmp_path), where=HERE)
     assert set(results) == set(plan.tasks)
     assert sorted(map(str, seen)) == sorted(map(str, plan.tasks.values()))
     files = list((tmp_path / "kept").iterdir())
@@ -79,9 +80,9 @@ def test_every_task_is_performed_once_and_its_result_kept(
 def test_kept_results_are_taken_up_and_nothing_is_done_again(
     tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first = execute(plan, kept_in(tmp_path), workers=1)
+    first = execute(plan, kept_in(tmp_path), where=HERE)
     seen, told = count_tasks(monkeypatch), []
-    again = execute(plan, kept_in(tmp_path), workers=1, done=lambda name, _: told.append(name))
+    again = execute(plan, kept_in(tmp_path), where=HERE, done=lambda name, _: told.append(name))
     assert seen == []
     assert again == first, "even the seconds are those of the first time"
     assert sorted(told) == sorted(plan.tasks)
@@ -91,14 +92,14 @@ def test_what_is_missing_alone_is_done(
     tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = kept_in(tmp_path)
-    first = execute(plan, store, workers=1)
+    first = execute(plan, store, where=HERE)
     missing = sorted(plan.tasks)[:3]
     for name in missing:
         path = store.path(name)
         assert path is not None
         path.unlink()
     seen = count_tasks(monkeypatch)
-    assert plain(execute(plan, store, workers=1)) == plain(first)
+    assert plain(execute(plan, store, where=HERE)) == plain(first)
     assert sorted(map(str, seen)) == sorted(str(plan.tasks[n]) for n in missing)
 
 
@@ -123,12 +124,12 @@ def test_a_damaged_result_is_computed_again_and_mended(
     tmp_path: Path, plan: Plan, damage: Callable[[bytes], bytes]
 ) -> None:
     store = kept_in(tmp_path)
-    first = execute(plan, store, workers=1)
+    first = execute(plan, store, where=HERE)
     for file in (tmp_path / "kept").iterdir():
         before = file.read_bytes()
         file.write_bytes(damage(before))
         assert file.read_bytes() != before
-    assert plain(execute(plan, store, workers=1)) == plain(first)
+    assert plain(execute(plan, store, where=HERE)) == plain(first)
     for name, task in plan.tasks.items():
         kept = store.get(name, task)
         assert kept is not None
@@ -137,7 +138,7 @@ def test_a_damaged_result_is_computed_again_and_mended(
 
 def test_a_store_without_a_folder_keeps_nothing(tmp_path: Path, plan: Plan) -> None:
     before = sorted(tmp_path.rglob("*"))
-    execute(plan, Store(None), workers=1)
+    execute(plan, Store(None), where=HERE)
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -152,9 +153,9 @@ def test_an_interruption_keeps_what_was_finished(
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        execute(plan, kept_in(tmp_path), workers=1, done=interrupt)
+        execute(plan, kept_in(tmp_path), where=HERE, done=interrupt)
     seen = count_tasks(monkeypatch)
-    execute(plan, kept_in(tmp_path), workers=1)
+    execute(plan, kept_in(tmp_path), where=HERE)
     assert len(seen) == len(plan.tasks) - 3
     assert not {str(plan.tasks[n]) for n in finished} & set(map(str, seen))
 
@@ -184,7 +185,7 @@ def test_another_source_does_not_take_up_the_results_of_this_one(
         (source / "schemes" / "new.py").write_text("\n")
         assert fresh() not in (first, second)
         store = kept_in(tmp_path)
-        execute(plan, store, workers=1)
+        execute(plan, store, where=HERE)
         (source / "schemes" / "lie.py").write_text("two = 4\n")
         fresh()
         assert all(store.get(name, task) is None for name, task in plan.tasks.items())
@@ -250,8 +251,8 @@ def test_a_failed_write_leaves_the_old_content_and_nothing_else(
 
 
 def test_two_workers_find_what_one_finds(tmp_path: Path, plan: Plan) -> None:
-    one = execute(plan, Store(None), workers=1)
-    two = execute(plan, kept_in(tmp_path), workers=2)
+    one = execute(plan, Store(None), where=HERE)
+    two = execute(plan, kept_in(tmp_path), where=Where(2))
     assert plain(two) == plain(one)
     assert len(list((tmp_path / "kept").iterdir())) == len(plan.tasks)
 
@@ -262,13 +263,14 @@ def test_bad_input_found_by_a_worker_is_still_an_input_error(workers: int) -> No
     rough = "p_next = p - q*sqrt(h); q_next = q"
     plan.need(ProofTask(hamiltonian="p**2/2 + q**2/2", parameters={}, scheme=rough), "asked")
     with pytest.raises(InputError, match="not smooth in h"):
-        execute(plan, Store(None), workers=workers)
+        execute(plan, Store(None), where=Where(workers))
 
 
 INTERRUPTED = """
 import sys, time
 from fractions import Fraction
 from verify.execute import Store, execute
+from verify.executors import Where
 from verify.planned import Plan
 from verify.tasks import RunTask
 
@@ -282,7 +284,7 @@ if __name__ == "__main__":
             step_size=Fraction(1, 100), steps=10**11 if k == 1 else 10**3, q=Fraction(k), p=0,
             arithmetic="float64", digits=17, observables=("mse",), points=0), "asked")
     try:
-        execute(plan, Store(None), workers=2, done=stop)
+        execute(plan, Store(None), where=Where(2), done=stop)
     except KeyboardInterrupt:
         sys.exit(130)
 """

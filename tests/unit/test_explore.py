@@ -11,6 +11,7 @@ from verify.drawn_scenes import drawn_scene
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Store
+from verify.executors import HERE
 from verify.explore import Exploration, explore, found_earlier, keep_found
 from verify.explore_claims import claim_property, claim_texts
 from verify.explore_results import ExploreReport
@@ -69,22 +70,22 @@ def test_separable_schemes_get_separable_hamiltonians() -> None:
 
 
 def test_examples_are_counted_and_properties_hold() -> None:
-    report = explore(exploration(), Store(None), workers=1)
+    report = explore(exploration(), Store(None), where=HERE)
     assert (report.seed, report.examples, report.failures) == (7, 30, ())
     assert [p.name for p in report.properties] == list(CHEAP)
     assert all(p.failures == 0 and 0 < p.looked_at <= 30 for p in report.properties)
 
 
 def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = explore(exploration(), Store(None), workers=1)
+    whole = explore(exploration(), Store(None), where=HERE)
     monkeypatch.setattr("verify.explore._STRETCH", 7)
     assert len(exploration().plan().tasks) == 5
-    assert explore(exploration(), Store(None), workers=1) == whole
+    assert explore(exploration(), Store(None), where=HERE) == whole
 
 
 def failing(**changes: object) -> ExploreReport:
     asked = exploration(properties=("no-cubes",), examples=120, **changes)
-    return explore(asked, Store(None), workers=1)
+    return explore(asked, Store(None), where=HERE)
 
 
 @pytest.mark.usefixtures("odd_is_wrong")
@@ -108,11 +109,11 @@ def test_a_failure_is_shrunk_to_the_simplest_scene(tmp_path: Path) -> None:
 def test_found_scenes_are_looked_at_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     keep_found(failing(), tmp_path)
     asked = exploration(properties=("no-cubes",), examples=1)
-    report = explore(asked, Store(None), workers=1, earlier=found_earlier(tmp_path))
+    report = explore(asked, Store(None), where=HERE, earlier=found_earlier(tmp_path))
     assert [again.message for again in report.again] == ["it has q**3"]
     mended = Property("no-cubes", "Now anything goes with it.", lambda _: True)
     monkeypatch.setitem(properties._all(), "no-cubes", mended)
-    report = explore(asked, Store(None), workers=1, earlier=found_earlier(tmp_path))
+    report = explore(asked, Store(None), where=HERE, earlier=found_earlier(tmp_path))
     assert [again.message for again in report.again] == [""]
 
 
@@ -122,15 +123,15 @@ def test_an_exception_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
 
     made = Property("raises", "It divides by zero in every scene.", holds)
     monkeypatch.setitem(properties._all(), "raises", made)
-    report = explore(exploration(properties=("raises",), examples=2), Store(None), workers=1)
+    report = explore(exploration(properties=("raises",), examples=2), Store(None), where=HERE)
     assert report.properties[0].failures == 2
     assert report.failures[0].message == "raised ZeroDivisionError: by zero"
 
 
 def test_kept_results_are_taken_up_and_give_the_same_report(tmp_path: Path) -> None:
-    first = explore(exploration(), Store(tmp_path), workers=1)
+    first = explore(exploration(), Store(tmp_path), where=HERE)
     store = Store(tmp_path)
-    assert explore(exploration(), store, workers=1) == first
+    assert explore(exploration(), store, where=HERE) == first
     assert store.taken == len(exploration().plan().tasks)
 
 
@@ -192,7 +193,7 @@ def claims_of(tmp_path: Path, text: str = CLAIMS) -> tuple[str, ...]:
 def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
     texts = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "small"')])
     asked = exploration(properties=(), claims=texts, examples=25)
-    report = explore(asked, Store(None), workers=1)
+    report = explore(asked, Store(None), where=HERE)
     true, false = report.properties
     assert (true.name, true.failures) == ("third-order", 0)
     assert true.looked_at == 25

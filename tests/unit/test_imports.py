@@ -199,6 +199,7 @@ def test_what_carries_no_points_loads_no_numpy(
 def test_only_what_is_declared_is_imported(path: Path) -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
                 "llvmlite", "heyoka", "scipy", "matplotlib", "jinja2", "markupsafe", "hypothesis",
+                "distributed",
                 "verify", "reports", "reference"}  # fmt: skip
     names = roots(imported(path, everywhere=True))
     assert names - set(sys.stdlib_module_names) <= declared

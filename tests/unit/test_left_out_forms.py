@@ -8,6 +8,7 @@ from click.testing import CliRunner
 from reports.page import render
 from verify.cli import cli
 from verify.execute import Store
+from verify.executors import HERE
 from verify.report import make_report
 from verify.scene import scene_from
 from verify.scene_results import Report
@@ -24,7 +25,7 @@ def scene_report(hamiltonian: str, schemes: list[str]) -> Report:
         },
     }  # fmt: skip
     scenes = [scene_from(scene, "mine.toml")]
-    return make_report("Mine", scenes, (), Store(None), command="verify report", workers=1)
+    return make_report("Mine", scenes, (), Store(None), command="verify report", where=HERE)
 
 
 def test_the_command_says_that_it_is_left_out() -> None:

@@ -19,6 +19,7 @@ from reports.page import render, write
 from reports.typography import number
 from verify.claims import Claim, MonotoneClaim, TableClaim
 from verify.execute import Store
+from verify.executors import HERE
 from verify.report import make_report
 from verify.results import ClaimResult, ProofResult, RunResult, Value
 from verify.scene import scene_from
@@ -114,7 +115,7 @@ def real() -> Report:
                       "direction": "increases"}
         ),
     ]  # fmt: skip
-    return make_report("Tiny", [tiny], claims, Store(None), command="verify report", workers=1)
+    return make_report("Tiny", [tiny], claims, Store(None), command="verify report", where=HERE)
 
 
 # -- reading a page -------------------------------------------------------------------------------
@@ -291,7 +292,7 @@ def test_what_holds_for_every_h_is_shown_where_it_was_asked_for() -> None:
     pages = []
     for every in (True, False):
         given = scene_from({**asked, "every_hamiltonian": every}, "mine.toml")
-        made = make_report("Mine", [given], [], Store(None), command="test", workers=1)
+        made = make_report("Mine", [given], [], Store(None), command="test", where=HERE)
         pages.append(render(made))
     with_every, without = pages
     assert with_every.count("For every smooth H") == 2

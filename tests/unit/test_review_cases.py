@@ -8,6 +8,7 @@ import pytest
 from verify.criteria import judge
 from verify.errors import InputError
 from verify.execute import Store
+from verify.executors import HERE
 from verify.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.report import make_report
@@ -40,7 +41,7 @@ def test_where_the_solution_blows_up_criteria_3_and_4_are_not_proved_for_the_sce
         },
         "test",
     )  # fmt: skip
-    report = make_report("t", [scene], [], Store(None), command="test", workers=1)
+    report = make_report("t", [scene], [], Store(None), command="test", where=HERE)
     (result,) = report.scenes
     assert all(r.status == "left range" for r in result.runs)
     verdicts = {c.number: c.verdict for c in result.criteria}
@@ -86,7 +87,7 @@ def test_the_api_names_what_is_no_text() -> None:
 
 def test_results_json_holds_no_float(tmp_path: Path) -> None:
     scene = scene_from({"name": "s", "system": "pendulum", "schemes": ["lie2"], "grid": GRID}, "t")
-    report = make_report("t", [scene], [], Store(tmp_path), command="test", workers=1)
+    report = make_report("t", [scene], [], Store(tmp_path), command="test", where=HERE)
 
     def floats(x: object) -> bool:
         if isinstance(x, dict):

@@ -16,6 +16,7 @@ from verify import (
 )
 from verify.claims_file import load_claims
 from verify.errors import InputError
+from verify.executors import HERE
 from verify.report import make_report
 from verify.results import Frozen, RunResult
 from verify.runs import MAX_STEPS
@@ -259,7 +260,7 @@ def full_report(folder: Path) -> Report:
     file = load_claims(folder / "claims.toml")
     store, figures = execute.Store(None), file.figures
     return make_report(
-        "All", [scene], file.claims, store, figures=figures, command="test", workers=1
+        "All", [scene], file.claims, store, figures=figures, command="test", where=HERE
     )
 
 

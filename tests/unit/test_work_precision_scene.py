@@ -14,6 +14,7 @@ from verify import cli, section_plan
 from verify import execute as execution
 from verify.errors import InputError
 from verify.execute import Store, execute
+from verify.executors import HERE
 from verify.perform import Result
 from verify.plan import Plan, plan_scenes
 from verify.tasks import RunTask, WorkPrecisionTask
@@ -117,7 +118,8 @@ def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from verify.scene import load_scene;"
         "from verify.plan import plan_scenes; from verify.execute import Store, execute;"
-        f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), workers=1);"
+        "from verify.executors import HERE;"
+        f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), where=HERE);"
         "assert not {'scipy.integrate', 'heyoka', 'matplotlib'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
@@ -147,7 +149,7 @@ def test_what_is_timed_runs_when_all_else_is_done(
     both = [load(tmp_path, GOOD + "peers = false\nrepeats = 1\n"), load(tmp_path, HEAD + GRID)]
     plan = plan_scenes(both)
     assert not isinstance(list(plan.tasks.values())[-1], WorkPrecisionTask)
-    results = execute(plan, Store(None), workers=1)
+    results = execute(plan, Store(None), where=HERE)
     assert set(results) == set(plan.tasks)
     assert isinstance(seen[-1], WorkPrecisionTask)
     assert [t.alone for t in seen] == [False] * (len(seen) - 1) + [True]

@@ -1,0 +1,310 @@
+"""Tasks on a Dask cluster of this machine: what is found is the same, whoever is lost meanwhile."""
+
+import os
+import signal
+import socket
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.end_to_end.test_command_line import SCENE, here
+from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
+from tests.unit.sent import killed, killed_once, process, square, wrong
+from tests.unit.test_execute import CONTENT, kept_in, plain
+from tests.unit.test_scene import DUFFING, load
+from verify import cluster as clusters
+from verify import executors
+from verify.cluster import connected
+from verify.errors import InputError, PlaceError
+from verify.execute import execute
+from verify.executors import HERE, Call, Where, opened, performed
+from verify.keeping import machine
+from verify.plan import plan_scenes
+from verify.tasks import WorkPrecisionTask
+from verify.work_precision_results import WorkPrecisionResult
+
+distributed = pytest.importorskip("distributed")
+GIVEN_UP = 1  # workers that may be lost with a task, so that a test of it is short
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    """Two processes of one thread each, on any free ports."""
+    import dask
+
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": GIVEN_UP}),
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs="CRITICAL"
+        ) as made,
+    ):
+        yield made
+
+
+@pytest.fixture
+def address(cluster: Any) -> str:
+    """Of the scheduler, both of whose workers are there, also after a test that has killed one."""
+    with distributed.Client(cluster, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=30)
+    return str(cluster.scheduler_address)
+
+
+def squares(count: int, seconds: float = 0.0, log: str = "") -> list[Call]:
+    return [Call(str(k), square, (k, seconds, log)) for k in range(count)]
+
+
+def right(found: list[tuple[str, int]], count: int) -> bool:
+    return sorted(found) == sorted((str(k), k * k) for k in range(count))
+
+
+def collect(found: list[tuple[str, int]], address: str, calls: Iterable[Call]) -> None:
+    with opened(Where(cluster=address)) as place:
+        for each in performed(place, calls):
+            found.append(each)
+
+
+# -- what is found --------------------------------------------------------------------------------
+
+
+def test_a_cluster_finds_what_this_process_finds(address: str, tmp_path: Path) -> None:
+    plan = plan_scenes([load(tmp_path, CONTENT)])
+    there = execute(plan, kept_in(tmp_path), where=Where(cluster=address))
+    assert plain(there) == plain(execute(plan, kept_in(tmp_path / "own"), where=HERE))
+    assert len(list((tmp_path / "kept").iterdir())) == len(plan.tasks)
+
+
+def test_a_report_is_the_same_by_one_by_two_and_by_a_cluster(
+    capsys: pytest.CaptureFixture[str], address: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(SCENE)
+    given = {"one": ("--workers", "1"), "two": ("--workers", "2"), "c": ("--cluster", address)}
+    for name, where in given.items():
+        call = ("report", str(path), "-o", str(tmp_path / name), *where)
+        status, _, err = here(capsys, *call)
+        assert (status, err) == (0, "")
+    one, two, there = (tmp_path / name for name in given)
+    assert findings(one) == findings(two) == findings(there)
+    names = [[f.name for f in kept(folder)] for folder in (one, two, there)]
+    assert names[0] == names[1] == names[2]
+    assert provenance(one).machine == machine()
+    assert provenance(there).machine == f"{machine()}, and a cluster"
+
+
+def test_times_are_measured_there_one_after_another(address: str, tmp_path: Path) -> None:
+    """Two tasks of times and others: each time is of the worker's machine, and says so."""
+    section = (
+        "[work_precision]\ntime = 1\nstep_sizes = [0.5, 0.25]\nrepeats = 1\npeers = false\n"
+        "initial_value = { q = 1, p = 0 }\nnumber_systems = []\n"
+    )
+    texts = [DUFFING + f"parameters = {{ delta = {k} }}\n" + section for k in (1, 2)]
+    plan = plan_scenes([load(tmp_path, text) for text in texts])
+    timed = {name for name, task in plan.tasks.items() if isinstance(task, WorkPrecisionTask)}
+    order: list[str] = []
+
+    def done(name: str, _: object) -> None:
+        order.append(name)
+
+    found = execute(plan, kept_in(tmp_path), where=Where(cluster=address), done=done)
+    assert len(timed) == 2
+    assert set(order[-2:]) == timed, "when all others are done"
+    for name in timed:
+        result = found[name]
+        assert isinstance(result, WorkPrecisionResult)
+        assert result.machine == machine()
+
+
+def test_one_by_one_no_two_are_under_way(address: str, tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    with opened(Where(cluster=address)) as place:
+        calls = squares(4, 0.1, str(log))
+        for count, _ in enumerate(performed(place, calls, one_by_one=True), 1):
+            assert len(log.read_text().splitlines()) == count
+
+
+def test_what_a_task_raises_there_is_raised_here(address: str) -> None:
+    found: list[tuple[str, int]] = []
+    with pytest.raises(ValueError, match="wrong input"):
+        collect(found, address, [*squares(1), Call("wrong", wrong, (0.5,))])
+    assert right(found, 1)
+
+
+# -- lost workers ---------------------------------------------------------------------------------
+
+
+def test_nothing_is_lost_or_doubled_when_a_worker_is_killed(address: str, tmp_path: Path) -> None:
+    log, found = tmp_path / "log", list[tuple[str, int]]()
+    with opened(Where(cluster=address)) as place:
+        for each in performed(place, squares(24, 0.1, str(log))):
+            found.append(each)
+            if len(found) == 6:
+                os.kill(int(log.read_text().split()[-1]), signal.SIGKILL)
+    assert right(found, 24)
+    assert len({line.split()[1] for line in log.read_text().splitlines()}) >= 2
+
+
+def test_a_plan_whose_worker_is_killed_finds_the_same(address: str, tmp_path: Path) -> None:
+    plan = plan_scenes([load(tmp_path, CONTENT.replace("steps = 50", "steps = 20000"))])
+    with opened(Where(cluster=address)) as place:
+        ids = {pid for _, pid in performed(place, [Call(str(k), process) for k in range(4)])}
+    done: list[str] = []
+
+    def kill(name: str, _: object) -> None:
+        done.append(name)
+        if len(done) == 2:
+            os.kill(min(ids), signal.SIGKILL)
+
+    found = execute(plan, kept_in(tmp_path), where=Where(cluster=address), done=kill)
+    assert sorted(done) == sorted(plan.tasks), "each is told once"
+    assert plain(found) == plain(execute(plan, kept_in(tmp_path / "own"), where=HERE))
+
+
+def test_a_task_that_loses_its_worker_once_is_done_by_another(address: str, tmp_path: Path) -> None:
+    found: list[tuple[str, Any]] = []
+    collect(found, address, [Call("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)])
+    assert dict(found).pop("twice") == "well"
+    assert right([each for each in found if each[0] != "twice"], 4)
+
+
+def test_a_task_that_always_loses_its_worker_is_named_and_no_other(address: str) -> None:
+    """Dask also gives up those that waited at its workers; they are not what is blamed."""
+    found: list[tuple[str, int]] = []
+    with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again") as caught:
+        collect(found, address, [*squares(3, 0.1), Call("x", killed, told="run of lie2")])
+    assert "\n" not in str(caught.value)
+    assert all(value == int(name) ** 2 for name, value in found)
+    assert len(dict(found)) == len(found)
+
+
+def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
+    capsys: pytest.CaptureFixture[str], address: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "long.toml"
+    path.write_text(SCENE.replace("steps = 200", "steps = 100000"))
+    whole, folder = tmp_path / "whole", tmp_path / "out"
+    assert here(capsys, "report", str(path), "-o", str(whole), "--workers", "1")[0] == 0
+    call = ("report", str(path), "-o", str(folder), "--cluster", address)
+    with started(*call) as begun:
+        until = time.monotonic() + 60
+        while not kept(folder) and time.monotonic() < until:
+            assert begun.poll() is None
+            time.sleep(0.02)
+        time.sleep(0.1)  # what is written is also counted
+        status, out, err = interrupt(begun)
+    assert (status, out) == (130, "")
+    before = {file: file.read_bytes() for file in kept(folder)}
+    assert 1 <= len(before) < 11
+    assert err.count("\n") == 1
+    assert f"{len(before)} of 11 tasks are kept" in err
+    assert {f.suffix for f in (folder / "kept").iterdir()} == {".json"}, "no checkpoint, no rest"
+    status, _, err = here(capsys, *call)
+    assert (status, err) == (0, "")
+    assert {file: file.read_bytes() for file in before} == before
+    assert provenance(folder).kept == len(before)
+    assert findings(folder) == findings(whole)
+
+
+@pytest.mark.parametrize(
+    ("gone", "said"),
+    [
+        ("workers", "has had no worker for a minute"),
+        ("scheduler", "is gone, or has been restarted"),
+    ],
+)
+def test_a_cluster_that_ends_is_told_and_not_waited_for(
+    monkeypatch: pytest.MonkeyPatch, gone: str, said: str
+) -> None:
+    monkeypatch.setattr(clusters, "_LOOK", 0.1)
+    monkeypatch.setattr(clusters, "_FORSAKEN", 0.3)
+    monkeypatch.setattr(executors, "_LOOK", 0.1)
+    found: list[tuple[str, int]] = []
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0"
+    ) as made:
+        calls = (Call(name, square, (3, seconds)) for name, seconds in _ending(made, gone, found))
+        with pytest.raises(PlaceError, match=said):
+            collect(found, made.scheduler_address, calls)
+    assert found[0] == ("0", 9), "what was finished is not lost"
+
+
+def _ending(cluster: Any, gone: str, found: list[Any]) -> Iterator[tuple[str, float]]:
+    """Names and seconds of calls; with the first result there, the cluster ends."""
+    for k in range(100):
+        if found and gone == "workers":
+            cluster.scale(0)
+        elif found:
+            cluster.close()
+        yield str(k), 0.2
+
+
+# -- addresses ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clusters, "_PATIENCE", 1.0)
+
+
+def refused(address: str) -> str:
+    begun = time.monotonic()
+    with pytest.raises(InputError) as caught, connected(address):
+        pass
+    assert time.monotonic() - begun < 8
+    assert str(caught.value).startswith("cluster=tcp://127.0.0.1")
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.usefixtures("hasty")
+def test_an_address_where_nobody_answers_is_bad_input() -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    assert "no Dask scheduler answers there within 1 s" in refused(f"tcp://127.0.0.1:{port}")
+    with socket.socket() as mute:
+        mute.bind(("127.0.0.1", 0))
+        mute.listen()
+        said = refused(f"tcp://127.0.0.1:{mute.getsockname()[1]}")
+    assert "no Dask scheduler answers" in said
+
+
+def test_a_workers_address_is_bad_input(cluster: Any, address: str) -> None:
+    worker = next(iter(cluster.scheduler_info["workers"]))
+    assert "is a Dask worker; the scheduler's is needed" in refused(worker)
+
+
+@pytest.mark.usefixtures("hasty")
+def test_a_cluster_without_workers_is_bad_input() -> None:
+    with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty:
+        said = refused(empty.scheduler_address)
+    assert "has no workers; start one: dask worker" in said
+
+
+def test_a_worker_with_other_code_is_named(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clusters, "fingerprint", _another)
+    assert "not the same at tcp://127.0.0.1" in refused(address)
+
+
+def _another() -> str:
+    """Of each process another one: as where the workers have other code."""
+    return str(os.getpid())
+
+
+@pytest.mark.parametrize("command", ["report", "check", "stability", "flow", "bench"])
+def test_every_command_with_tasks_refuses_a_bad_address(
+    capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    status, out, err = here(capsys, command, "paper", "--cluster", "nowhere")
+    assert (status, out) == (2, "")
+    assert err.startswith("verify: cluster=nowhere: must be the address of a Dask scheduler")
+    assert err.count("\n") == 1
+
+
+def test_workers_and_a_cluster_do_not_go_together(capsys: pytest.CaptureFixture[str]) -> None:
+    both = ("--workers", "2", "--cluster", "tcp://127.0.0.1:8786")
+    status, out, err = here(capsys, "report", "paper", *both)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "leave out --workers" in err
