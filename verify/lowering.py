@@ -1,6 +1,6 @@
 """A program's operations → lines of source, those before the loop apart from those in it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -37,11 +37,12 @@ class Lowering:
 
     def live(self, roots: Sequence[int]) -> list[int]:
         """The operations that the roots need, in their order."""
-        live, stack = set(roots), list(roots)
+        ops, live, stack = self.program.ops, set[int](), list(roots)
         while stack:
-            new = set(self.program.ops[stack.pop()].args) - live
-            live |= new
-            stack += new
+            index = stack.pop()
+            if index not in live:
+                live.add(index)
+                stack += ops[index].args
         return sorted(live)
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
@@ -151,20 +152,25 @@ class Lowering:
         radicand = self.program.ops[op.args[0]]
         return radicand.kind == "const" and radicand.value > 0
 
-    def constants(self) -> Mapping[int, Fraction]:
-        return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
+    def named_constants(self, number: Any, roots: Sequence[int] | None = None) -> dict[str, Any]:
+        """The constants, and roots that are given, as numbers by their names in the source.
 
-    def named_constants(self, number: Any) -> dict[str, Any]:
-        """The constants, and roots that are given, as numbers by their names in the source."""
-        found = {self.name(i): number(value) for i, value in self.constants().items()}
-        for index, op in enumerate(self.program.ops):
-            if self._given(index):
-                radicand = self.program.ops[op.args[0]].value
+        `roots`: those alone that these need.
+        """
+        program, found = self.program, {}
+        live = range(len(program.ops)) if roots is None else self.live(roots)
+        for index in live:
+            op = program.ops[index]
+            if op.kind == "const":
+                found[self.name(index)] = number(op.value)
+            elif self._given(index):
+                radicand = program.ops[op.args[0]].value
                 found[f"number_{self.name(index)}"] = number(
                     _root(radicand, op.degree, self.bits + _GUARD)
                 )
-        for loop in self.program.loops:
-            found |= self.inner(loop).named_constants(number)
+        for loop in self.loops(live):
+            needed = None if roots is None else [*loop.updates, *loop.determinants]
+            found |= self.inner(loop).named_constants(number, needed)
         return found
 
 
