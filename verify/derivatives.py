@@ -1,6 +1,6 @@
 """Bounds of a step map's derivatives over a box of states, by interval arithmetic."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -20,11 +20,11 @@ _MOST_TERMS, _MOST_OF_DELTA_J = 150, 5000  # of a map that is written out, and o
 
 @dataclass(frozen=True)
 class Derivatives:
-    """(p', q'), and with their second derivatives; and the gradient of ΔJ by powers of h."""
+    """p' and q' and their second derivatives; the gradient of ΔJ by the powers of h in `powers`."""
 
     values: Enclosures
-    hessians: Enclosures
-    gradients: tuple[tuple[int, Enclosures], ...]
+    gradients: Enclosures
+    powers: tuple[int, ...]
 
     @classmethod
     def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives | None":
@@ -37,16 +37,17 @@ class Derivatives:
         Not finite where Φ may be undefined in it: derivatives may be defined beyond, as those of
         log are on the other side of 0.
         """
-        if not _norm(self.values, {**fixed, **box}).is_finite():
-            return flint.arb.nan()
-        return _norm(self.hessians, {**fixed, **box})
+        found = self.values.over({**fixed, **box})
+        return flint.arb.nan() if found is None else _norm(found[len(_STATE) :])
 
     def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
         """A bound of ‖∇ΔJ‖ in the box."""
+        found = self.gradients.over({**fixed, **box})
+        if found is None:
+            return flint.arb.nan()
         total = flint.arb(0)
-        for n, gradient in self.gradients:
-            size = _norm(gradient, {**fixed, **box})
-            total += fixed["h"] ** n * size
+        for k, n in enumerate(self.powers):
+            total += fixed["h"] ** n * _norm(found[2 * k : 2 * k + 2])
         return total
 
 
@@ -65,10 +66,10 @@ def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
     delta_j = ring.zero if step_map.preserves_area else step.delta_j
     whole = h_inside(ring, delta_j)
     parts = {0: delta_j} if whole else ring.powers(delta_j, "h")
-    gradients = tuple(
-        (n, Enclosures(ring, [diff(x, a) for a in _STATE])) for n, x in sorted(parts.items())
+    gradients = [diff(parts[n], a) for n in sorted(parts) for a in _STATE]
+    return Derivatives(
+        Enclosures(ring, [*values, *hessians]), Enclosures(ring, gradients), tuple(sorted(parts))
     )
-    return Derivatives(Enclosures(ring, values), Enclosures(ring, hessians), gradients)
 
 
 def _whole(step_map: StepMap) -> Substep:
@@ -86,10 +87,7 @@ def _whole(step_map: StepMap) -> Substep:
     return closed if closed and closed.terms_of_delta_j <= _MOST_OF_DELTA_J else step
 
 
-def _norm(entries: Enclosures, point: Mapping[str, Ball]) -> Ball:
-    values = entries.over(point)
-    if values is None:
-        return flint.arb.nan()
+def _norm(values: Sequence[Ball]) -> Ball:
     total = flint.arb(0)
     for value in values:
         size = value.abs_upper()
