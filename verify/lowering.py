@@ -37,29 +37,29 @@ class Lowering:
 
     def live(self, roots: Sequence[int]) -> list[int]:
         """The operations that the roots need, in their order."""
-        ops, live, stack = self.program.ops, set[int](), list(roots)
-        while stack:
-            index = stack.pop()
-            if index not in live:
-                live.add(index)
-                stack += ops[index].args
-        return sorted(live)
+        return self.program.live(roots)
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
         """The lines that compute the roots: those before the loop, and those in it."""
         program, live = self.program, self.live(roots)
+        ops, prefix, static_ones = program.ops, self.prefix, program.static
         static: list[str] = []
         dynamic: list[str] = []
         for index in live:
-            if index in self._written or program.ops[index].kind == "const":
+            kind, args, *_ = op = ops[index]
+            if kind in _INFIX:
+                x, y = args
+                line = f"{prefix}{index} = {prefix}{x} {_INFIX[kind]} {prefix}{y}"
+            elif kind == "const" or index in self._written:
                 continue
-            if program.ops[index].kind == "loop":
-                before, inside = self._newton(program.loops[program.ops[index].degree])
+            elif kind == "loop":
+                before, inside = self._newton(program.loops[op.degree])
                 static += before
                 dynamic += inside
                 continue
-            line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
-            (static if program.static[index] else dynamic).append(line)
+            else:
+                line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
+            (static if static_ones[index] else dynamic).append(line)
         return static, dynamic
 
     def _pair(self, index: int, live: Sequence[int]) -> str | None:
@@ -128,8 +128,6 @@ class Lowering:
         match op.kind:
             case "input":
                 return op.name
-            case "add" | "sub" | "mul":
-                return f" {_INFIX[op.kind]} ".join(args)
             case "neg":
                 return f"-{args[0]}"
             case "inverse":

@@ -87,6 +87,7 @@ class Program:
         # Results by what they are of: numbers and texts, as the hash of a Fraction takes long.
         self._known: dict[Any, int] = {}
         self._keys: list[Any] = []  # of `_known`, in their order
+        self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
     # -- trials -------------------------------------------------------------------------------
 
@@ -114,6 +115,23 @@ class Program:
         self._known.update(zip(tail.keys, tail.known, strict=True))
         self.loops += tail.loops
         self.cost = tail.cost
+
+    def live(self, roots: Sequence[int]) -> list[int]:
+        """The operations that the roots need, in their order."""
+        length, live = self._live.get(key := tuple(roots), (-1, []))
+        if length != len(self.ops):
+            live = self._found_live(roots)
+            self._live[key] = len(self.ops), live
+        return live
+
+    def _found_live(self, roots: Sequence[int]) -> list[int]:
+        ops, live, stack = self.ops, set[int](), list(roots)
+        while stack:
+            index = stack.pop()
+            if index not in live:
+                live.add(index)
+                stack += ops[index].args
+        return sorted(live)
 
     # -- operations ---------------------------------------------------------------------------
 
