@@ -17,7 +17,8 @@ _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
 _COST = {"input": 0, "add": 1, "sub": 1, "neg": 1, "mul": 4}
 _COST_OF_FUNCTION = 40
-_ZERO, _ONE = Fraction(0), Fraction(1)
+_ZERO = Fraction(0)
+_SPECIAL = (0, 1, -1)  # constants that products and sums are shorter with
 
 
 class Op(NamedTuple):
@@ -87,6 +88,7 @@ class Program:
         # Results by what they are of: numbers and texts, as the hash of a Fraction takes long.
         self._known: dict[Any, int] = {}
         self._keys: list[Any] = []  # of `_known`, in their order
+        self._special: dict[int, int] = {}  # which constants are 0, 1 and −1
         self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
     # -- trials -------------------------------------------------------------------------------
@@ -104,6 +106,8 @@ class Program:
         del self.ops[mark.ops :], self.static[mark.ops :], self.depth[mark.ops :]
         del self._keys[mark.keys :], self.loops[mark.loops :]
         self.cost = mark.cost
+        if any(index >= mark.ops for index in self._special):
+            self._special = {i: x for i, x in self._special.items() if i < mark.ops}
         return tail
 
     def put_back(self, tail: Tail) -> None:
@@ -115,6 +119,7 @@ class Program:
         self._known.update(zip(tail.keys, tail.known, strict=True))
         self.loops += tail.loops
         self.cost = tail.cost
+        self._special.update((i, x) for x in _SPECIAL if (i := self._known.get((x, 1))) is not None)
 
     def live(self, roots: Sequence[int]) -> list[int]:
         """The operations that the roots need, in their order."""
@@ -155,7 +160,18 @@ class Program:
         found = self._known.get(key)
         if found is not None:
             return found
-        return self._new(key, Op(kind, (x, y)), self.static[x] and self.static[y])
+        index, depth = len(self.ops), self.depth
+        self._known[key] = index
+        self._keys.append(key)
+        self.ops.append(tuple.__new__(Op, (kind, (x, y), "", _ZERO, 1)))
+        if self.static[x] and self.static[y]:
+            self.static.append(True)
+            depth.append(0)
+        else:
+            self.static.append(False)
+            depth.append((depth[x] if depth[x] > depth[y] else depth[y]) + _LATENCY[kind])
+            self.cost += _COST[kind]
+        return index
 
     def input(self, name: str, *, static: bool) -> int:
         key = "input", name
@@ -171,7 +187,10 @@ class Program:
         found = self._known.get(key)
         if found is not None:
             return found
-        return self._new(key, Op("const", value=Fraction(numerator, denominator)), True)
+        index = self._new(key, Op("const", value=Fraction(numerator, denominator)), True)
+        if denominator == 1 and numerator in _SPECIAL:
+            self._special[index] = numerator
+        return index
 
     def apply(self, kind: str, *args: int, degree: int = 1) -> int:
         """A function, `neg`, `inverse` or `root` of earlier results."""
@@ -203,10 +222,10 @@ class Program:
         return self.apply("neg", x)
 
     def add(self, x: int, y: int) -> int:
-        zero, ops = self._known.get((0, 1)), self.ops
-        if x == zero:
+        special, ops = self._special, self.ops
+        if x in special and special[x] == 0:
             return y
-        if y == zero:
+        if y in special and special[y] == 0:
             return x
         if ops[y].kind == "neg":
             return self._binary("sub", x, ops[y].args[0])
@@ -215,18 +234,22 @@ class Program:
         return self._binary("add", x, y) if x <= y else self._binary("add", y, x)
 
     def mul(self, x: int, y: int) -> int:
-        known = self._known
-        zero, one, minus = known.get((0, 1)), known.get((1, 1)), known.get((-1, 1))
-        for a, b in ((x, y), (y, x)):
-            if a == zero:
-                return a
-            if a == one:
-                return b
-            if a == minus:
-                return self.neg(b)
-            if self.ops[a].kind == "neg" and not self.static[a]:
-                return self.neg(self.mul(self.ops[a].args[0], b))
+        special, ops, static = self._special, self.ops, self.static
+        if x in special:
+            return self._multiple(special[x], x, y)
+        if ops[x].kind == "neg" and not static[x]:
+            return self.neg(self.mul(ops[x].args[0], y))
+        if y in special:
+            return self._multiple(special[y], y, x)
+        if ops[y].kind == "neg" and not static[y]:
+            return self.neg(self.mul(ops[y].args[0], x))
         return self._binary("mul", x, y) if x <= y else self._binary("mul", y, x)
+
+    def _multiple(self, n: int, constant: int, x: int) -> int:
+        """n x for n = 0, 1, −1, which is a constant of that index."""
+        if n == 0:
+            return constant
+        return x if n == 1 else self.neg(x)
 
     def times(self, x: int, n: int) -> int:
         """n x for a positive integer n, by sums."""

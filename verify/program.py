@@ -134,14 +134,17 @@ class Evaluator:
         for monomial, c in x.to_dict().items():
             outer = tuple([int(monomial[i]) for i in dynamic])
             by_outer.setdefault(outer, []).append((monomial, c))
-        zero = Fraction(0)
+        zero, powers = Fraction(0), dict[tuple[int, Any], int]()
         for outer, terms in by_outer.items():
             total = program.constant(zero)
             for monomial, c in terms:
                 product = program.quotient(int(c.p), int(c.q))
                 for index, value in at:
-                    if n := int(monomial[index]):
-                        product = program.mul(product, program.power(value, n))
+                    if n := monomial[index]:
+                        power = powers.get((index, n))
+                        if power is None:
+                            power = powers[index, n] = program.power(value, int(n))
+                        product = program.mul(product, power)
                 total = program.add(total, product)
             parts[outer] = total
         return list(parts.items())
