@@ -1,6 +1,6 @@
 """Compositions of maps in closed form: of polynomial ones in the ring, and how large others are."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import sympy
 
@@ -26,6 +26,53 @@ def composed_polynomials(ring: Ring, maps: Sequence[Map], most: int) -> list[Pol
             return None
         start = after
     return start
+
+
+def in_stages(ring: Ring, elements: Sequence[Poly]) -> bool:
+    """Whether there are no other generators in the elements than names of stages."""
+    return all(g.kind in ("variable", "stage") for g in ring.used(*elements))
+
+
+def unfolded(ring: Ring, elements: Sequence[Poly], most: int) -> list[Poly] | None:
+    """Elements that are `in_stages` with every name replaced by what it stands for.
+
+    None where there are more than `most` terms on the way.
+    """
+    used = ring.used(*elements)
+    images = {g.index: ring.variable(str(g.expression)) for g in used if g.kind == "variable"}
+    for g in used:
+        if g.kind == "stage":
+            images[g.index] = _put(ring, g.argument, images, most)
+            if images[g.index] is None:
+                return None
+    found = [_put(ring, x, images, most) for x in elements]
+    return None if None in found else found
+
+
+def _put(ring: Ring, x: Poly, images: Mapping[int, Poly], most: int) -> Poly | None:
+    """The polynomial with generators replaced by their images; None beyond `most` terms."""
+    powers: dict[tuple[int, int], Poly] = {}
+
+    def power(index: int, n: int) -> Poly:
+        if (index, n) not in powers:
+            powers[index, n] = images[index] * (power(index, n - 1) if n > 1 else ring.one)
+        return powers[index, n]
+
+    total = ring.zero
+    for monomial, coefficient in x.to_dict().items():
+        term = ring.context.constant(coefficient)
+        for index, degree in enumerate(monomial):
+            for n in range(1, int(degree) + 1):
+                if len(power(index, n)) > most:
+                    return None
+            if degree:
+                term = term * power(index, int(degree))
+            if len(term) > most:
+                return None
+        total += term
+        if len(total) > most:
+            return None
+    return total
 
 
 def _at(ring: Ring, x: Poly, point: Sequence[Poly], most: int) -> Poly | None:

@@ -4,27 +4,27 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from verify.enclosure import enclose_over
+from verify.composing import in_stages, unfolded
+from verify.computation import step_map_of
+from verify.enclosures import Enclosures
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
-from verify.ring import Poly, Ring
 from verify.rounding import Ball
-from verify.schemes import get
-from verify.step_map import h_inside
+from verify.step_map import StepMap, Substep, h_inside
 
 import flint  # isort: skip
 
 _STATE = ("p", "q")
+_MOST_TERMS, _MOST_OF_DELTA_J = 150, 5000  # of a map that is written out, and of its ΔJ
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """(p', q') and their second derivatives, and the gradient of ΔJ by powers of h."""
+    """p' and q' and their second derivatives; the gradient of ΔJ by the powers of h in `powers`."""
 
-    ring: Ring
-    values: tuple[Poly, ...]
-    hessians: tuple[tuple[Poly, ...], ...]
-    gradients: tuple[tuple[int, tuple[Poly, ...]], ...]
+    values: Enclosures
+    gradients: Enclosures
+    powers: tuple[int, ...]
 
     @classmethod
     def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives | None":
@@ -37,47 +37,59 @@ class Derivatives:
         Not finite where Φ may be undefined in it: derivatives may be defined beyond, as those of
         log are on the other side of 0.
         """
-        if not _norm(self.ring, self.values, {**fixed, **box}).is_finite():
-            return flint.arb.nan()
-        entries = [x for hessian in self.hessians for x in hessian]
-        return _norm(self.ring, entries, {**fixed, **box})
+        found = self.values.over({**fixed, **box})
+        return flint.arb.nan() if found is None else _norm(found[len(_STATE) :])
 
     def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
         """A bound of ‖∇ΔJ‖ in the box."""
+        found = self.gradients.over({**fixed, **box})
+        if found is None:
+            return flint.arb.nan()
         total = flint.arb(0)
-        for n, gradient in self.gradients:
-            size = _norm(self.ring, gradient, {**fixed, **box})
-            total += fixed["h"] ** n * size
+        for k, n in enumerate(self.powers):
+            total += fixed["h"] ** n * _norm(found[2 * k : 2 * k + 2])
         return total
 
 
 @lru_cache(maxsize=64)
 def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
     try:
-        step_map = get(scheme).step_map(hamiltonian)
+        step_map = step_map_of(hamiltonian, scheme)
     except InputError:
         return None
     if step_map.solved:
         return None
-    step = step_map.whole
+    step = _whole(step_map)
     ring, diff = step.ring, step.ring.diff
-    hessians = tuple(
-        tuple(diff(diff(x, a), b) for a in _STATE for b in _STATE)
-        for x in (step.p_next, step.q_next)
-    )
+    values = (step.p_next, step.q_next)
+    hessians = [diff(diff(x, a), b) for x in values for a in _STATE for b in _STATE]
     delta_j = ring.zero if step_map.preserves_area else step.delta_j
     whole = h_inside(ring, delta_j)
     parts = {0: delta_j} if whole else ring.powers(delta_j, "h")
-    gradients = tuple((n, tuple(diff(x, a) for a in _STATE)) for n, x in sorted(parts.items()))
-    return Derivatives(ring, (step.p_next, step.q_next), hessians, gradients)
+    gradients = [diff(parts[n], a) for n in sorted(parts) for a in _STATE]
+    return Derivatives(
+        Enclosures(ring, [*values, *hessians]), Enclosures(ring, gradients), tuple(sorted(parts))
+    )
 
 
-def _norm(ring: Ring, entries: Sequence[Poly], point: Mapping[str, Ball]) -> Ball:
-    total, known = flint.arb(0), dict[int, Ball]()
-    for x in entries:
-        value = enclose_over(ring, x, point, known)
-        if value is None:
-            return flint.arb.nan()
+def _whole(step_map: StepMap) -> Substep:
+    """The whole map as one substep, written out where that is short; see `StepMap.whole`.
+
+    A map in stages of a polynomial H is written out without sympy, which takes a hundred times as
+    long.
+    """
+    step = step_map.substeps[0]
+    elements = step.p_next, step.q_next
+    if len(step_map.substeps) > 1 or not step.staged or not in_stages(step.ring, elements):
+        return step_map.whole
+    found = unfolded(step.ring, elements, _MOST_TERMS)
+    closed = Substep(step.field, *found) if found else None
+    return closed if closed and closed.terms_of_delta_j <= _MOST_OF_DELTA_J else step
+
+
+def _norm(values: Sequence[Ball]) -> Ball:
+    total = flint.arb(0)
+    for value in values:
         size = value.abs_upper()
         total += size * size
     return total.sqrt().abs_upper()

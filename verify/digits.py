@@ -22,6 +22,8 @@ _ATTEMPTS = 5
 WORTH_COMPILING = (
     60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
 )
+_SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
+_MORE = 20  # digits that cost such a run nothing, and are there for an observable that is small
 _WIDEST = 1000  # digits beyond which mpfr's products are the faster ones
 _COMPILED, _INTERPRETED = "fixed", "mpfr"
 
@@ -86,9 +88,9 @@ def certified(
     if job.solved:
         return own
     for _ in range(_ATTEMPTS):
-        foreseen = _Foresight(job, own, digits)
+        foreseen = _Foresight(job, own, digits) if job.steps > _SHORT else None
         outcome = job.go(own, tangent=True, progress=progress, enough=foreseen)
-        if foreseen.missing > 0:
+        if foreseen and foreseen.missing > 0:
             own = _finer(own, foreseen.missing)
             continue
         errors = certify(job, own, outcome) if outcome.done == job.steps else None
@@ -113,7 +115,7 @@ def _estimated(job: Job, own: Arithmetic, digits: int, progress: Progress | None
 
 def _first_digits(name: str, digits: int, job: Job) -> int:
     if name != _COMPILED:
-        return working_digits(digits, job.steps)
+        return working_digits(digits, job.steps) + (_MORE if job.steps <= _SHORT else 0)
     # Formats come in steps of 19 digits, and foresight costs a sixteenth of the run.
     time = job.steps * job.start["h"]
     return digits + 3 + len(str(job.steps)) + len(str(int(time)))

@@ -61,10 +61,10 @@ def enclose_over(
     return _at(x, values)
 
 
-def _power(x: Any, n: int) -> Any:
+def power_of(x: Any, n: int) -> Any:
     # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
     # and is then undefined around 0.
-    half = square(_power(x, n // 2)) if n > 1 else flint.arb(1)
+    half = square(power_of(x, n // 2)) if n > 1 else flint.arb(1)
     return half * x if n % 2 else half
 
 
@@ -96,7 +96,7 @@ def _at(x: Any, values: dict[int, Any]) -> Any:
         for index in present:
             if power := int(monomial[index]):
                 if (index, power) not in powers:
-                    powers[index, power] = _power(values[index], power)
+                    powers[index, power] = power_of(values[index], power)
                 term *= powers[index, power]
         total += term
     return total

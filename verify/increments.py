@@ -9,6 +9,7 @@ is taken; where latency counts and not the number of operations, the increments 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 from verify.program import Evaluator
 from verify.ring import Poly, Ring
@@ -22,17 +23,8 @@ def increments(evaluator: Evaluator, step: Substep, h: int) -> Pair:
     """The indices of the increments of p and q; `h` is the index of the step size."""
     ways = [_Way(step, None)]
     if not (evaluator.pipelined or h_inside(step.ring, step.p_next, step.q_next)):
-        ways += [_Way(step, first) for first in (0, 1)]
-    best = min(ways, key=lambda way: _cost(evaluator, way, h))
-    return best.write(evaluator, h)
-
-
-def _cost(evaluator: Evaluator, way: "_Way", h: int) -> int:
-    if not way.usable:
-        return 1 << 60
-    trial = evaluator.on_a_copy()
-    way.write(trial, h)
-    return trial.program.cost
+        ways += [way for first in (0, 1) if (way := _Way(step, first)).shared]
+    return evaluator.cheapest([partial(way.write, evaluator, h) for way in ways])
 
 
 @dataclass
@@ -42,18 +34,14 @@ class _Way:
     step: Substep
     first: int | None
 
-    @property
-    def usable(self) -> bool:
-        return self.first is None or bool(self.shared)
-
-    @property
+    @cached_property
     def parts(self) -> tuple[dict[int, Poly], dict[int, Poly]]:
         """(coefficients of the first, of the second) by powers of h."""
         ring, (u, v) = self.step.ring, self.step.increments
         one, two = ring.powers(u, "h"), ring.powers(v, "h")
         return (one, two) if self.first == 0 else (two, one)
 
-    @property
+    @cached_property
     def shared(self) -> dict[int, int]:
         """{k: r}: the first's coefficient of h^k is r times the second's of h^(k+1)."""
         one, two = self.parts

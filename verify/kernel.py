@@ -20,18 +20,14 @@ about h. Its difference from the plain kernel estimates the plain kernel's round
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 from verify import newton, tangent
+from verify.computation import Asked, Computation, computed, step_map_of
 from verify.hamiltonian import Hamiltonian
-from verify.increments import increments
 from verify.lowering import Lowering
 from verify.number_system import Arithmetic, UnsupportedError
-from verify.program import Evaluator, Program
-from verify.scaling import divided, lowest_power
-from verify.schemes import get
 from verify.step_map import StepMap
 
 OBSERVABLES = (
@@ -85,7 +81,7 @@ def kernel_for(
     compensated: bool = False,
 ) -> Kernel:
     """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once."""
-    step_map = get(scheme).step_map(hamiltonian)
+    step_map = step_map_of(hamiltonian, scheme)
     return Writer(step_map, arithmetic, observables, compensated).kernel()
 
 
@@ -100,39 +96,41 @@ class Writer:
         compensated: bool,
         scaled: bool = True,
     ) -> None:
-        self.map, self.arithmetic = step_map, arithmetic
-        self.observables, self.compensated = observables, compensated
-        self.program = Program()
+        self.arithmetic, self.observables, self.compensated = arithmetic, observables, compensated
+        needs_delta_j = bool(observables & CLOSED_FORM)
+        self.scaled = scaled and arithmetic.absolute and needs_delta_j
+        self.made: Computation = computed(
+            step_map,
+            Asked(
+                pipelined=arithmetic.pipelined,
+                scaled=self.scaled,
+                delta_j=needs_delta_j,
+                determinant="lambda_plain" in observables,
+                tangent="tangent" in observables,
+            ),
+        )
+        self.program, self.tangent = self.made.program, self.made.tangent
         self.lowering = Lowering(
             self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
         )
-        self.tangent = tangent.Tangent(self.program) if "tangent" in observables else None
         self.parameters = step_map.hamiltonian.symbols
         self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
-        self.needs_delta_j = bool(observables & CLOSED_FORM)
-        self.scaled = scaled and arithmetic.absolute and self.needs_delta_j
-        self.power = self.common_power() if self.scaled else 0
-
-    def common_power(self) -> int:
-        """The greatest r for which h^r divides ΔJ of every substep."""
-        changing = [step for step in self.map.substeps if not step.preserves_area]
-        return min(map(lowest_power, changing), default=0)
 
     # -- what is computed ---------------------------------------------------------------------
 
     def kernel(self) -> Kernel:
-        outputs = self.outputs()
+        outputs = self.made.outputs
         lines = self.statements(outputs)
         limits = LIMITS if self.arithmetic.absolute else ()
         scales = SCALES if self.scaled else ()
-        needed = [*outputs.values(), *(self.tangent.needed if self.tangent else ())]
+        needed = self.made.roots
         self.check(needed)
         source = self.assemble(needed, lines, (*scales, *limits))
         scope = {
             **self.arithmetic.functions,
-            **self.lowering.named_constants(self.arithmetic.number),
+            **self.lowering.named_constants(self.arithmetic.number, needed),
             **newton.constants(self.arithmetic.bits, self.arithmetic.number),
-            **(self.tangent.lowering.named_constants(tangent.number) if self.tangent else {}),
+            **self.constants_of_tangent(),
         }
         names, kinds, start = zip(*self.carried, strict=True)
         return Kernel(
@@ -143,7 +141,7 @@ class Writer:
             carried=names,
             kinds=kinds,
             start=start[2:],
-            power=self.power,
+            power=self.made.power,
             lowering=self.lowering,
             outputs=outputs,
             tangent=self.tangent,
@@ -160,51 +158,13 @@ class Writer:
         if self.lowering.solves(needed) and not rounded:
             raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
 
-    def outputs(self) -> dict[str, int]:
-        """Indices of the increments of p and q, of ΔJ and det J as far as they are asked for."""
-        program = self.program
-        # A user's parameter may be named like anything; in the source it is x0, x1, ….
-        arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(self.parameters)}
-        fixed = {n: program.input(a, static=True) for n, a in arguments.items()}
-        zero = program.constant(Fraction(0))
-        state = {n: program.input(n, static=False) for n in ("p", "q")}
-        scale = program.input("kappa", static=True) if self.scaled else None
-        total = {"p": zero, "q": zero}
-        delta_j, jacobian = zero, None
-        for step in self.map.substeps:
-            at = {n: program.add(state[n], total[n]) for n in ("p", "q")}
-            evaluator = Evaluator(program, step.ring, fixed | at, self.arithmetic.pipelined)
-            if self.needs_delta_j and not step.preserves_area:
-                own = evaluator.evaluate(divided(step, self.power), scale)
-                both = program.mul(delta_j, own)
-                if scale is not None and not program.is_constant(both, 0):
-                    both = program.mul(program.input("down", static=True), both)
-                delta_j = program.add(program.add(delta_j, own), both)
-            if "lambda_plain" in self.observables:
-                own_j = [evaluator.evaluate(entry) for entry in step.jacobian]
-                jacobian = own_j if jacobian is None else self.product(own_j, jacobian)
-            if self.tangent:
-                self.tangent.follow(step, evaluator)
-            changes = increments(evaluator, step, fixed["h"])
-            for n, change in zip(("p", "q"), changes, strict=True):
-                total[n] = program.add(total[n], change)
-        result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
-        if jacobian is not None:
-            a, b, c, d = jacobian
-            minus = program.neg(program.mul(b, c))
-            result["det"] = program.add(program.mul(a, d), minus)
-        return result
-
-    def product(self, x: Sequence[int], y: Sequence[int]) -> list[int]:
-        """The 2 × 2 matrix product x y, row by row."""
-        add, mul = self.program.add, self.program.mul
-        return [
-            add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])) for i in (0, 1) for j in (0, 1)
-        ]
+    def constants_of_tangent(self) -> dict[str, Any]:
+        made = self.tangent
+        return made.lowering.named_constants(tangent.number, made.change) if made else {}
 
     # -- how it is written --------------------------------------------------------------------
 
-    def statements(self, outputs: dict[str, int]) -> list[str]:
+    def statements(self, outputs: Mapping[str, int]) -> list[str]:
         """The loop's statements after the values: observables first, then the step."""
         value = {name: self.lowering.name(index) for name, index in outputs.items()}
         lines: list[str] = []

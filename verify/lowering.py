@@ -1,6 +1,6 @@
 """A program's operations → lines of source, those before the loop apart from those in it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -37,28 +37,29 @@ class Lowering:
 
     def live(self, roots: Sequence[int]) -> list[int]:
         """The operations that the roots need, in their order."""
-        live, stack = set(roots), list(roots)
-        while stack:
-            new = set(self.program.ops[stack.pop()].args) - live
-            live |= new
-            stack += new
-        return sorted(live)
+        return self.program.live(roots)
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
         """The lines that compute the roots: those before the loop, and those in it."""
         program, live = self.program, self.live(roots)
+        ops, prefix, static_ones = program.ops, self.prefix, program.static
         static: list[str] = []
         dynamic: list[str] = []
         for index in live:
-            if index in self._written or program.ops[index].kind == "const":
+            kind, args, *_ = op = ops[index]
+            if kind in _INFIX:
+                x, y = args
+                line = f"{prefix}{index} = {prefix}{x} {_INFIX[kind]} {prefix}{y}"
+            elif kind == "const" or index in self._written:
                 continue
-            if program.ops[index].kind == "loop":
-                before, inside = self._newton(program.loops[program.ops[index].degree])
+            elif kind == "loop":
+                before, inside = self._newton(program.loops[op.degree])
                 static += before
                 dynamic += inside
                 continue
-            line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
-            (static if program.static[index] else dynamic).append(line)
+            else:
+                line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
+            (static if static_ones[index] else dynamic).append(line)
         return static, dynamic
 
     def _pair(self, index: int, live: Sequence[int]) -> str | None:
@@ -127,8 +128,6 @@ class Lowering:
         match op.kind:
             case "input":
                 return op.name
-            case "add" | "sub" | "mul":
-                return f" {_INFIX[op.kind]} ".join(args)
             case "neg":
                 return f"-{args[0]}"
             case "inverse":
@@ -151,20 +150,25 @@ class Lowering:
         radicand = self.program.ops[op.args[0]]
         return radicand.kind == "const" and radicand.value > 0
 
-    def constants(self) -> Mapping[int, Fraction]:
-        return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
+    def named_constants(self, number: Any, roots: Sequence[int] | None = None) -> dict[str, Any]:
+        """The constants, and roots that are given, as numbers by their names in the source.
 
-    def named_constants(self, number: Any) -> dict[str, Any]:
-        """The constants, and roots that are given, as numbers by their names in the source."""
-        found = {self.name(i): number(value) for i, value in self.constants().items()}
-        for index, op in enumerate(self.program.ops):
-            if self._given(index):
-                radicand = self.program.ops[op.args[0]].value
+        `roots`: those alone that these need.
+        """
+        program, found = self.program, {}
+        live = range(len(program.ops)) if roots is None else self.live(roots)
+        for index in live:
+            op = program.ops[index]
+            if op.kind == "const":
+                found[self.name(index)] = number(op.value)
+            elif self._given(index):
+                radicand = program.ops[op.args[0]].value
                 found[f"number_{self.name(index)}"] = number(
                     _root(radicand, op.degree, self.bits + _GUARD)
                 )
-        for loop in self.program.loops:
-            found |= self.inner(loop).named_constants(number)
+        for loop in self.loops(live):
+            needed = None if roots is None else [*loop.updates, *loop.determinants]
+            found |= self.inner(loop).named_constants(number, needed)
         return found
 
 

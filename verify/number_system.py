@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
+from types import CodeType
 from typing import Any
 
 
@@ -53,9 +55,15 @@ def bits_for(digits: int) -> int:
     return math.ceil(digits * math.log2(10)) + 1
 
 
+@lru_cache(maxsize=64)
+def _code(source: str, name: str) -> CodeType:
+    """Compiled once for all precisions, whose kernels differ in their constants alone."""
+    return compile(source, f"<kernel {name}>", "exec")
+
+
 def interpreted(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     """The function of that name as plain Python: the `compile` of what has no compiler."""
     scope = dict(namespace)
-    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
+    exec(_code(source, name), scope)  # noqa: S102 - our own source
     function: Callable[..., Any] = scope[name]
     return function

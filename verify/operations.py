@@ -3,20 +3,25 @@
 Operations are hash-consed, so a subexpression that occurs twice is computed once. What depends
 only on the step size, the parameters and constants is `static`, and is computed once before the
 loop. Constants stay exact rationals; an arithmetic converts them at the edge.
+
+A way to write something is tried in the program itself, and taken back; what is best is put back as
+it was. So a trial costs what it adds, however long the program is.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any, NamedTuple
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
 _COST = {"input": 0, "add": 1, "sub": 1, "neg": 1, "mul": 4}
 _COST_OF_FUNCTION = 40
+_ZERO = Fraction(0)
+_SPECIAL = (0, 1, -1)  # constants that products and sums are shorter with
 
 
-@dataclass(frozen=True)
-class Op:
+class Op(NamedTuple):
     """`kind`: input, const, add, sub, mul, neg, inverse, root, loop, solved, or a function's name.
 
     `loop` is the program's loop number `degree`, and depends on `args`; `solved` is the unknown of
@@ -26,7 +31,7 @@ class Op:
     kind: str
     args: tuple[int, ...] = ()
     name: str = ""
-    value: Fraction = Fraction(0)
+    value: Fraction = _ZERO
     degree: int = 1
 
 
@@ -47,91 +52,204 @@ class Loop:
     determinants: tuple[int, ...]
 
 
+class Mark(NamedTuple):
+    """How long a program was: its operations, what is known of them, its loops, and their cost."""
+
+    ops: int
+    keys: int
+    loops: int
+    cost: int
+
+
+class Tail(NamedTuple):
+    """What a program had beyond a mark."""
+
+    ops: list[Op]
+    static: list[bool]
+    depth: list[int]
+    keys: list[Any]
+    known: list[int]
+    loops: list[Loop]
+    cost: int
+
+
 class Program:
-    """A growing list of operations; each method returns the index of its result."""
+    """A growing list of operations; each method returns the index of its result.
+
+    `cost`: what the loop's operations cost; a product is worth several sums.
+    """
 
     def __init__(self) -> None:
         self.loops: list[Loop] = []
         self.ops: list[Op] = []
         self.static: list[bool] = []
         self.depth: list[int] = []
-        self._known: dict[Op, int] = {}
+        self.cost = 0
+        # Results by what they are of: numbers and texts, as the hash of a Fraction takes long.
+        self._known: dict[Any, int] = {}
+        self._keys: list[Any] = []  # of `_known`, in their order
+        self._special: dict[int, int] = {}  # which constants are 0, 1 and −1
+        self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
-    def _add(self, op: Op, static: bool) -> int:
-        if op not in self._known:
-            self._known[op] = len(self.ops)
-            self.ops.append(op)
-            self.static.append(static)
-            ready = max((self.depth[a] for a in op.args), default=0)
-            cost = 0 if static else _LATENCY.get(op.kind, _FUNCTION_LATENCY if op.args else 0)
-            self.depth.append(0 if static else ready + cost)
-        return self._known[op]
+    # -- trials -------------------------------------------------------------------------------
 
-    def copy(self) -> "Program":
-        """One that grows on its own from here."""
-        other = Program()
-        other.ops, other.static, other.depth = self.ops[:], self.static[:], self.depth[:]
-        other.loops = self.loops[:]
-        other._known = dict(self._known)
-        return other
+    def mark(self) -> Mark:
+        return Mark(len(self.ops), len(self._keys), len(self.loops), self.cost)
 
-    @property
-    def cost(self) -> int:
-        """What the loop's operations cost; a product is worth several sums."""
-        return sum(
-            _COST.get(op.kind, _COST_OF_FUNCTION)
-            for op, static in zip(self.ops, self.static, strict=True)
-            if not static
-        )
+    def cut(self, mark: Mark) -> Tail:
+        """Takes back all that was written since the mark."""
+        known, keys = self._known, self._keys[mark.keys :]
+        tail = Tail(
+            self.ops[mark.ops :], self.static[mark.ops :], self.depth[mark.ops :],
+            keys, [known.pop(key) for key in keys], self.loops[mark.loops :], self.cost,
+        )  # fmt: skip
+        del self.ops[mark.ops :], self.static[mark.ops :], self.depth[mark.ops :]
+        del self._keys[mark.keys :], self.loops[mark.loops :]
+        self.cost = mark.cost
+        if any(index >= mark.ops for index in self._special):
+            self._special = {i: x for i, x in self._special.items() if i < mark.ops}
+        return tail
+
+    def put_back(self, tail: Tail) -> None:
+        """Writes what was cut off where the program now ends."""
+        self.ops += tail.ops
+        self.static += tail.static
+        self.depth += tail.depth
+        self._keys += tail.keys
+        self._known.update(zip(tail.keys, tail.known, strict=True))
+        self.loops += tail.loops
+        self.cost = tail.cost
+        self._special.update((i, x) for x in _SPECIAL if (i := self._known.get((x, 1))) is not None)
+
+    def live(self, roots: Sequence[int]) -> list[int]:
+        """The operations that the roots need, in their order."""
+        length, live = self._live.get(key := tuple(roots), (-1, []))
+        if length != len(self.ops):
+            live = self._found_live(roots)
+            self._live[key] = len(self.ops), live
+        return live
+
+    def _found_live(self, roots: Sequence[int]) -> list[int]:
+        ops, live, stack = self.ops, set[int](), list(roots)
+        while stack:
+            index = stack.pop()
+            if index not in live:
+                live.add(index)
+                stack += ops[index].args
+        return sorted(live)
+
+    # -- operations ---------------------------------------------------------------------------
+
+    def _new(self, key: Any, op: Op, static: bool) -> int:
+        index = len(self.ops)
+        self._known[key] = index
+        self._keys.append(key)
+        self.ops.append(op)
+        self.static.append(static)
+        if static:
+            self.depth.append(0)
+            return index
+        depth, kind = self.depth, op.kind
+        ready = max([depth[a] for a in op.args], default=0)
+        depth.append(ready + _LATENCY.get(kind, _FUNCTION_LATENCY if op.args else 0))
+        self.cost += _COST.get(kind, _COST_OF_FUNCTION)
+        return index
+
+    def _binary(self, kind: str, x: int, y: int) -> int:
+        key = kind, x, y
+        found = self._known.get(key)
+        if found is not None:
+            return found
+        index, depth = len(self.ops), self.depth
+        self._known[key] = index
+        self._keys.append(key)
+        self.ops.append(tuple.__new__(Op, (kind, (x, y), "", _ZERO, 1)))
+        if self.static[x] and self.static[y]:
+            self.static.append(True)
+            depth.append(0)
+        else:
+            self.static.append(False)
+            depth.append((depth[x] if depth[x] > depth[y] else depth[y]) + _LATENCY[kind])
+            self.cost += _COST[kind]
+        return index
 
     def input(self, name: str, *, static: bool) -> int:
-        return self._add(Op("input", name=name), static)
+        key = "input", name
+        found = self._known.get(key)
+        return self._new(key, Op("input", name=name), static) if found is None else found
 
     def constant(self, value: Fraction) -> int:
-        return self._add(Op("const", value=value), True)
+        return self.quotient(value.numerator, value.denominator)
+
+    def quotient(self, numerator: int, denominator: int) -> int:
+        """The constant that is their quotient, in lowest terms with a positive denominator."""
+        key = numerator, denominator
+        found = self._known.get(key)
+        if found is not None:
+            return found
+        index = self._new(key, Op("const", value=Fraction(numerator, denominator)), True)
+        if denominator == 1 and numerator in _SPECIAL:
+            self._special[index] = numerator
+        return index
 
     def apply(self, kind: str, *args: int, degree: int = 1) -> int:
         """A function, `neg`, `inverse` or `root` of earlier results."""
-        return self._add(Op(kind, args, degree=degree), all(self.static[a] for a in args))
+        key = kind, degree, args
+        found = self._known.get(key)
+        if found is not None:
+            return found
+        return self._new(key, Op(kind, args, degree=degree), all(self.static[a] for a in args))
 
     def solve(self, loop: Loop, given: Sequence[int]) -> list[int]:
         """The values that a loop finds; `given`: what it reads of this program."""
         self.loops.append(loop)
         read = (*loop.starts, *loop.added_to, *given)
-        made = self._add(Op("loop", read, degree=loop.number), False)
-        return [self._add(Op("solved", (made,), degree=k), False) for k in range(len(loop.starts))]
+        made = self._new(("loop", loop.number), Op("loop", read, degree=loop.number), False)
+        return [
+            self._new(("solved", made, k), Op("solved", (made,), degree=k), False)
+            for k in range(len(loop.starts))
+        ]
 
     def is_constant(self, x: int, value: int) -> bool:
-        return self.ops[x].kind == "const" and self.ops[x].value == value
+        return self._known.get((value, 1)) == x
 
     def neg(self, x: int) -> int:
-        if self.ops[x].kind == "const":
-            return self.constant(-self.ops[x].value)
-        if self.ops[x].kind == "neg":
-            return self.ops[x].args[0]
+        op = self.ops[x]
+        if op.kind == "const":
+            return self.quotient(-op.value.numerator, op.value.denominator)
+        if op.kind == "neg":
+            return op.args[0]
         return self.apply("neg", x)
 
     def add(self, x: int, y: int) -> int:
-        for a, b in ((x, y), (y, x)):
-            if self.is_constant(a, 0):
-                return b
-        if self.ops[y].kind == "neg":
-            return self.apply("sub", x, self.ops[y].args[0])
-        if self.ops[x].kind == "neg":
-            return self.apply("sub", y, self.ops[x].args[0])
-        return self.apply("add", *sorted((x, y)))
+        special, ops = self._special, self.ops
+        if x in special and special[x] == 0:
+            return y
+        if y in special and special[y] == 0:
+            return x
+        if ops[y].kind == "neg":
+            return self._binary("sub", x, ops[y].args[0])
+        if ops[x].kind == "neg":
+            return self._binary("sub", y, ops[x].args[0])
+        return self._binary("add", x, y) if x <= y else self._binary("add", y, x)
 
     def mul(self, x: int, y: int) -> int:
-        for a, b in ((x, y), (y, x)):
-            if self.is_constant(a, 0):
-                return a
-            if self.is_constant(a, 1):
-                return b
-            if self.is_constant(a, -1):
-                return self.neg(b)
-            if self.ops[a].kind == "neg" and not self.static[a]:
-                return self.neg(self.mul(self.ops[a].args[0], b))
-        return self.apply("mul", *sorted((x, y)))
+        special, ops, static = self._special, self.ops, self.static
+        if x in special:
+            return self._multiple(special[x], x, y)
+        if ops[x].kind == "neg" and not static[x]:
+            return self.neg(self.mul(ops[x].args[0], y))
+        if y in special:
+            return self._multiple(special[y], y, x)
+        if ops[y].kind == "neg" and not static[y]:
+            return self.neg(self.mul(ops[y].args[0], x))
+        return self._binary("mul", x, y) if x <= y else self._binary("mul", y, x)
+
+    def _multiple(self, n: int, constant: int, x: int) -> int:
+        """n x for n = 0, 1, −1, which is a constant of that index."""
+        if n == 0:
+            return constant
+        return x if n == 1 else self.neg(x)
 
     def times(self, x: int, n: int) -> int:
         """n x for a positive integer n, by sums."""
@@ -143,7 +261,7 @@ class Program:
 
     def power(self, x: int, n: int) -> int:
         if n == 0:
-            return self.constant(Fraction(1))
+            return self.quotient(1, 1)
         if n == 1:
             return x
         half = self.power(x, n // 2)

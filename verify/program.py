@@ -4,12 +4,13 @@ A polynomial in p and q keeps one coefficient per monomial, whatever h and the p
 inside it, since what is static is computed once before the loop.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from fractions import Fraction
-from itertools import pairwise, permutations
+from itertools import permutations
+from typing import Any, TypeVar
 
 from verify.generator import Generator
-from verify.operations import Loop
+from verify.operations import Loop, Tail
 from verify.operations import Op as Op
 from verify.operations import Program as Program
 from verify.ring import Poly, Ring
@@ -18,6 +19,14 @@ from verify.solved import System
 _MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 
 Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
+# A polynomial by the exponents of its variables, one after the other: its coefficients' indices.
+Nest = dict[int, Any]  # down to indices
+Cost = tuple[int, int]
+T = TypeVar("T")
+
+
+class _TooDearError(Exception):
+    """A trial that costs more than the best one so far."""
 
 
 class Evaluator:
@@ -35,6 +44,7 @@ class Evaluator:
         self.pipelined = pipelined
         self._at: dict[int, int] = {}
         self._inputs = inputs
+        self._most: int | None = None  # operations, beyond which a trial is given up
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
         """The index of x's value, or of its product with a static value (the index `factor`)."""
@@ -42,16 +52,34 @@ class Evaluator:
         for generator in used:
             self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
-        terms = self._collect(x, dynamic)
+        terms = self._collect(x, dynamic, {g.index for g in used}.difference(dynamic))
         if factor is not None:
             terms = [(outer, self.program.mul(c, factor)) for outer, c in terms]
         return self._nested(terms, [self._at[i] for i in dynamic])
 
-    def on_a_copy(self) -> "Evaluator":
-        """The same, writing into a copy of the program."""
-        other = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
-        other._at = dict(self._at)
-        return other
+    def cheapest(self, ways: Sequence[Callable[[], T]]) -> T:
+        """What the way returns that writes the fewest operations; of such the first."""
+        if len(ways) == 1:
+            return ways[0]()
+        program, known, most, mark = self.program, self._at, self._most, self.program.mark()
+        best: tuple[int, Tail, dict[int, int], T] | None = None
+        for way in ways:
+            self._at = dict(known)
+            try:
+                found = way()
+            except _TooDearError:
+                program.cut(mark)
+                continue
+            cost, tail = program.cost, program.cut(mark)
+            if best is None or cost < best[0]:
+                best = cost, tail, self._at, found
+                self._most = cost
+        self._most = most
+        if best is None:
+            raise _TooDearError
+        program.put_back(best[1])
+        self._at = best[2]
+        return best[3]
 
     def at(self, generator: Generator) -> int:
         """The index of a generator's value."""
@@ -67,7 +95,7 @@ class Evaluator:
         if g.kind == "variable":
             return self._inputs[str(g.expression)]
         if g.kind == "pi":
-            return self.program._add(Op("pi"), True)
+            return self.program.apply("pi")
         if g.kind == "stage":
             return self.evaluate(g.argument)
         if g.kind == "solved":
@@ -98,25 +126,28 @@ class Evaluator:
         for g, at in zip(unknown, found, strict=True):
             self.set(g, at)
 
-    def _collect(self, x: Poly, dynamic: Sequence[int]) -> list[Term]:
+    def _collect(self, x: Poly, dynamic: Sequence[int], static: Collection[int]) -> list[Term]:
         """x by monomials in the dynamic generators, the static coefficients evaluated."""
-        parts: dict[tuple[int, ...], list[tuple[tuple[int, ...], Fraction]]] = {}
+        parts: dict[tuple[int, ...], int] = {}
+        program, at = self.program, [(i, self._at[i]) for i in sorted(static)]
+        by_outer: dict[tuple[int, ...], list[tuple[Any, Any]]] = {}
         for monomial, c in x.to_dict().items():
-            outer = tuple(int(monomial[i]) for i in dynamic)
-            inner = tuple(0 if i in dynamic else int(n) for i, n in enumerate(monomial))
-            parts.setdefault(outer, []).append((inner, Fraction(int(c.numer()), int(c.denom()))))
-        return [(outer, self._static(terms)) for outer, terms in parts.items()]
-
-    def _static(self, terms: Sequence[tuple[tuple[int, ...], Fraction]]) -> int:
-        program = self.program
-        total = program.constant(Fraction(0))
-        for monomial, coefficient in terms:
-            product = program.constant(coefficient)
-            for index, n in enumerate(monomial):
-                if n:
-                    product = program.mul(product, program.power(self._at[index], n))
-            total = program.add(total, product)
-        return total
+            outer = tuple([int(monomial[i]) for i in dynamic])
+            by_outer.setdefault(outer, []).append((monomial, c))
+        zero, powers = Fraction(0), dict[tuple[int, Any], int]()
+        for outer, terms in by_outer.items():
+            total = program.constant(zero)
+            for monomial, c in terms:
+                product = program.quotient(int(c.p), int(c.q))
+                for index, value in at:
+                    if n := monomial[index]:
+                        power = powers.get((index, n))
+                        if power is None:
+                            power = powers[index, n] = program.power(value, int(n))
+                        product = program.mul(product, power)
+                total = program.add(total, product)
+            parts[outer] = total
+        return list(parts.items())
 
     def _nested(self, terms: list[Term], variables: list[int]) -> int:
         """The sum of the terms by the cheapest of the ways that are tried.
@@ -124,48 +155,53 @@ class Evaluator:
         Ways: each order of the variables, by Horner's rule (fewest operations) or by Estrin's
         (least latency: pairs of coefficients first, then pairs of pairs).
         """
-        orders = [tuple(range(len(variables)))]
-        if 1 < len(variables) <= _MOST_VARIABLES:
-            orders = list(permutations(range(len(variables))))
-        ways = [(order, estrin) for order in orders for estrin in (False, True)]
-
-        def cost(way: tuple[tuple[int, ...], bool]) -> tuple[int, int]:
-            trial = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
-            result = trial._sum(terms, variables, *way)
-            latency, count = trial.program.depth[result], trial.program.cost
-            return (latency, count) if self.pipelined else (count, latency)
-
-        return self._sum(terms, variables, *min(ways, key=cost))
+        if not terms:
+            return self.program.constant(Fraction(0))
+        occurring = [k for k in range(len(variables)) if any(outer[k] for outer, _ in terms)]
+        if not occurring:
+            return terms[0][1]
+        orders = [tuple(occurring)]
+        if len(variables) <= _MOST_VARIABLES:
+            orders = list(permutations(occurring))
+        program, mark = self.program, self.program.mark()
+        best: tuple[Cost, Tail, int] | None = None
+        for order in orders:
+            nest = _nest(terms, order)
+            values = [variables[k] for k in order]
+            for sum_ in (self._horner, self._estrin):
+                result = self._sum(nest, values, 0, sum_)
+                latency, count = program.depth[result], program.cost
+                cost = (latency, count) if self.pipelined else (count, latency)
+                tail = program.cut(mark)
+                if best is None or cost < best[0]:
+                    best = cost, tail, result
+        assert best is not None  # noqa: S101 - there is one way at least
+        program.put_back(best[1])
+        if self._most is not None and program.cost > self._most:
+            raise _TooDearError
+        return best[2]
 
     def _sum(
-        self, terms: list[Term], variables: list[int], order: tuple[int, ...], estrin: bool
+        self, nest: Nest, values: list[int], at: int, sum_: Callable[[dict[int, int], int], int]
     ) -> int:
-        """The terms as a polynomial in the first variable of `order`, its coefficients likewise."""
-        if not order:
-            total = self.program.constant(Fraction(0))
-            for _, coefficient in terms:
-                total = self.program.add(total, coefficient)
-            return total
-        groups: dict[int, list[Term]] = {}
-        for term in terms:
-            groups.setdefault(term[0][order[0]], []).append(term)
-        coefficients = {
-            n: self._sum(group, variables, order[1:], estrin) for n, group in groups.items()
-        }
+        """A polynomial in the variable of number `at`, its coefficients in those after it."""
+        coefficients: dict[int, int] = nest
+        if at + 1 < len(values):
+            coefficients = {n: self._sum(part, values, at + 1, sum_) for n, part in nest.items()}
         if len(coefficients) == 1 and 0 in coefficients:
             return coefficients[0]
-        evaluate = self._estrin if estrin else self._horner
-        return evaluate(coefficients, variables[order[0]])
+        return sum_(coefficients, values[at])
 
     def _horner(self, coefficients: dict[int, int], x: int) -> int:
         program = self.program
+        add, mul, power = program.add, program.mul, program.power
         powers = sorted(coefficients, reverse=True)
-        total = coefficients[powers[0]]
-        for above, n in pairwise([*powers, 0]):
-            total = program.mul(total, program.power(x, above - n))
-            if n in coefficients and n != above:
-                total = program.add(total, coefficients[n])
-        return total
+        above = powers[0]
+        total = coefficients[above]
+        for n in powers[1:]:
+            total = add(mul(total, power(x, above - n)), coefficients[n])
+            above = n
+        return mul(total, power(x, above))
 
     def _estrin(self, coefficients: dict[int, int], x: int) -> int:
         """c₀ + c₁ x + (c₂ + c₃ x) x² + …, pairwise again in x²."""
@@ -178,3 +214,15 @@ class Evaluator:
                 paired[half] = program.add(paired[half], term) if half in paired else term
             coefficients, x = paired, program.mul(x, x)
         return coefficients[0]
+
+
+def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
+    """The terms by the exponents of the variables in this order."""
+    *outer, last = order
+    nest: dict[int, Any] = {}
+    for exponents, coefficient in terms:
+        inner = nest
+        for k in outer:
+            inner = inner.setdefault(exponents[k], {})
+        inner[exponents[last]] = coefficient
+    return nest

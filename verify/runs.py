@@ -14,6 +14,7 @@ from typing import Any
 from verify import arithmetic as number_systems
 from verify.balls import in_reach, middle_and_radius
 from verify.bounds import Bounded
+from verify.computation import step_map_of
 from verify.digits import Measured, choose, measure
 from verify.enclosure import enclose
 from verify.errors import InputError
@@ -23,7 +24,6 @@ from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
 from verify.precision import working_precision
 from verify.results import RunResult, Value
-from verify.schemes import get
 from verify.step_map import StepMap
 from verify.stepping import Job
 from verify.walk import Progress
@@ -63,7 +63,7 @@ def run(
     check(hamiltonian, steps, digits, observables)
     if isinstance(points, bool) or not isinstance(points, int) or points < 0:
         raise InputError("points", points, "must be a whole number, 0 or more")
-    step_map = get(scheme).step_map(hamiltonian)
+    step_map = step_map_of(hamiltonian, scheme)
     known = proved(step_map, start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
     job = Job(hamiltonian, scheme, start, steps, needed, points, keeper)
@@ -111,7 +111,7 @@ def known_run(
 ) -> RunResult | None:
     """The observables without any step, and without p and q, where a proof gives all of them."""
     check(hamiltonian, steps, digits, observables)
-    known = proved(get(scheme).step_map(hamiltonian), step_size, steps, digits)
+    known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
     if not set(observables) <= set(known):
         return None
     return RunResult(

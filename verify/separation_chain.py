@@ -14,6 +14,7 @@ from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.bounds import working_digits
+from verify.computation import step_map_of
 from verify.digits import choose, measure
 from verify.errors import InputError
 from verify.exact import magnitude
@@ -21,7 +22,6 @@ from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
 from verify.number_system import UnsupportedError
 from verify.runs import proved
-from verify.schemes import get
 from verify.separation_working import (
     POINTS,
     Advance,
@@ -132,7 +132,7 @@ class Separation:
         keeper: Keeper = NOTHING,
     ) -> None:
         self.job = Job(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
-        self.map = get(scheme).step_map(hamiltonian)
+        self.map = step_map_of(hamiltonian, scheme)
 
     def chains(
         self, digits: int, arithmetic: str = AUTO, advance: Advance = lambda _: None
@@ -251,7 +251,7 @@ def _rounded_map(exact: StepMap, rounded: Job) -> StepMap | None:
     if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
         return exact
     try:
-        return get(rounded.scheme).step_map(rounded.generic.with_values(values))
+        return step_map_of(rounded.generic.with_values(values), rounded.scheme)
     except InputError:
         return None
 

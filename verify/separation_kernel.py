@@ -30,11 +30,11 @@ from typing import Any
 
 from verify import arithmetic as number_systems
 from verify import newton
+from verify.computation import step_map_of
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import PARTIAL, Kernel, Writer
 from verify.lowering import Lowering
 from verify.number_system import Arithmetic, UnsupportedError
-from verify.schemes import get
 from verify.step_map import StepMap
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
@@ -78,7 +78,7 @@ def mixed_kernel(
 
     Raises UnsupportedError where the arithmetic lacks a function.
     """
-    step_map = get(scheme).step_map(hamiltonian)
+    step_map = step_map_of(hamiltonian, scheme)
     float64 = number_systems.get("float64", 17)
     narrow = _written(step_map, float64, WORKING)
     if arithmetic.absolute and narrow.lowering.solves(narrow.roots):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 
+from verify.computation import step_map_of
 from verify.errors import InputError
 from verify.exact import text
 from verify.hamiltonian import Hamiltonian
@@ -14,7 +15,6 @@ from verify.kernel import Kernel, kernel_for
 from verify.number_system import Arithmetic
 from verify.reach import Limits, limits
 from verify.results import SeriesPoint
-from verify.schemes import get
 from verify.walk import Progress, Walk
 
 
@@ -62,7 +62,7 @@ def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
 @lru_cache(maxsize=256)
 def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
     try:
-        get(scheme).step_map(hamiltonian)
+        step_map_of(hamiltonian, scheme)
     except InputError:
         return False
     return True
@@ -94,7 +94,7 @@ class Job:
     @property
     def solved(self) -> bool:
         """Whether a step solves equations; there is no certificate of such runs."""
-        return get(self.scheme).step_map(self.generic).solved
+        return step_map_of(self.generic, self.scheme).solved
 
     def observing(self, observables: frozenset[str]) -> "Job":
         """The same job with other observables, and without a series."""

@@ -37,9 +37,10 @@ def at_bits(bits: int) -> Arithmetic:
         emax=gmpy2.get_emax_max(),
     )
 
+    own = made()
+
     def number(value: Fraction) -> Any:
-        with made():
-            return gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator))
+        return gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator), 0, own)
 
     names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt")
     with made():

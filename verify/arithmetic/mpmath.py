@@ -6,6 +6,8 @@ The global `mpmath.mp` is neither used nor changed.
 from collections.abc import Callable
 from contextlib import nullcontext
 from fractions import Fraction
+from functools import lru_cache
+from threading import get_ident
 from typing import Any
 
 from mpmath import libmp
@@ -23,6 +25,12 @@ def make(digits: int) -> Arithmetic:
 
 
 def at_bits(bits: int) -> Arithmetic:
+    # A context takes 1 ms, and is no other thread's: mpmath's functions change it for a while.
+    return _made(bits, get_ident())
+
+
+@lru_cache(maxsize=32)
+def _made(bits: int, _thread: int) -> Arithmetic:
     context = MPContext()
     context.prec = bits
 
