@@ -44,6 +44,8 @@ def same_step(example: Example, matrix: Matrix, factor: Fraction, time: Fraction
 
     Raises Violation where they differ.
     """
+    if not example.brief:
+        return False
     (a, b), (c, d) = matrix
     p, q = example.p, example.q
     ours = ball_steps(example.step_map, p, q, example.step_size, 1)

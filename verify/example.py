@@ -5,12 +5,16 @@ from fractions import Fraction
 from functools import cached_property
 
 from verify.errors import InputError
+from verify.generic import TaylorSeries
 from verify.hamiltonian import Hamiltonian
 from verify.proof.order import Proof, prove
 from verify.scene import Scene
 from verify.scheme import Scheme
 from verify.schemes import get
 from verify.step_map import StepMap
+
+_MOST_TERMS = 40  # of an ordinary map, in all its parts
+_MOST_OF_POINTS = 150  # of one that is looked at in a few points
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,42 @@ class Example:
     @cached_property
     def proof(self) -> Proof:
         return prove(self.step_map, self.scheme)
+
+    @cached_property
+    def ordinary(self) -> bool:
+        """Whether its map is short enough to be proved and compiled in a moment.
+
+        What needs a proof or a kernel speaks of these alone, so that among thousands of drawn
+        scenes not one takes minutes: lie6 of a trigonometric H has a thousand terms, and a
+        composition's series for a rational H as many denominators.
+        """
+        scheme = self.scheme
+        if self._terms > _MOST_TERMS:
+            return False
+        if self.polynomial or scheme.order <= 2 or isinstance(scheme.generic, TaylorSeries):
+            return True
+        by_turns = bool(getattr(scheme.generic, "separable", False))
+        return by_turns and not self._kinds & {"inverse", "root"}
+
+    @property
+    def brief(self) -> bool:
+        """Whether its map is short enough to be looked at in a few points in a moment."""
+        return self._terms <= _MOST_OF_POINTS
+
+    @cached_property
+    def _terms(self) -> int:
+        return sum(step.length for step in self.step_map.substeps)
+
+    @property
+    def polynomial(self) -> bool:
+        """Whether H is a polynomial."""
+        return self._kinds <= {"variable"}
+
+    @cached_property
+    def _kinds(self) -> set[str]:
+        """Of what H's derivatives are made."""
+        field = self.step_map.substeps[0].field
+        return {g.kind for g in field.ring.used(field.h_p, field.h_q)}
 
     @property
     def start(self) -> dict[str, Fraction]:

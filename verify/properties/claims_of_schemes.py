@@ -9,6 +9,8 @@ from verify.verdict import Verdict
 
 
 def holds(example: Example) -> bool:
+    if not example.ordinary:
+        return False
     proof, scheme = example.proof, example.scheme
     if proof.verdict is Verdict.REFUTED:
         raise Violation(f"{scheme.name} is refuted: {proof.reason}")

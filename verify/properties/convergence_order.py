@@ -20,8 +20,10 @@ _WITHIN = Fraction(1, 10)  # of a whole order
 
 
 def holds(example: Example) -> bool:
+    if not example.ordinary or example.step_map.solved:
+        return False
     order = example.proof.convergence_order
-    if order is None or example.step_map.solved:
+    if order is None:
         return False
     whole, half = (_error(example, h, order) for h in (_STEP, _STEP / 2))
     if whole is None or half is None:

@@ -16,13 +16,14 @@ from verify.results import RunResult, Value
 from verify.runs import run
 
 _DIGITS = 30
+_COMPILED = 997  # of so many examples one is run in fixed point
 _OBSERVABLES = ("lambda",)
 
 
 def holds(example: Example) -> bool:
-    names = number_systems.names()
-    turn = example.p.numerator + example.q.denominator + example.steps
-    name = names[turn % len(names)]
+    if not example.ordinary:
+        return False
+    name = _turn(example)
     wanted = _enclosed(example)
     if wanted is None:
         return False
@@ -36,6 +37,15 @@ def holds(example: Example) -> bool:
             true = shown(wanted[quantity], 20)
             raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
     return True
+
+
+def _turn(example: Example) -> str:
+    """The number system that is looked at: fixed, which is compiled, in few examples."""
+    turn = 7 * example.steps + example.p.numerator + example.q.denominator
+    if turn % _COMPILED == 0:
+        return "fixed"
+    names = [name for name in number_systems.names() if name != "fixed"]
+    return names[turn % len(names)]
 
 
 def _enclosed(example: Example) -> dict[str, Ball] | None:

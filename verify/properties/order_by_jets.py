@@ -22,9 +22,10 @@ _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 
 def holds(example: Example) -> bool:
-    scheme, proof = example.scheme, example.proof
-    if not _known_for_every_h(scheme) or scheme.order > _MOST_ORDER:
+    scheme = example.scheme
+    if not _known_for_every_h(scheme) or scheme.order > _MOST_ORDER or not example.ordinary:
         return False
+    proof = example.proof
     if proof.area_preserving is None:
         return False
     looked_at = scheme.order + 2

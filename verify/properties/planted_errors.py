@@ -10,8 +10,10 @@ from verify.verdict import Verdict
 
 
 def holds(example: Example) -> bool:
-    order, proof = example.scheme.order, example.proof
-    if example.step_map.solved or proof.verdict is not Verdict.PROVED:
+    order, parts = example.scheme.order, example.step_map.substeps
+    if not example.ordinary or any(part.solved or part.staged for part in parts):
+        return False
+    if example.proof.verdict is not Verdict.PROVED:
         return False
     try:
         found = prove(_planted(example, order), example.scheme)

@@ -13,7 +13,7 @@ from verify.scene import scene_from
 from verify.scene_text import scene_text
 from verify.step_map import StepMap
 
-_LONGEST = 60  # terms of a map that is read back
+_LONGEST = 40  # terms of a map that is read back
 
 
 def holds(example: Example) -> bool:
@@ -40,7 +40,7 @@ def _must_be_same(example: Example, given: Hamiltonian, read: Hamiltonian) -> No
 
 def _must_be_same_map(example: Example) -> None:
     closed = example.step_map.closed
-    if closed is None or closed.length > _LONGEST:
+    if closed is None or closed.length > _LONGEST or closed.staged:
         return
     texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
     read = StepMap.from_formulas(example.hamiltonian, *texts).whole

@@ -18,7 +18,7 @@ _SMALL = Fraction(1, 10**30)
 
 
 def holds(example: Example) -> bool:
-    if not example.scheme.area_preserving:
+    if not example.scheme.area_preserving or not example.ordinary:
         return False
     if example.proof.area_preserving is False:
         raise Violation(f"the proof says that ΔJ has order {example.proof.order}")
