@@ -13,7 +13,7 @@ from verify.scene import scene_from
 from verify.scene_text import scene_text
 from verify.step_map import StepMap
 
-_LONGEST = 40  # terms of a map that is read back
+_LONGEST = 15  # terms of a map that is read back
 
 
 def holds(example: Example) -> bool:

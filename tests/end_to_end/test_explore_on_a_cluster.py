@@ -1,0 +1,80 @@
+"""`verify explore` on a Dask cluster: the same bytes as here, also when a worker is killed."""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.end_to_end.test_command_line import here, json_of
+
+distributed = pytest.importorskip("distributed")
+ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
+         "--scheme", "lie2", "--degree", "3", "--seed", "5", "--json")  # fmt: skip
+HUNT = ("explore", "--maximise", "growth", "--examples", "240", "--steps", "10", "--degree", "2",
+        "--kind", "polynomial", "--seed", "5", "--json")  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs="CRITICAL"
+    ) as made:
+        yield made
+
+
+def killed_when(folder: Path, files: int, pid: int) -> threading.Thread:
+    """Kills the process once so many results are there."""
+
+    def wait() -> None:
+        until = time.monotonic() + 60
+        while len(list(folder.glob("*.json"))) < files and time.monotonic() < until:
+            time.sleep(0.01)
+        os.kill(pid, signal.SIGKILL)
+
+    thread = threading.Thread(target=wait, daemon=True)
+    thread.start()
+    return thread
+
+
+def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
+    cluster: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    asked = (*ASKED, "--examples", "1000")
+    alone = here(capsys, *asked, "--workers", "1")
+    folder = tmp_path / "kept"
+    with distributed.Client(cluster, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=30)
+        pids = list(client.run(os.getpid).values())
+    killer = killed_when(folder, 3, pids[0])
+    address = str(cluster.scheduler_address)
+    found = here(capsys, *asked, "--cluster", address, "--keep", str(folder))
+    killer.join()
+    assert found == alone
+    assert json_of(found[1])["examples"] == 1000
+    assert len(list(folder.glob("*.json"))) == 20, "each stretch once"
+
+
+def test_a_hunt_finds_the_same_on_a_cluster(
+    cluster: Any,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with distributed.Client(cluster, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=30)
+    address = str(cluster.scheduler_address)
+    places = {"one": ("--workers", "1"), "two": ("--workers", "2"), "c": ("--cluster", address)}
+    found = {}
+    for name, where in places.items():
+        status, out, _ = here(capsys, *HUNT, "-o", name, *where)
+        assert status == 0
+        shown = json_of(out)["gallery"]["scenes"]
+        found[name] = [(each["value"], each["scene"]) for each in shown]
+    assert found["one"] == found["two"] == found["c"]
+    assert found["one"]
