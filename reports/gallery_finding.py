@@ -49,7 +49,7 @@ def _are(count: str) -> str:
 def in_short(measure: str, value: float) -> tuple[str, str]:
     """The same as a number and its unit."""
     if measure == "rounding-share":
-        return power(value), f"{_times(value)} the truncation"
+        return power(value), f"{_times(value)} truncation"
     if measure == "growth":
         return power(value), "greatest |Λ|"
     if measure == "digits-lost" and 0 <= value < _ALL_DIGITS:

@@ -56,15 +56,12 @@ def _finding(gallery: Gallery, cards: Sequence[CardView]) -> str:
     count = f"{_scenes(gallery.examples)} of seed {gallery.seed}"
     where = f"{_within(gallery)}, {whole(gallery.steps)} steps each"
     if not cards:
-        return (
-            f"Hunted for: {gallery.sentence}. None of {count} ({where}) can be measured so, or "
-            "what it measures is 0."
-        )
+        return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
     worst = gallery.scenes[0].separation
     return (
-        f"Hunted for: {gallery.sentence}. In the worst of {count} ({where}), "
-        f"{told(gallery.measure, gallery.sentence, gallery.scenes[0].value)}: {worst.scheme} with "
-        f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
+        f"Of {count} ({where}), hunted for the {gallery.sentence}, this is the worst: "
+        f"{told(gallery.measure, gallery.sentence, gallery.scenes[0].value)}, by {worst.scheme} "
+        f"with h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
 
 
@@ -98,7 +95,7 @@ def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
     return CardView(
         result=each,
         anchor=anchor,
-        title=f"{place}. {said[0].upper()}{said[1:]}",
+        title=f"Scene {place}: {said}",
         short=in_short(gallery.measure, each.value),
         setting=_setting(each, gallery.steps),
         finding=(*lambda_of(each), *run_beyond(each)),
@@ -127,7 +124,9 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
 
         lead = f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps"
         svg = gallery_figure.parts(each, name=f"parts-of-{anchor}", label=f"{lead}.")
-        yield Plot(svg, f"{lead}.", Markup(" ").join([_formula(of.hamiltonian), _parts_said(each)]))
+        # That of the worst scene stands on the first screen, far from its card.
+        formula = [_formula(of.hamiltonian)] if place == 1 else []
+        yield Plot(svg, f"{lead}.", Markup(" ").join([*formula, _parts_said(each)]))
     if len(each.orbit) > 1:
         from reports import gallery_figure
 
@@ -147,7 +146,7 @@ def _parts_said(each: GalleryScene) -> str:
     of = each.separation
     series = of.plain.series if of.plain else ()
     said = [
-        f"Λ in float64, evaluated the plain way, after 1 to {whole(of.steps)} steps, split: what "
+        f"Λ in float64, evaluated the plain way, split after up to {whole(of.steps)} steps: what "
         "the scheme does to area, and what rounding adds."
     ]
     if any(not _known(size) for at in series for size in (at.truncation, at.total)):

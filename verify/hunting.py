@@ -5,6 +5,7 @@ together, one for each shape of H, so that ten of them are not ten times the sam
 measured twice, the second time with twice the digits.
 """
 
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -38,6 +39,7 @@ _ISLAND = 200  # scenes that one task looks at
 _DIRECTED = Fraction(3, 5)  # of them, by hypothesis; the others are neighbours of the worst
 _KEPT = 6
 _TENTHS = 20
+_NUMBERS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")  # but exponents
 _AGREEMENT = 0.01  # of lg of a measure, with twice the digits
 
 
@@ -149,10 +151,10 @@ def by_shape(found: Iterable[Worst]) -> list[Worst]:
 
 
 def _shape(each: Worst) -> str:
-    """H's terms without their coefficients."""
+    """H's terms without their coefficients, and without the other numbers but exponents."""
     terms = sympy.Add.make_args(scene_of(each).exact_hamiltonian().exact)
-    primitive = (term.as_content_primitive()[1] for term in terms)
-    return " ".join(sorted({str(term.as_coeff_Mul()[1]) for term in primitive}))
+    primitive = (term.as_content_primitive()[1].as_coeff_Mul()[1] for term in terms)
+    return " + ".join(sorted({_NUMBERS.sub("n", str(term)) for term in primitive}))
 
 
 def scene_of(worst: Worst) -> Scene:
