@@ -59,9 +59,9 @@ def _finding(gallery: Gallery, cards: Sequence[CardView]) -> str:
         return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
     worst = gallery.scenes[0].separation
     return (
-        f"Of {count} ({where}), hunted for the {gallery.sentence}, this is the worst: "
-        f"{told(gallery.measure, gallery.sentence, gallery.scenes[0].value)}, by {worst.scheme} "
-        f"with h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
+        f"In the worst of {count} ({where}), "
+        f"{told(gallery.measure, gallery.sentence, gallery.scenes[0].value)}: {worst.scheme} with "
+        f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
 
 
@@ -77,6 +77,7 @@ def _within(gallery: Gallery) -> str:
 
 def _hunted(gallery: Gallery) -> Iterator[str]:
     low, high = gallery.coefficients
+    yield f"Hunted for: the {gallery.sentence}."
     yield (
         "Scenes were drawn at random, those near bad ones more often, and then moved a little as "
         f"long as that made them worse: initial values with {_within(gallery)}, coefficients of H "

@@ -75,8 +75,8 @@ def _keep_scenes(shown: "Gallery", output: Path) -> None:
     for place, each in enumerate(shown.scenes, start=1):
         write_atomically(output / f"worst-{place}.toml", each.scene)
     for file in output.glob("worst-*.toml"):
-        place = _OWN.fullmatch(file.name)
-        if place and int(place[1]) > len(shown.scenes):
+        own = _OWN.fullmatch(file.name)
+        if own and int(own[1]) > len(shown.scenes):
             file.unlink()
 
 

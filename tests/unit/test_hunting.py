@@ -1,30 +1,22 @@
-"""The hunter finds a planted worst case, the same one each time; measures are what they say."""
+"""The hunter finds a planted worst case, the same one each time."""
 
-import json
 import math
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis.internal.conjecture.data import ConjectureData
 
-from tests.unit.made_gallery import at, gallery, shown
 from verify import hunting, strategies
-from verify.cli_hunt import _command, _keep_scenes
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Store
-from verify.explore_results import HuntResult, Worst
-from verify.gallery import gallery as gallery_of
-from verify.gallery import meaningless
-from verify.hunting import Found, Hunt, by_shape, hunt, scene_of, search
-from verify.measures import MEASURES, Measure, _greatest, digits_lost, growth, rounding_share
+from verify.explore_results import Worst
+from verify.hunting import Hunt, by_shape, hunt, scene_of, search
+from verify.measures import MEASURES, Measure
 from verify.neighbouring_scenes import neighbours
-from verify.scene import scene_from
-from verify.separation import separate
 from verify.tasks import Drawn, HuntTask
 
 POLYNOMIAL = Drawn(kinds=("polynomial",), degree=4)
@@ -35,11 +27,6 @@ def task(**changes: Any) -> HuntTask:
         "drawn": POLYNOMIAL, "seed": 7, "measure": "planted", "island": 0, "count": 200, "steps": 2,
     }  # fmt: skip
     return HuntTask(**own | changes)
-
-
-def example(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Example:
-    grid = {"steps": steps, "step_sizes": [h], "initial_values": [{"q": q, "p": p}]}
-    return Example.of(scene_from({"hamiltonian": formula, "schemes": [scheme], "grid": grid}, "x"))
 
 
 # -- a planted worst case -------------------------------------------------------------------------
@@ -253,118 +240,3 @@ def test_a_bad_argument_is_named(changes: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError) as error:
         Hunt(**good | changes)
     assert said in str(error.value)
-
-
-# -- measures -------------------------------------------------------------------------------------
-
-
-def test_growth_of_the_oscillator_is_its_closed_form() -> None:
-    """lie2 on (p² + ω²q²)/2: det J = 1 + (ωh)⁴/4."""
-    found = growth(example("p**2/2 + 9*q**2/2", "1", "0", "0.1", 50))
-    expected = math.log10(math.expm1(50 * math.log1p(0.3**4 / 4)))
-    assert found == pytest.approx(expected, abs=1e-12)
-    assert growth(example("p**2/2 + q**2/2", "1", "0", "0.1", 50, "symplectic-euler")) is None
-
-
-def test_rounding_share_is_that_of_a_separation() -> None:
-    asked = example("p**2/2 - cos(q)", "1", "0.5", "0.001", 200)
-    largest = separate(
-        asked.hamiltonian, "lie2", q="1", p="0.5", step_size="0.001", steps=200
-    ).plain.largest  # type: ignore[union-attr]
-    expected = math.log10(float(largest["total"]) / float(largest["truncation"]))
-    assert rounding_share(asked) == pytest.approx(expected, abs=1e-4)
-    same = example("p**2/2 - cos(q)", "1", "0.5", "0.001", 200, "symplectic-euler")
-    assert rounding_share(same) is None, "no truncation to be a share of"
-
-
-def test_what_is_below_its_own_error_bound_is_not_hunted() -> None:
-    trail = (Fraction(1, 10**30), Fraction(0))
-    assert _greatest(trail, Fraction(1, 10**29)) == 0
-    assert _greatest(trail, Fraction(1, 10**32)) == Fraction(1, 10**30)
-
-
-def test_digits_lost_is_the_error_of_a_float64_loop() -> None:
-    """Euler's step on the oscillator, whose floating-point operations have one order only."""
-    h, exact, floats = Fraction(1, 20), (Fraction(1), Fraction(1, 2)), (1.0, 0.5)
-    size = Fraction(1)
-    for k in range(400):
-        (q, p), (fq, fp) = exact, floats
-        exact, floats = (q + h * p, p - h * q), (fq + 0.05 * fp, fp - 0.05 * fq)
-        size = max(size, *map(abs, exact)) if (k + 1) % 25 == 0 else size  # 16 checkpoints
-    error = max(abs(Fraction(f) - e) for f, e in zip(floats, exact, strict=True))
-    found = digits_lost(example("p**2/2 + q**2/2", "1", "0.5", "0.05", 400, "euler"))
-    assert found == pytest.approx(math.log10(error / size * 2**53), abs=1e-9)
-
-
-def test_passing_the_origin_loses_no_digits() -> None:
-    """q' = 1 from −1.1: q comes to 0 after 11 steps, where a relative error would be infinite."""
-    found = digits_lost(example("p", "-1.1", "0", "0.1", 11))
-    assert found is not None
-    assert found < 1
-
-
-def test_an_orbit_that_goes_far_has_no_measure() -> None:
-    far = example("p*q", "2", "1", "0.1", 100)
-    assert [each.value(far, 40) for each in MEASURES.values()] == [None] * 3
-
-
-# -- what is shown --------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("series", "first", "over"),
-    [
-        ([(5, "1e-6", "1e-16"), (9, "1e-9", "1e-15")], None, None),
-        ([(5, "1e-12", "1e-16"), (9, "1e-12", "1e-11")], 9, None),
-        ([(5, "1e-16", "1e-15"), (9, "1e-11", "1e-15"), (12, "-1e-10", "1e-14")], 5, 9),
-        ([(5, "1e-6", "0"), (9, "0", "1e-16")], None, None),  # Λ passes through 0
-        ([(5, "0", "0"), (9, "0", "0")], None, None),  # nothing, or of no known digit
-        ([(5, "0", "0"), (9, "1e-6", "1e-12")], None, None),
-        ([(5, "0", "-1e-16")], 5, None),  # all of it is rounding
-    ],
-)
-def test_where_lambda_is_meaningless(
-    series: list[tuple[int, str, str]], first: int | None, over: int | None
-) -> None:
-    found = meaningless([at(*each) for each in series])
-    assert (found.first, found.over) == (first, over)
-
-
-def test_a_run_that_does_not_end_is_shown_by_the_hunts_own() -> None:
-    asked = Hunt(measure="growth", seed=1, examples=1, steps=20)
-    text = _text("p**2/2 + 9*q**2/2").replace("steps = 2", "steps = 20")
-    far = _text("p*q**2").replace("steps = 2", "steps = 20")
-    found = Found((Worst(value=1.0, scene=text), Worst(value=0.5, scene=far)), 2)
-    kept, lost = gallery_of(asked, found, Store(None), workers=1).scenes
-    assert (kept.separation.steps, kept.longer) == (2000, None)
-    assert (lost.separation.steps, lost.separation.status) == (20, "finished")
-    assert lost.longer is not None
-    assert (lost.longer.steps, lost.longer.status) == (2000, "left range")
-    assert lost.orbit[0] == ("1.00000e-01", "1.00000e-01")
-    assert "separate = true" in kept.scene, "its own report shows what the gallery shows"
-
-
-def test_the_command_makes_the_same_hunt_again() -> None:
-    drawn = Drawn(kinds=("polynomial",), degree=4, schemes=("lie1", "p_next = p; q_next = q"))
-    asked = Hunt(measure="growth", seed=3, examples=10, steps=50)
-    assert _command(asked) == ("verify explore --maximise growth --examples 10 --seed 3 --steps 50")
-    object.__setattr__(asked, "drawn", drawn)
-    assert _command(asked).endswith(
-        "--steps 50 --scheme lie1 --scheme 'p_next = p; q_next = q' --kind polynomial --degree 4"
-    )
-
-
-def test_scenes_of_an_earlier_hunt_do_not_stay(tmp_path: Path) -> None:
-    for name in ("worst-1.toml", "worst-2.toml", "worst-12.toml", "worst-of-mine.toml"):
-        (tmp_path / name).write_text("old")
-    _keep_scenes(gallery(shown()), tmp_path)
-    left = {file.name: file.read_text() for file in tmp_path.iterdir()}
-    assert set(left) == {"worst-1.toml", "worst-of-mine.toml"}
-    assert left["worst-1.toml"] == shown().scene
-
-
-def test_results_are_the_same_after_a_round_trip() -> None:
-    made = gallery(shown())
-    assert type(made).model_validate_json(made.model_dump_json()) == made
-    found = HuntResult(worst=(Worst(value=-1.5, scene="x"),), examples=3)
-    assert HuntResult.model_validate(json.loads(found.model_dump_json())) == found

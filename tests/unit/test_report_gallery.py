@@ -65,11 +65,12 @@ def test_the_first_screen_tells_what_was_hunted_where_and_the_worst() -> None:
     first = text_of(
         page[page.index('<main id="content"') : page.index('<section id="gallery"')] + "</main>"
     )
-    assert "Of 1,200 scenes of seed 7 (|q|, |p| ≤ 2, h from 0.001 to 0.1, 100 steps each)" in first
-    assert "hunted for the greatest rounding part over truncation" in first
     assert (
-        "rounding is 5.0 × 10³ times the truncation, by lie2 with h = 0.001 from q₀ = −2" in first
+        "In the worst of 1,200 scenes of seed 7 (|q|, |p| ≤ 2, h from 0.001 to 0.1, 100 steps each)"
+        in first
     )
+    assert "Hunted for: the greatest rounding part over truncation." in text_of(page)
+    assert "rounding is 5.0 × 10³ times the truncation: lie2 with h = 0.001 from q₀ = −2" in first
     assert "no claim" not in first
     assert first.count("≈") == 2, "a tile a scene"
     assert page.count('id="telling"') == 1
@@ -84,7 +85,7 @@ def test_a_hunt_that_found_nothing_says_so_and_shows_no_section() -> None:
 def test_with_claims_the_first_screen_speaks_of_them() -> None:
     page = render(report(claims=(claim(),), gallery=gallery(shown())))
     assert "The one claim is proved." in page
-    assert "hunted for" not in page
+    assert "In the worst of" not in page
     assert 'id="worst-1"' in page
 
 
