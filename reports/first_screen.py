@@ -6,6 +6,8 @@ A tile says what it says by its sign and its word; the colour only helps.
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING
 
 from reports.claim_view import ClaimView
 from reports.plots import Plot
@@ -16,6 +18,9 @@ from verify.results import ProofResult
 from verify.scene_results import Report
 from verify.stability_results import KINDS, Kind, StabilityResult
 from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from reports.gallery_view import GalleryView
 
 SIGNS = {
     Verdict.PROVED: ("✓", "exact algebra shows it"),
@@ -76,23 +81,32 @@ class FirstScreen:
 
 
 def first_screen(
-    report: Report, claims: Sequence[ClaimView], scenes: Sequence[SceneView]
+    report: Report,
+    claims: Sequence[ClaimView],
+    scenes: Sequence[SceneView],
+    gallery: "GalleryView | None" = None,
 ) -> FirstScreen:
     told = _refutation(claims)
     plot, place = (told.claim.plot if told else None), None
     if plot is None:
-        plot, place = next(iter(_pictures(scenes)), (None, None))
-    return FirstScreen(finding(report, told), tuple(_tiles(report)), told, plot, place)
+        pictures = chain(_pictures(scenes), _pictures_of_the_worst(gallery))
+        plot, place = next(pictures, (None, None))
+    tiles = tuple(_tiles(report)) or tuple(_tiles_of_the_worst(gallery))
+    return FirstScreen(finding(report, told, gallery), tiles, told, plot, place)
 
 
 # -- the finding in one sentence ------------------------------------------------------------------
 
 
-def finding(report: Report, told: Refutation | None = None) -> str:
+def finding(
+    report: Report, told: Refutation | None = None, gallery: "GalleryView | None" = None
+) -> str:
     if report.claims:
         return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(told)}."
     proofs, judged = _proofs(report), _judged(report)
     if not proofs and not judged:
+        if gallery:
+            return gallery.finding
         return "The report holds no claim and no proof."
     sentences = [_finding_of_runs(judged)] if judged else []
     if proofs and (len(proofs) <= _FEW or not judged):
@@ -203,6 +217,15 @@ def _tile_of_proof(proof: ProofResult) -> Tile:
     return Tile(verdict, sign, "ΔJ", proof.scheme, "its order is undecided")
 
 
+def _tiles_of_the_worst(gallery: "GalleryView | None") -> Iterator[Tile]:
+    verdict = Verdict.MEASURED
+    for card in gallery.cards[:_FEW] if gallery else ():
+        figure, unit = card.short
+        of = card.result.separation
+        meaning = f"{of.scheme}, h = {of.step_size}"
+        yield Tile(verdict, SIGNS[verdict][0], figure, unit, meaning)
+
+
 # -- the most telling picture ---------------------------------------------------------------------
 
 
@@ -238,3 +261,8 @@ def _pictures(scenes: Sequence[SceneView]) -> Iterator[tuple[Plot, Place]]:
     for scene in scenes:
         timed = scene.work_precision.plots if scene.work_precision else ()
         yield from ((plot, Place(f"work-of-{scene.anchor}", scene.result.title)) for plot in timed)
+
+
+def _pictures_of_the_worst(gallery: "GalleryView | None") -> Iterator[tuple[Plot, Place]]:
+    for card in gallery.cards if gallery else ():
+        yield from ((plot, Place(card.anchor, card.title)) for plot in card.plots)

@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
@@ -16,6 +17,9 @@ from reports.scene_view import SceneView, scene_view
 from verify.scene_results import Report
 from verify.stability_results import Kind
 from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from reports.gallery_view import GalleryView
 
 _NUMBERED = re.compile(r"\d+(?:\.\d+)*(?=\D|$)")
 
@@ -39,6 +43,7 @@ class PageView:
     groups: tuple[ClaimGroup, ...]
     claims: tuple[ClaimView, ...]
     scenes: tuple[SceneView, ...]
+    gallery: "GalleryView | None"
     paper_figures: tuple[PaperFigureView, ...]
     kinds: tuple[tuple[Kind, str], ...]  # verdicts on runs that occur, and what they mean
     terms: tuple[tuple[str, Markup], ...]  # those that its results need
@@ -59,15 +64,17 @@ def page_view(report: Report) -> PageView:
     scenes = tuple(
         scene_view(scene, anchor) for scene, anchor in zip(report.scenes, own, strict=True)
     )
+    gallery = _gallery(report)
     return PageView(
         report=report,
-        first=first_screen(report, claims, scenes),
+        first=first_screen(report, claims, scenes, gallery),
         groups=tuple(groups(claims, anchors)),
         claims=claims,
         scenes=scenes,
+        gallery=gallery,
         paper_figures=paper_figure_views(report.figures, scenes, claims, anchors),
         kinds=_kinds(scenes),
-        terms=tuple(words.terms(report.scenes)),
+        terms=tuple(words.terms(report.scenes, gallery=bool(gallery and gallery.cards))),
     )
 
 
@@ -81,6 +88,15 @@ def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[Claim
             claim = replace(claim, plot=plots.table(claim, name=f"table-of-{anchor}"))
         found.append(claim)
     return tuple(found)
+
+
+def _gallery(report: Report) -> "GalleryView | None":
+    """The worst scenes, imported only where they were hunted for."""
+    if report.gallery is None:
+        return None
+    from reports.gallery_view import gallery_view
+
+    return gallery_view(report.gallery)
 
 
 def _kinds(scenes: Sequence[SceneView]) -> tuple[tuple[Kind, str], ...]:

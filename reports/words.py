@@ -61,6 +61,8 @@ _SEPARATED = {
         "float64; <code>determinant</code>, det J (or ΔJ) of each step rounded; "
         "<code>product</code>, their product (or sum of logarithms) rounded."
     ),
+}
+_CROSSED = {
     "Crossover h*": Markup(
         "The step size below which rounding is larger than truncation, interpolated in logarithms "
         "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
@@ -108,19 +110,26 @@ _RAN = {
 }
 
 
-def terms(scenes: Sequence[SceneResult]) -> Iterator[tuple[str, Markup]]:
-    """The terms that the scenes' results need, each with what it means."""
+def terms(scenes: Sequence[SceneResult], *, gallery: bool = False) -> Iterator[tuple[str, Markup]]:
+    """The terms that the scenes' results, and a gallery of them, need, with what each means."""
     yield from _ALWAYS.items()
-    if any(s.separations or s.crossovers for s in scenes):
+    separated = any(s.separations or s.crossovers for s in scenes)
+    if separated or gallery:
         yield from _SEPARATED.items()
+    if separated:
+        yield from _CROSSED.items()
     if any(s.growth_laws for s in scenes):
         yield from _GROWN.items()
     if any(s.flows for s in scenes):
         yield from _CARRIED.items()
     if any(s.work_precision for s in scenes):
         yield from _TIMED.items()
-    if any(s.runs or s.series or s.separations or s.crossovers or s.work_precision for s in scenes):
+    if gallery or any(_ran(s) for s in scenes):
         yield from _RAN.items()
+
+
+def _ran(s: SceneResult) -> bool:
+    return bool(s.runs or s.series or s.separations or s.crossovers or s.work_precision)
 
 
 # -- counts of judged runs in a sentence ----------------------------------------------------------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import show
-from verify.cli_hunt import hunt
+from verify.cli_hunt import STEPS, hunt
 from verify.cli_input import writable
 from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
@@ -45,9 +45,7 @@ _SEEDS = 2**32
     metavar="MEASURE",
     help="Hunt for the worst scenes instead: rounding-share, digits-lost or growth.",
 )
-@click.option(
-    "--steps", type=int, default=100, metavar="N", help="Of each scene that is hunted; 100."
-)
+@click.option("--steps", type=int, metavar="N", help="Of each scene that is hunted; 100.")
 @click.option(
     "-o",
     "--output",
@@ -66,7 +64,7 @@ def explore(
     kinds: tuple[str, ...],
     degree: int,
     maximise: str | None,
-    steps: int,
+    steps: int | None,
     output: Path,
     keep: Path | None,
     where: "Where",
@@ -84,7 +82,8 @@ def explore(
     verify explore claims.toml --examples 500
 
     With --maximise scenes are sought, of |q|, |p| up to 2 and step sizes 1/1000 … 1/10, in which
-    float64 or the scheme (lie2, or those of --scheme) does worst; DIR/index.html shows them.
+    float64 or the scheme (lie2, or those of --scheme) does worst: rounding against truncation in Λ,
+    digits of p and q that float64 loses, |Λ|. DIR/index.html shows them.
 
     \b
     verify explore --maximise rounding-share --examples 2000 --seed 7 -o worst
@@ -100,8 +99,11 @@ def explore(
     if maximise is not None:
         if claims or names:
             raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
+        steps = STEPS if steps is None else steps
         hunt(maximise, seed, examples, steps, drawn, output, keep, where, as_json)
         return
+    if steps is not None:
+        raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
     asked = Exploration(
         seed=seed,
         examples=examples,

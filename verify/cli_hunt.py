@@ -1,5 +1,7 @@
 """`verify explore --maximise`: the worst scenes for a measure, as files and as a page."""
 
+import re
+import shlex
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,9 +14,12 @@ from verify.cli_tasks import told
 
 if TYPE_CHECKING:
     from verify.executors import Where
-    from verify.explore_results import Gallery
-    from verify.results import SeparationResult
+    from verify.explore_results import Gallery, GalleryScene
+    from verify.hunting import Hunt
     from verify.tasks import Drawn
+
+STEPS = 100  # of each scene, where nothing else is asked for
+_OWN = re.compile(r"worst-([0-9]+)\.toml")
 
 
 def hunt(
@@ -33,26 +38,47 @@ def hunt(
     from verify.execute import Store
     from verify.gallery import gallery
     from verify.hunting import Hunt, hunt
-    from verify.keeping import write_atomically
     from verify.report import gallery_report
 
     asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
     writable(output)
     if keep is not None:
         writable(keep)
-    store, begun = Store(keep), time.perf_counter()
-    with told(asked.plan().tasks, keep) as done:
-        worst = hunt(asked, store, where=where, done=done)
-    shown = gallery(asked, worst, store, where=where)
-    for place, each in enumerate(shown.scenes, start=1):
-        write_atomically(output / f"worst-{place}.toml", each.scene)
-    command = f"verify explore --maximise {measure} --examples {examples} --seed {seed}"
-    page = write(gallery_report(shown, command, begun, len(asked.plan().tasks), where), output)
+    store, begun, tasks = Store(keep), time.perf_counter(), asked.plan().tasks
+    with told(tasks, keep) as done:
+        found = hunt(asked, store, where=where, done=done)
+    shown = gallery(asked, found, store, where=where)
+    _keep_scenes(shown, output)
+    report = gallery_report(shown, _command(asked), begun, store.taken, len(tasks), where)
+    page = write(report, output)
     if as_json:
-        show.print_json({"examples": examples, "failures": [], "seed": seed}
+        show.print_json({"examples": shown.examples, "failures": [], "seed": seed}
                         | {"gallery": shown.model_dump(mode="json")})  # fmt: skip
     else:
         _print(shown, output, page)
+
+
+def _command(asked: "Hunt") -> str:
+    """What makes the same hunt again."""
+    own = [f"--maximise {asked.measure} --examples {asked.examples} --seed {asked.seed}"]
+    own += [f"--steps {asked.steps}"] if asked.steps != STEPS else []
+    own += [f"--scheme {shlex.quote(name)}" for name in asked.drawn.schemes]
+    own += [f"--kind {name}" for name in asked.drawn.kinds]
+    if asked.drawn.degree != type(asked.drawn)().degree:
+        own.append(f"--degree {asked.drawn.degree}")
+    return f"verify explore {' '.join(own)}"
+
+
+def _keep_scenes(shown: "Gallery", output: Path) -> None:
+    """Writes worst-1.toml and so on; those of an earlier hunt that had more do not stay."""
+    from verify.keeping import write_atomically
+
+    for place, each in enumerate(shown.scenes, start=1):
+        write_atomically(output / f"worst-{place}.toml", each.scene)
+    for file in output.glob("worst-*.toml"):
+        own = _OWN.fullmatch(file.name)
+        if own and int(own[1]) > len(shown.scenes):
+            file.unlink()
 
 
 def _print(shown: "Gallery", output: Path, page: Path) -> None:
@@ -60,14 +86,19 @@ def _print(shown: "Gallery", output: Path, page: Path) -> None:
         of = each.separation
         click.echo(f"{place}. 10^{each.value:.2f}  H = {of.hamiltonian}")
         start = f"h = {of.step_size}, q = {of.q}, p = {of.p}"
-        when = _when(each.meaningless_after, of)
-        click.echo(f"   {of.scheme}, {start}: {when}; {output / f'worst-{place}.toml'}")
+        click.echo(f"   {of.scheme}, {start}: {_when(each)}; {output / f'worst-{place}.toml'}")
+    if not shown.scenes:
+        click.echo("no scene that was drawn can be measured so")
     click.echo(f"{shown.examples:,} scenes of seed {shown.seed}, by {shown.sentence} → {page}")
 
 
-def _when(after: int | None, of: "SeparationResult") -> str:
-    if of.status != "finished":
+def _when(each: "GalleryScene") -> str:
+    of, after = each.separation, each.meaningless_after
+    longer = each.longer
+    beyond = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
+    if of.plain is None:
         return f"over {of.steps:,} steps it is {of.status}"
     if after is None:
-        return f"Λ of float64 keeps a digit over {of.steps:,} steps"
-    return f"Λ of float64 is meaningless after {after:,} steps"
+        return f"over {of.steps:,} steps truncation is the larger part of Λ{beyond}"
+    until = f" until {each.meaningful_from:,}" if each.meaningful_from else ""
+    return f"Λ of float64 is meaningless after {after:,} steps{until}{beyond}"

@@ -57,7 +57,7 @@ class Worst(Frozen):
 
 
 class HuntResult(Frozen):
-    """The worst scenes of one island of a hunt, the worst first; so many were looked at."""
+    """The worst scenes of one island of a hunt, the worst first; `examples` were measured."""
 
     worst: tuple[Worst, ...]
     examples: int
@@ -67,21 +67,26 @@ class GalleryScene(Frozen):
     """One of the worst scenes, as TOML, with lg of its measure.
 
     `orbit`: points (q, p) of the hunt's run, with 40 digits. `separation`: its Λ over a longer run;
-    `meaningless_after`: the first checkpoint, in steps, at which rounding is as large as truncation
-    in the plain way.
+    where that did not finish it is `longer`, and `separation` that of the hunt's run.
+    `meaningless_after`: the first checkpoint, in steps, at which the greatest |rounding| so far is
+    as large as the greatest |truncation| so far in the plain way; `meaningful_from`: that from
+    which on it never is again.
     """
 
     value: Real
     scene: str
     orbit: tuple[tuple[str, str], ...]
     separation: SeparationResult
+    longer: SeparationResult | None = None
     meaningless_after: int | None
+    meaningful_from: int | None = None
 
 
 class Gallery(Frozen):
-    """The worst scenes of a hunt, the worst first.
+    """The worst scenes of a hunt, the worst first; `examples` were measured.
 
-    Initial values are in `reach` of 0 in p and q, and step sizes between the two of `step_sizes`.
+    Initial values are in `reach` of 0 in p and q, step sizes between the two of `step_sizes`, and
+    the search moves |coefficients| of H between the two of `coefficients`.
     """
 
     measure: str
@@ -91,6 +96,7 @@ class Gallery(Frozen):
     steps: int
     reach: str
     step_sizes: tuple[str, str]
+    coefficients: tuple[str, str]
     scenes: tuple[GalleryScene, ...]
 
 

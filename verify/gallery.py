@@ -1,19 +1,19 @@
 """The worst scenes of a hunt as a report shows them: each with its orbit and its Λ, split."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from tomllib import loads
 
-from verify.exact import decimal
+from verify.exact import decimal, text
 from verify.example import Example
 from verify.execute import Done, Store, execute
 from verify.executors import ANYWHERE, Where
 from verify.explore_results import Gallery, GalleryScene, Worst
-from verify.hunting import REACH, STEP_SIZES, Hunt
+from verify.hunting import COEFFICIENTS, REACH, STEP_SIZES, Found, Hunt, scene_of
 from verify.measures import MEASURES, orbit
 from verify.planned import Plan
-from verify.results import EvaluationResult, SeparationResult
-from verify.scene import scene_from
+from verify.results import PartsAt, SeparationResult
+from verify.scene_text import scene_text
 from verify.tasks import SeparationTask, key
 
 _LONGER, _MOST_STEPS = 100, 10_000  # the run that is shown, in runs of the hunt, and its most steps
@@ -23,65 +23,105 @@ _DIGITS = 8
 
 def gallery(
     asked: Hunt,
-    worst: Sequence[Worst],
+    found: Found,
     store: Store,
     *,
     where: Where = ANYWHERE,
     done: Done | None = None,
 ) -> Gallery:
-    """The scenes with what is shown of them, over runs longer than those of the hunt."""
-    plan, tasks = Plan(), [_task(each, asked) for each in worst]
-    for task in tasks:
-        plan.need(task, "the gallery of the worst scenes")
-    results = execute(plan, store, where=where, done=done)
-    found = [results[key(task)] for task in tasks]
+    """The scenes with what is shown of them, over runs longer than those of the hunt.
+
+    Where such a run does not end, the hunt's own is shown.
+    """
+    longer = min(asked.steps * _LONGER, max(asked.steps, _MOST_STEPS))
+
+    def separated(scenes: Sequence[Worst], steps: int) -> list[SeparationResult]:
+        plan, tasks = Plan(), [_task(each, steps) for each in scenes]
+        for task in tasks:
+            plan.need(task, "the gallery of the worst scenes")
+        results = execute(plan, store, where=where, done=done)
+        of_tasks = [results[key(task)] for task in tasks]
+        return [result for result in of_tasks if isinstance(result, SeparationResult)]
+
+    runs = separated(found.worst, longer)
+    again = [w for w, run in zip(found.worst, runs, strict=True) if run.status != "finished"]
+    short = iter(separated(again, asked.steps))
     return Gallery(
         measure=asked.measure,
         sentence=MEASURES[asked.measure].sentence,
         seed=asked.seed,
-        examples=asked.examples,
+        examples=found.measured,
         steps=asked.steps,
-        reach=decimal(REACH, 1),
-        step_sizes=(str(STEP_SIZES[0]), str(STEP_SIZES[1])),
+        reach=text(REACH),
+        step_sizes=(text(STEP_SIZES[0]), text(STEP_SIZES[1])),
+        coefficients=(str(COEFFICIENTS[0]), str(COEFFICIENTS[1])),
         scenes=tuple(
-            _shown(each, result)
-            for each, result in zip(worst, found, strict=True)
-            if isinstance(result, SeparationResult)
+            _shown(worst, run if run.status == "finished" else next(short), run)
+            for worst, run in zip(found.worst, runs, strict=True)
         ),
     )
 
 
-def _example(worst: Worst) -> Example:
-    return Example.of(scene_from(loads(worst.scene, parse_float=str), "scene"))
-
-
-def _task(worst: Worst, asked: Hunt) -> SeparationTask:
-    example = _example(worst)
+def _task(worst: Worst, steps: int) -> SeparationTask:
+    example = Example.of(scene_of(worst))
     return SeparationTask(
         **example.scene.given(),
         scheme=example.scheme.name,
         q=example.q,
         p=example.p,
         step_size=example.step_size,
-        steps=min(asked.steps * _LONGER, max(asked.steps, _MOST_STEPS)),
+        steps=steps,
         digits=_DIGITS,
     )
 
 
-def _shown(worst: Worst, separation: SeparationResult) -> GalleryScene:
-    points = orbit(_example(worst))
+def _shown(worst: Worst, run: SeparationResult, longer: SeparationResult) -> GalleryScene:
+    points = orbit(Example.of(scene_of(worst)))
+    lost = meaningless(run.plain.series if run.plain else ())
     return GalleryScene(
         value=worst.value,
-        scene=worst.scene,
+        scene=_separating(worst),
         orbit=tuple((decimal(q, _SHOWN), decimal(p, _SHOWN)) for q, p in points),
-        separation=separation,
-        meaningless_after=_meaningless(separation.plain),
+        separation=run,
+        longer=longer if longer is not run else None,
+        meaningless_after=lost.first,
+        meaningful_from=lost.over,
     )
 
 
-def _meaningless(found: EvaluationResult | None) -> int | None:
-    """The first checkpoint at which rounding is as large as truncation; None where at none."""
-    for at in found.series if found else ():
-        if abs(Fraction(at.total)) >= abs(Fraction(at.truncation)):
-            return at.steps
-    return None
+def _separating(worst: Worst) -> str:
+    """The scene's text, which asks for what the gallery shows."""
+    scene = scene_of(worst)
+    assert scene.grid is not None  # noqa: S101 - as drawn
+    grid = scene.grid.model_copy(update={"separate": True})
+    return scene_text(scene.model_copy(update={"grid": grid}))
+
+
+@dataclass(frozen=True)
+class Meaningless:
+    """The first checkpoint, in steps, at which no digit of Λ is right, and that from which on some
+    are again, to the end of the run; None where there is none."""
+
+    first: int | None
+    over: int | None
+
+
+def meaningless(series: Sequence[PartsAt]) -> Meaningless:
+    """Where the greatest |rounding| so far is not below the greatest |truncation| so far.
+
+    The greatest ones, as Λ itself may pass through 0. A part that is exactly 0, or of which no
+    digit is known, is "0": one that is known is then the greater, and nothing is said of two.
+    """
+    lost = [at.steps for at, below in zip(series, _below(series), strict=True) if not below]
+    if not lost:
+        return Meaningless(None, None)
+    over = (at.steps for at in series if at.steps > lost[-1])
+    return Meaningless(lost[0], next(over, None))
+
+
+def _below(series: Sequence[PartsAt]) -> Iterator[bool]:
+    rounding = truncation = Fraction(0)
+    for at in series:
+        rounding = max(rounding, abs(Fraction(at.total)))
+        truncation = max(truncation, abs(Fraction(at.truncation)))
+        yield rounding < truncation or not rounding

@@ -11,15 +11,20 @@ from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.scene import Scene, scene_from
 
-_HALVES = (Fraction(1, 2), Fraction(4, 5), Fraction(5, 4), Fraction(2))
+_FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(5, 4), Fraction(2))
 _MOVES = tuple(sign * Fraction(1, 10**k) for k in (1, 2) for sign in (1, -1))
 _PLACES = 3  # decimals of a coefficient or a step size
 
 
 def neighbours(
-    scene: Scene, *, reach: Fraction, steps: tuple[Fraction, Fraction]
+    scene: Scene,
+    *,
+    reach: Fraction,
+    steps: tuple[Fraction, Fraction],
+    coefficients: tuple[Fraction, Fraction],
 ) -> Iterator[Scene]:
-    """Each once: with another coefficient of H, initial value in reach, or step size within."""
+    """Each once: with another initial value in reach, step size within `steps`, or |coefficient| of
+    H within `coefficients`; without that last bound a search would only make H ever larger."""
     assert scene.grid is not None  # noqa: S101 - the caller's scenes are drawn
     start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
     seen = {(scene.hamiltonian, start.q, start.p, h)}
@@ -34,14 +39,14 @@ def neighbours(
             return
 
     formula = scene.hamiltonian or ""
-    for factor in _HALVES:
+    for factor in _FACTORS:
         size = min(max(_rounded(h * factor), steps[0]), steps[1])
         yield from made(formula, start.q, start.p, size)
     for move in _MOVES:
         for q, p in ((start.q + move, start.p), (start.q, start.p + move)):
             if max(abs(q), abs(p)) <= reach:
                 yield from made(formula, q, p, h)
-    for other in _formulas(scene.exact_hamiltonian()):
+    for other in _formulas(scene.exact_hamiltonian(), coefficients):
         yield from made(other, start.q, start.p, h)
 
 
@@ -55,16 +60,19 @@ def _made(scene: Scene, formula: str, q: Fraction, p: Fraction, h: Fraction) -> 
     return scene_from({"hamiltonian": formula, "schemes": scene.schemes, "grid": grid}, "neighbour")
 
 
-def _formulas(hamiltonian: Hamiltonian) -> Iterator[str]:
+def _formulas(hamiltonian: Hamiltonian, within: tuple[Fraction, Fraction]) -> Iterator[str]:
     """H with one coefficient of its sum changed."""
+    least, most = within
     terms = sympy.Add.make_args(hamiltonian.exact)
     for k, term in enumerate(terms):
-        coefficient, rest = term.as_coeff_Mul()
+        content, primitive = term.as_content_primitive()  # 1/(2*p**2 + 2) has a factor of ½
+        sign, rest = primitive.as_coeff_Mul()
+        coefficient = content * sign
         if not coefficient.is_Rational or rest.is_number:
             continue
-        for factor in (*_HALVES, Fraction(-1)):
+        for factor in (*_FACTORS, Fraction(-1)):
             value = _rounded(Fraction(int(coefficient.p), int(coefficient.q)) * factor)
-            if value:
+            if least <= abs(value) <= most:
                 changed = sympy.Rational(value.numerator, value.denominator) * rest
                 yield to_text(sympy.Add(*terms[:k], changed, *terms[k + 1 :]))
 

@@ -68,16 +68,17 @@ def make_report(
 
 
 def gallery_report(
-    gallery: Gallery, command: str, begun: float, computed: int, where: Where
+    gallery: Gallery, command: str, begun: float, kept: int, islands: int, where: Where
 ) -> Report:
-    """The report of a hunt, which has a gallery and nothing else."""
+    """The report of a hunt of so many tasks, which has a gallery and nothing else."""
+    computed = islands + len(gallery.scenes) + sum(1 for each in gallery.scenes if each.longer)
     return Report(
         title=f"The worst scenes: {gallery.sentence}",
         claims=(),
         scenes=(),
         gallery=gallery,
         left_out=(),
-        provenance=_provenance(command, begun, 0, computed, where),
+        provenance=_provenance(command, begun, kept, computed - kept, where),
     )
 
 

@@ -1,15 +1,17 @@
-"""Small pages made by the real code: a paper's claims, a user's scene; both with hostile text."""
+"""Small pages made by the real code: a paper's claims, a user's scene, a hunt's gallery; all with
+hostile text."""
 
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
 from reports.page import render
+from tests.unit.made_gallery import CROSSED, KEPT, NOTHING, gallery, shown
 from verify.claims import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
 from verify.execute import Store
 from verify.executors import HERE
 from verify.paper_figures import PaperFigure
-from verify.report import make_report
+from verify.report import gallery_report, make_report
 from verify.scene import scene_from
 from verify.scene_results import Report
 
@@ -83,6 +85,15 @@ def own_scene() -> Report:
     return made.model_copy(update={"scenes": (found.model_copy(update={"hamiltonian": EVIL}),)})
 
 
+def hunted() -> Report:
+    """A gallery and nothing else; one formula is no formula."""
+    formulas = [f"p**{n}/2 + q**2/(1 + p**2) - cos({n}*q)" for n in range(2, 7)]
+    scenes = [shown(KEPT, hamiltonian=formula, value=4.0 - n) for n, formula in enumerate(formulas)]
+    others = [shown(CROSSED, meaningless_after=100), shown(NOTHING), shown(None, hamiltonian=EVIL)]
+    found = gallery(*scenes, *others, sentence=f"greatest part {EVIL}")
+    return gallery_report(found, "verify explore", 0.0, 0, 1)
+
+
 def _report(
     title: str, scene: Any, claims: list[Claim], figures: Sequence[PaperFigure] = ()
 ) -> Report:
@@ -92,7 +103,7 @@ def _report(
     )
 
 
-_MADE: dict[str, Callable[[], Report]] = {"paper": paper, "own scene": own_scene}
+_MADE: dict[str, Callable[[], Report]] = {"paper": paper, "own scene": own_scene, "hunt": hunted}
 NAMES = tuple(_MADE)
 
 
