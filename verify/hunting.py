@@ -33,6 +33,7 @@ from verify.scene_values import InitialValue
 from verify.tasks import Drawn, HuntTask
 
 REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
+_THOUSANDTHS = (100, 50, 20, 10, 5, 2, 1, 80, 60, 40, 30, 25, 15, 8, 6, 4, 3)  # of drawn step sizes
 SIZE = 7  # of the coefficients' numerators and denominators: the greatest that `_scenes` allows
 COEFFICIENTS = Fraction(1, SIZE), Fraction(SIZE)
 MOST_EXAMPLES, _MOST_STEPS = 10**7, 10**6
@@ -235,7 +236,7 @@ def _scenes(drawn: Drawn, steps: int) -> st.SearchStrategy[Scene]:
         ),
         schemes=strategies.schemes(names=drawn.schemes or ("lie2",)),
         initial_values=st.builds(InitialValue, q=tenths, p=tenths),
-        step_sizes=strategies.step_sizes(least=STEP_SIZES[0], most=STEP_SIZES[1]),
+        step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
         steps=(steps, steps),
     )
 

@@ -85,7 +85,7 @@ def test_a_planted_term_of_h_is_found(plant: Plant) -> None:
         return 5 + float(min(c, Fraction(50))) if c else 0.0
 
     plant(value)
-    worst = search(task()).worst[0]
+    worst = search(task(count=800)).worst[0]
     assert 5 + 4 <= worst.value <= 5 + 7, "doubled as long as it is an ordinary coefficient"
 
 
@@ -161,7 +161,7 @@ def test_islands_look_at_other_scenes(plant: Plant) -> None:
     seen: list[set[str]] = []
     for island in (0, 1, 0):
         own: set[str] = set()
-        plant(lambda x, own=own: own.add(str(x.scene)) or 0.0)  # type: ignore[misc]
+        plant(lambda x, own=own: own.add(str(x.scene)) or float(x.q + x.p / 9))  # type: ignore[misc]
         search(task(island=island, count=60))
         seen.append(own)
     assert seen[0] == seen[2], "the same island looks at the same ones"
