@@ -14,8 +14,10 @@ from verify.increments import increments
 from verify.program import Evaluator, Program
 from verify.scaling import divided, lowest_power
 from verify.schemes import get
-from verify.step_map import StepMap
+from verify.step_map import StepMap, Substep
 from verify.tangent import Tangent
+
+_STATE = ("p", "q")
 
 
 @dataclass(frozen=True)
@@ -74,27 +76,55 @@ def computed(step_map: StepMap, asked: Asked) -> Computation:
     return _computed(_Itself(step_map), asked)
 
 
+@dataclass(frozen=True, eq=False)
+class _Begun:
+    """A program with the inputs, `named`, and ΔJ of the first substep, as `evaluator` wrote it."""
+
+    program: Program
+    named: Mapping[str, int]
+    evaluator: Evaluator
+    delta_j: int
+
+    def copy(self) -> tuple[Program, Evaluator]:
+        evaluator = self.evaluator.copy()
+        return evaluator.program, evaluator
+
+
 @lru_cache(maxsize=64)
-def _computed(itself: _Itself, asked: Asked) -> Computation:
+def _begun(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -> _Begun:
+    """What all that is asked of a map has in common: ΔJ is the longest part of it."""
     step_map, program = itself.step_map, Program()
-    power = _common_power(step_map) if asked.scaled else 0
-    tangent = Tangent(program) if asked.tangent else None
     # A user's parameter may be named like anything; in the source it is x0, x1, ….
     parameters = step_map.hamiltonian.symbols
     arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(parameters)}
-    fixed = {n: program.input(a, static=True) for n, a in arguments.items()}
-    zero = program.constant(Fraction(0))
-    state = {n: program.input(n, static=False) for n in ("p", "q")}
-    scale = program.input("kappa", static=True) if asked.scaled else None
-    total = {"p": zero, "q": zero}
-    delta_j, jacobian = zero, None
-    for step in step_map.substeps:
-        at = {n: program.add(state[n], total[n]) for n in ("p", "q")}
-        evaluator = Evaluator(program, step.ring, fixed | at, asked.pipelined)
-        if asked.delta_j and not step.preserves_area:
-            own = evaluator.evaluate(divided(step, power), scale)
+    named = {n: program.input(a, static=True) for n, a in arguments.items()}
+    found = program.constant(Fraction(0))
+    named |= {n: program.input(n, static=False) for n in _STATE}
+    if scaled:
+        program.input("kappa", static=True)
+    first = step_map.substeps[0]
+    evaluator = Evaluator(program, first.ring, named, pipelined)
+    if delta_j and not first.preserves_area:
+        found = _delta_j(evaluator, first, scaled, _common_power(step_map, scaled))
+    return _Begun(program, named, evaluator, found)
+
+
+@lru_cache(maxsize=64)
+def _computed(itself: _Itself, asked: Asked) -> Computation:
+    step_map, power = itself.step_map, _common_power(itself.step_map, asked.scaled)
+    begun = _begun(itself, asked.pipelined, asked.scaled, asked.delta_j)
+    program, evaluator = begun.copy()
+    tangent = Tangent(program) if asked.tangent else None
+    total = dict.fromkeys(_STATE, program.constant(Fraction(0)))
+    delta_j, jacobian = begun.delta_j, None
+    for k, step in enumerate(step_map.substeps):
+        if k > 0:
+            at = {n: program.add(begun.named[n], total[n]) for n in _STATE}
+            evaluator = Evaluator(program, step.ring, {**begun.named, **at}, asked.pipelined)
+        if k > 0 and asked.delta_j and not step.preserves_area:
+            own = _delta_j(evaluator, step, asked.scaled, power)
             both = program.mul(delta_j, own)
-            if scale is not None and not program.is_constant(both, 0):
+            if asked.scaled and not program.is_constant(both, 0):
                 both = program.mul(program.input("down", static=True), both)
             delta_j = program.add(program.add(delta_j, own), both)
         if asked.determinant:
@@ -102,8 +132,8 @@ def _computed(itself: _Itself, asked: Asked) -> Computation:
             jacobian = own_j if jacobian is None else _product(program, own_j, jacobian)
         if tangent:
             tangent.follow(step, evaluator)
-        changes = increments(evaluator, step, fixed["h"])
-        for n, change in zip(("p", "q"), changes, strict=True):
+        changes = increments(evaluator, step, begun.named["h"])
+        for n, change in zip(_STATE, changes, strict=True):
             total[n] = program.add(total[n], change)
     result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
     if jacobian is not None:
@@ -113,9 +143,15 @@ def _computed(itself: _Itself, asked: Asked) -> Computation:
     return Computation(program, result, tangent, power)
 
 
-def _common_power(step_map: StepMap) -> int:
-    """The greatest r for which h^r divides ΔJ of every substep."""
-    changing = [step for step in step_map.substeps if not step.preserves_area]
+def _delta_j(evaluator: Evaluator, step: Substep, scaled: bool, power: int) -> int:
+    """ΔJ of a substep, or 2^s ΔJ by κ (ΔJ/h^r)."""
+    scale = evaluator.program.input("kappa", static=True) if scaled else None
+    return evaluator.evaluate(divided(step, power), scale)
+
+
+def _common_power(step_map: StepMap, scaled: bool) -> int:
+    """The greatest r for which h^r divides ΔJ of every substep; 0 where it is not divided."""
+    changing = [step for step in step_map.substeps if scaled and not step.preserves_area]
     return min(map(lowest_power, changing), default=0)
 
 

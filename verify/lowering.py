@@ -1,6 +1,6 @@
 """A program's operations → lines of source, those before the loop apart from those in it."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -149,6 +149,9 @@ class Lowering:
             return False
         radicand = self.program.ops[op.args[0]]
         return radicand.kind == "const" and radicand.value > 0
+
+    def constants(self) -> Mapping[int, Fraction]:
+        return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
 
     def named_constants(self, number: Any, roots: Sequence[int] | None = None) -> dict[str, Any]:
         """The constants, and roots that are given, as numbers by their names in the source.

@@ -91,6 +91,13 @@ class Program:
         self._special: dict[int, int] = {}  # which constants are 0, 1 and −1
         self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
+    def copy(self) -> "Program":
+        """One that grows on its own from here."""
+        other = Program()
+        other.put_back(Tail(self.ops, self.static, self.depth, self._keys,
+                            list(self._known.values()), self.loops, self.cost))  # fmt: skip
+        return other
+
     # -- trials -------------------------------------------------------------------------------
 
     def mark(self) -> Mark:

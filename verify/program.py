@@ -81,6 +81,12 @@ class Evaluator:
         self._at = best[2]
         return best[3]
 
+    def copy(self) -> "Evaluator":
+        """The same, with a copy of its program."""
+        other = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
+        other._at = dict(self._at)
+        return other
+
     def at(self, generator: Generator) -> int:
         """The index of a generator's value."""
         if generator.index not in self._at:
