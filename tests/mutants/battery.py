@@ -3,106 +3,144 @@
     python -m tests.mutants.battery MODULE INDEX --examples 60
 
 plants a mutant and prints one line of JSON: `killed_by` (a property, or null), `how` ("violated",
-"raised" or "refused"), `why`, `violated` (all properties that the scene violates), `scenes`,
-`seconds`. INDEX −1 plants nothing: then `killed_by` must be null.
+"raised" or "refused"), `why`, `plan` (how many scenes each property has looked at), `seconds` (of
+the processor). INDEX −1 plants nothing: then `killed_by` must be null.
 """
 
 import argparse
 import json
+import math
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
 from tests.mutants.mutate import ROOT
 from tests.mutants.planted import planted
 
 EXAMPLES, SEED = 60, 7
+BUDGET = 4.0  # seconds for one property on the sound code: some compile kernels for each scene
 
 
 def there() -> bool:
     """Whether the properties are there to be run; imports nothing of `verify`."""
-    return all((ROOT / "verify" / n).exists() for n in ("properties", "explore.py"))
+    return all((ROOT / "verify" / n).exists() for n in ("properties", "property.py", "strategies"))
 
 
 # == PLUG IN ==================================================================================
-# The one place that knows how `verify.properties` and `verify.explore` are called.
+# The one place that knows how properties are called and how scenes are drawn. Nothing of `verify`
+# is imported before a mutant is planted.
 
 
 def catalogue() -> dict[str, Any]:
-    """Each property by its name; it has `.name`, `.sentence` and `.check(scene)`."""
-    from verify import properties  # type: ignore[attr-defined]
-
+    """Each property by its name; `holds(example)` is False where it says nothing of it."""
+    properties = import_module("verify.properties")
     return {name: properties.get(name) for name in properties.names()}
 
 
-def drawn_scenes(examples: int, seed: int) -> Iterable[Any]:
-    """That many scenes, the same for the same seed."""
-    from verify import explore  # type: ignore[attr-defined]
+def drawn_scenes(examples: int, number: int) -> list[Any]:
+    """That many scenes, the same for the same number; none is made smaller, none is kept."""
+    from hypothesis import HealthCheck, Phase, given, seed, settings
 
-    made: Iterable[Any] = explore.scenes(examples, seed)
-    return made
+    found: list[Any] = []
 
+    @seed(number)
+    @settings(
+        max_examples=examples, database=None, deadline=None, phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )  # fmt: skip
+    @given(import_module("verify.strategies").scenes())
+    def take(scene: Any) -> None:
+        found.append(scene)
 
-def violation() -> type[Exception]:
-    """What a property's check raises."""
-    from verify.properties import Violation  # type: ignore[import-not-found]
-
-    found: type[Exception] = Violation
+    take()
     return found
 
 
-def refusal() -> tuple[type[Exception], ...]:
-    """What a check raises on a scene that it has nothing to say of."""
-    from verify.errors import InputError
+def example_of(scene: Any) -> Any:
+    """The scene as properties look at it."""
+    return import_module("verify.example").Example.of(scene)
 
-    return (InputError,)
+
+def violation() -> type[Exception]:
+    """What a property raises where it does not hold."""
+    found: type[Exception] = import_module("verify.property").Violation
+    return found
 
 
 # == END OF PLUG IN ===========================================================================
 
 
 def battery(
-    examples: int = EXAMPLES, seed: int = SEED, only: Sequence[str] = ()
+    examples: int = EXAMPLES,
+    seed: int = SEED,
+    *,
+    plan: Mapping[str, int] | None = None,
+    budget: float = BUDGET,
+    only: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """The first scene that violates a property, with all the properties that it violates.
+    """The first property that is violated, of the cheap before the dear.
 
-    An unexpected exception kills as a violation does, and so does it that no property has
-    anything to say of any scene. `only`: of these properties alone.
+    An unexpected exception kills as a violation does, and so does it that no property says anything
+    of any scene. `plan`: how many scenes each property looks at, as it was found on the sound code,
+    so that a mutant is held against the same; where it is None, as many as take `budget` seconds
+    of the processor. `only`: of these properties alone.
     """
-    started = time.monotonic()
+    used = _Used(time.process_time())
     properties = {n: p for n, p in catalogue().items() if not only or n in only}
-    said = scenes = 0
-    for scene in drawn_scenes(examples, seed):
-        scenes += 1
-        wrong: list[tuple[str, str, str]] = []
-        for name, one in properties.items():
+    made = [example_of(scene) for scene in drawn_scenes(examples, seed)]
+    first = made[:1] if plan is None else []
+    for name, one in properties.items():  # one scene of each, to know which are dear
+        if used.killed(name, one, first, budget):
+            return used.found()
+    for name in plan or sorted(properties, key=lambda n: used.seconds[n]):
+        if name in properties:
+            rest = made[len(first) :] if plan is None else made[: plan[name]]
+            if used.killed(name, properties[name], rest, budget if plan is None else math.inf):
+                return used.found()
+    return used.found() if used.said else used.found(("every scene", "refused", "nothing is said"))
+
+
+@dataclass
+class _Used:
+    """What properties have looked at so far, and what they have found."""
+
+    started: float
+    said: int = 0
+    scenes: dict[str, int] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    wrong: tuple[str, str, str] | None = None
+
+    def killed(self, name: str, one: Any, examples: list[Any], budget: float) -> bool:
+        """Looks at examples until the property's budget is used up; whether one is wrong."""
+        violated = violation()
+        for example in examples:
+            if self.seconds.get(name, 0) > budget:
+                break
+            before = time.process_time()
             try:
-                one.check(scene)
-                said += 1
-            except refusal():
-                continue
-            except violation() as error:
-                wrong.append((name, "violated", str(error)))
+                self.said += bool(one.holds(example))
+            except violated as error:
+                self.wrong = (name, "violated", str(error))
             except Exception as error:
-                wrong.append((name, "raised", f"{type(error).__name__}: {error}"))
-        if wrong:
-            return _found(wrong, scenes, started)
-    if not said:
-        return _found([("every scene", "refused", "no property says anything")], scenes, started)
-    return _found([], scenes, started)
+                self.wrong = (name, "raised", f"{type(error).__name__}: {error}")
+            self.seconds[name] = self.seconds.get(name, 0) + time.process_time() - before
+            self.scenes[name] = self.scenes.get(name, 0) + 1
+            if self.wrong:
+                return True
+        return False
 
-
-def _found(wrong: list[tuple[str, str, str]], scenes: int, started: float) -> dict[str, Any]:
-    wrong = sorted(wrong, key=lambda w: w[1] != "violated")  # a violation says more than a crash
-    name, how, why = wrong[0] if wrong else (None, None, "")
-    return {
-        "killed_by": name,
-        "how": how,
-        "why": why.partition("\n")[0][:300],
-        "violated": [n for n, h, _ in wrong if h == "violated"],
-        "scenes": scenes,
-        "seconds": round(time.monotonic() - started, 2),
-    }
+    def found(self, wrong: tuple[str, str, str] | None = None) -> dict[str, Any]:
+        name, how, why = wrong or self.wrong or (None, None, "")
+        cost = {n: s / self.scenes[n] for n, s in self.seconds.items()}
+        return {
+            "killed_by": name,
+            "how": how,
+            "why": why.partition("\n")[0][:300],
+            "plan": {n: self.scenes[n] for n in sorted(cost, key=lambda n: cost[n])},
+            "seconds": round(time.process_time() - self.started, 2),
+        }
 
 
 def main() -> None:
@@ -111,15 +149,16 @@ def main() -> None:
     parser.add_argument("index", type=int)
     parser.add_argument("--examples", type=int, default=EXAMPLES)
     parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--budget", type=float, default=BUDGET)
     parser.add_argument("--only", action="append", default=[], metavar="PROPERTY")
     asked = parser.parse_args()
     if asked.index >= 0:
         planted(asked.module, asked.index)
     try:
-        found = battery(asked.examples, asked.seed, asked.only)
+        found = battery(asked.examples, asked.seed, budget=asked.budget, only=asked.only)
     except Exception as error:  # the module's import fails, or no scene can be drawn
         why = f"{type(error).__name__}: {error}"
-        found = {"killed_by": "import", "how": "raised", "why": why, "violated": []}
+        found = {"killed_by": "import", "how": "raised", "why": why[:300]}
     print(json.dumps(found, ensure_ascii=False))
 
 

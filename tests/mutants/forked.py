@@ -5,6 +5,7 @@ of memory, and is ended with all that it started.
 """
 
 import contextlib
+import ctypes
 import importlib
 import json
 import os
@@ -23,13 +24,17 @@ from typing import Any
 LIBRARIES = ("sympy", "flint", "numpy", "numba", "gmpy2", "mpmath", "pydantic", "hypothesis",
              "llvmlite.binding", "pytest", "_pytest.assertion", "click", "rich")  # fmt: skip
 MEMORY = 6 << 30
+_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
 _SLACK = 4  # times the processor time that a child may wait, as others work beside it
 _SAID = 300  # characters of a child's last words
 
 
 @dataclass(frozen=True)
 class Ended:
-    """How a child ended: `how` is "done", "timeout" or "died", `said` its last words."""
+    """How a child ended: `how` is "done", "timeout" or "died", `said` its last words.
+
+    `seconds` are those of the processor.
+    """
 
     how: str
     value: dict[str, Any] = field(default_factory=dict)
@@ -51,7 +56,7 @@ def forked(work: Callable[[], dict[str, Any]], seconds: float) -> Ended:
     """
     sys.stdout.flush()
     receiver, sender = os.pipe()
-    started = time.monotonic()
+    deadline = time.monotonic() + _SLACK * seconds
     with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
         child = os.fork()
         if child == 0:
@@ -59,15 +64,15 @@ def forked(work: Callable[[], dict[str, Any]], seconds: float) -> Ended:
             _in_child(work, sender, Path(folder), seconds)
         os.close(sender)
         try:
-            text, late = _received(receiver, started + _SLACK * seconds)
+            text, late = _received(receiver, deadline)
         finally:
             os.close(receiver)
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(child, signal.SIGKILL)
             with contextlib.suppress(ProcessLookupError):
                 os.kill(child, signal.SIGKILL)  # where it has no group of its own yet
-            _, status = os.waitpid(child, 0)
-        spent = time.monotonic() - started
+            _, status, used = os.wait4(child, 0)
+        spent = used.ru_utime + used.ru_stime
         said = _last_words(Path(folder) / "said")
     if text:
         value = json.loads(text)
@@ -76,12 +81,19 @@ def forked(work: Callable[[], dict[str, Any]], seconds: float) -> Ended:
     return Ended("timeout" if hung else "died", {}, spent, said)
 
 
+def end_with_parent() -> None:
+    """This process is ended when its parent is, where the system can do that."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(_DEATH_SIGNAL, signal.SIGKILL)
+
+
 def _in_child(
     work: Callable[[], dict[str, Any]], sender: int, folder: Path, seconds: float
 ) -> None:
     """Does the work and ends the process."""
     try:
         os.setsid()
+        end_with_parent()
         # What is kept between runs of the same tests is kept for this child alone.
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(folder / "hypothesis")
         os.environ["NUMBA_CACHE_DIR"] = str(folder / "numba")
@@ -89,8 +101,7 @@ def _in_child(
         said = os.open(folder / "said", os.O_WRONLY | os.O_CREAT)
         os.dup2(said, 1)
         os.dup2(said, 2)
-        used = int(resource.getrusage(resource.RUSAGE_SELF).ru_utime)
-        limit = used + max(1, round(seconds))
+        limit = max(1, round(seconds))
         signal.signal(signal.SIGXCPU, signal.SIG_DFL)
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))

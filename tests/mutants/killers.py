@@ -5,13 +5,12 @@ is imported. It gives `by`, what killed the mutant (None where it lives), `how` 
 """
 
 import ast
-import sys
-import threading
+import cProfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from types import CodeType, FrameType
+from types import CodeType
 from typing import Any
 
 from tests.mutants import battery
@@ -19,7 +18,7 @@ from tests.mutants.mutate import ROOT, path_of
 from tests.mutants.planted import planted
 
 BATTERY = "battery"
-Work = Callable[[], dict[str, Any]]
+Work = Callable[[dict[str, Any]], dict[str, Any]]  # of what is known from the sound code
 
 
 @dataclass(frozen=True)
@@ -64,12 +63,22 @@ def concerns(path: Path, module: str) -> bool:
     return False
 
 
-def _battery(examples: int) -> dict[str, Any]:
-    found = battery.battery(examples)
-    return {"by": found["killed_by"], **{k: found[k] for k in ("how", "why", "violated")}}
+def _battery(examples: int, sound: dict[str, Any]) -> dict[str, Any]:
+    found = battery.battery(examples, plan=sound.get("plan"))
+    plan = {} if "plan" in sound else {"plan": found["plan"]}
+    return {"by": found["killed_by"], "how": found["how"], "why": found["why"], **plan}
 
 
-def _tests(path: Path) -> dict[str, Any]:
+def by_property(
+    name: str, examples: int, module: str, index: int, sound: dict[str, Any]
+) -> dict[str, Any]:
+    """One property of the battery on a mutant; to be called in a child."""
+    planted(module, index)
+    found = battery.battery(examples, plan=sound["plan"], only=[name])
+    return {"by": found["killed_by"], "how": found["how"], "why": found["why"]}
+
+
+def _tests(path: Path, sound: dict[str, Any]) -> dict[str, Any]:
     import pytest
 
     _settle_hypothesis()
@@ -114,10 +123,10 @@ def _settle_hypothesis() -> None:
     settings.load_profile("mutants")
 
 
-def on_mutant(killer: Killer, module: str, index: int) -> dict[str, Any]:
+def on_mutant(killer: Killer, module: str, index: int, sound: dict[str, Any]) -> dict[str, Any]:
     """The killer's work on a mutant; to be called in a child."""
     planted(module, index)
-    return killer.work()
+    return killer.work(sound)
 
 
 def on_sound_code(killer: Killer, modules: tuple[str, ...]) -> dict[str, Any]:
@@ -126,22 +135,16 @@ def on_sound_code(killer: Killer, modules: tuple[str, ...]) -> dict[str, Any]:
     As first lines, by module; 0 is the module's own code. A killer says nothing of a mutant in a
     function that it never enters, and need not be run on it.
     """
-    entered: set[CodeType] = set()
-
-    def enter(frame: FrameType, event: str, argument: object) -> None:
-        entered.add(frame.f_code)
-
-    threading.settrace(enter)
-    sys.settrace(enter)
+    entered = cProfile.Profile(subcalls=False, builtins=False)  # in C: tracing costs far more
+    entered.enable()
     try:
-        found = killer.work()
+        found = killer.work({})
     finally:
-        sys.settrace(None)
-        threading.settrace(None)  # type: ignore[arg-type]
+        entered.disable()
     files = {str(path_of(name)): name for name in modules}
     lines: dict[str, set[int]] = {}
-    for code in entered:
-        name = files.get(code.co_filename)
+    for code in (entry.code for entry in entered.getstats()):
+        name = files.get(code.co_filename) if isinstance(code, CodeType) else None
         if name:
             line = 0 if code.co_name == "<module>" else code.co_firstlineno
             lines.setdefault(name, set()).add(line)

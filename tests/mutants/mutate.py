@@ -122,7 +122,8 @@ def _large_bounds(tree: ast.Module) -> Iterator[ast.AST]:
 
 def _reached(node: ast.AST, function: int) -> Iterator[tuple[ast.AST, int]]:
     """The nodes in which something is computed, parents first."""
-    yield node, function
+    if not _of_types(node):
+        yield node, function
     for child in _parts(node):
         inside = function
         if not function and isinstance(child, ast.FunctionDef | ast.Lambda):
@@ -150,7 +151,7 @@ def _parts(node: ast.AST) -> Iterator[ast.AST]:
             kept = [value]
         case ast.Assign([ast.Name(name)], value) if _is_alias(name, value):
             kept = []
-        case ast.If(test, orelse=orelse) if ast.unparse(test).endswith("TYPE_CHECKING"):
+        case ast.If(orelse=orelse) if _of_types(node):
             kept = orelse
         case ast.match_case(guard=guard, body=body):
             kept = [guard, *body]
@@ -173,6 +174,10 @@ def _parts_of_call(node: ast.Call) -> list[ast.AST]:
     elif name == "cast":
         arguments = arguments[1:]
     return [node.func, *arguments, *(k.value for k in node.keywords if k.arg not in _KEYWORDS)]
+
+
+def _of_types(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
 
 
 def _plain(bound: ast.expr | None) -> bool:

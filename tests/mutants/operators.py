@@ -75,7 +75,11 @@ def _of_call(node: ast.AST) -> Iterator[Change]:
         return
     name = called(node)
     if isinstance(node.func, ast.Name) and name in _NAMES:
-        yield "min-max", node, ast.Call(ast.Name(_NAMES[name], ast.Load()), node.args, node.keywords)
+        yield (
+            "min-max",
+            node,
+            ast.Call(ast.Name(_NAMES[name], ast.Load()), node.args, node.keywords),
+        )
     plain = not any(isinstance(a, ast.Starred) for a in node.args)
     if len(node.args) == 2 and plain and name not in _COMMUTE | _ABOUT_TYPES:
         yield "arguments", node, ast.Call(node.func, node.args[::-1], node.keywords)

@@ -9,14 +9,15 @@ command goes on where it was interrupted.
 import argparse
 import multiprocessing
 import sys
-import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
 from tests.mutants import forked, records
 from tests.mutants.killers import (
+    BATTERY,
     Killer,
+    by_property,
     concerns,
     killers,
     on_mutant,
@@ -30,19 +31,21 @@ from tests.mutants.targets import modules, sample
 
 RESULTS = Path(__file__).parent / "results.jsonl"
 _SLOWER = 5  # times the sound code's processor time, after which a mutant is said to hang
+_TRIED = 100  # mutants at most for one property
 _SOUND = 1800.0  # seconds for a killer on the sound code
 
 
 def attempt(mutant: Mutant, sound: list[Record], order: list[Killer], timeout: float) -> Record:
     """The first killer that kills it, of those that enter the function it stands in."""
-    started = time.monotonic()
+    spent = 0.0
     seen = {r["killer"]: r for r in sound}
     found: Record = {"killed": False, "by": None}
     entering = [k for k in order if _enters(seen[k.name], mutant)]
     for killer in entering:
         limit = max(timeout, _SLOWER * seen[killer.name]["seconds"])
-        work = partial(on_mutant, killer, mutant.module, mutant.index)
+        work = partial(on_mutant, killer, mutant.module, mutant.index, seen[killer.name])
         ended = forked.forked(work, limit)
+        spent += ended.seconds
         verdict = _judged(killer, ended)
         if verdict is not None:
             found = {"killed": True, "killer": killer.name, "stage": killer.stage, **verdict}
@@ -54,7 +57,7 @@ def attempt(mutant: Mutant, sound: list[Record], order: list[Killer], timeout: f
         "operator": mutant.operator,
         **found,
         "tried": len(entering),
-        "seconds": round(time.monotonic() - started, 1),
+        "seconds": round(spent, 1),
     }
 
 
@@ -81,6 +84,7 @@ def sound_code(killer: Killer, names: tuple[str, ...]) -> Record:
         "stage": killer.stage,
         "seconds": round(ended.seconds, 1),
         "entered": ended.value["entered"],
+        **({"plan": ended.value["plan"]} if "plan" in ended.value else {}),
     }
 
 
@@ -106,7 +110,9 @@ def main() -> None:
     records.add(asked.into, _asked(asked))
     order = [k for k in killers(asked.examples) if k.stage <= asked.stage]
     context = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(asked.workers, mp_context=context) as pool:
+    with ProcessPoolExecutor(
+        asked.workers, mp_context=context, initializer=forked.end_with_parent
+    ) as pool:
         sound = _sound(pool, order, known, asked.into)
         done = {r["key"] for r in records.of_kind(known, "mutant")}
         waiting = [m for m in wanted if m.key not in done]
@@ -120,6 +126,8 @@ def main() -> None:
             print(f"{n}/{len(waiting)} {record['seconds']:6.1f} s {record['key']}: {said}")
         if asked.explain:
             _explain(pool, wanted, asked.into, asked.timeout)
+        if asked.show:
+            _show(pool, wanted, sound, asked)
     print(summary(records.read(asked.into), {m.key for m in wanted}))
 
 
@@ -155,6 +163,34 @@ def _explain(pool: ProcessPoolExecutor, wanted: list[Mutant], path: Path, timeou
         print(f"unit tests: {record['key']}: {record['by'] or 'lives'}")
 
 
+def _show(
+    pool: ProcessPoolExecutor, wanted: list[Mutant], sound: list[Record], asked: argparse.Namespace
+) -> None:
+    """A mutant for each property of the battery that was first at none: it is run by itself."""
+    known = records.read(asked.into)
+    first = {r["by"] for r in records.of_kind(known, "mutant") if r.get("how") == "violated"}
+    first |= {r["property"] for r in records.of_kind(known, "shown")}
+    whole = [r for r in sound if r["killer"] == BATTERY]
+    missing = [name for r in whole for name in r["plan"] if name not in first]
+    work = [pool.submit(shown, n, wanted, whole[0], asked.examples, asked.timeout) for n in missing]
+    for future in as_completed(work):
+        record = future.result()
+        records.add(asked.into, record)
+        print(f"{record['property']}: {record['key'] or 'kills none that it was tried on'}")
+
+
+def shown(name: str, wanted: list[Mutant], sound: Record, examples: int, timeout: float) -> Record:
+    """The first of the mutants that violates the property; no more than some are tried."""
+    entering = [m for m in wanted if _enters(sound, m)][:_TRIED]
+    limit = max(timeout, _SLOWER * sound["seconds"])
+    for mutant in entering:
+        work = partial(by_property, name, examples, mutant.module, mutant.index, sound)
+        ended = forked.forked(work, limit)
+        if ended.how == "done" and ended.value["by"] and ended.value["how"] == "violated":
+            return {"kind": "shown", "property": name, "key": mutant.key}
+    return {"kind": "shown", "property": name, "key": None, "tried": len(entering)}
+
+
 def _same_source(known: list[Record], path: Path) -> None:
     if any(r["source"] != records.source() for r in records.of_kind(known, "asked")):
         raise SystemExit(f"{path} holds results of other source; move it away, or give --into")
@@ -184,6 +220,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--examples", type=int, default=60, help="scenes of the battery")
     parser.add_argument("--stage", type=int, default=2, choices=(1, 2), help="the last to be run")
     parser.add_argument("--explain", action="store_true", help="survivors against unit tests")
+    parser.add_argument("--show", action="store_true", help="a mutant for each property")
     parser.add_argument("--into", type=Path, default=RESULTS)
     return parser.parse_args()
 

@@ -39,8 +39,7 @@ class Found:
         found: dict[str, list[Record]] = {}
         for record in self.mutants:
             if record["killed"] and record["how"] in ("violated", "failed"):
-                for name in record.get("violated") or [record["by"]]:
-                    found.setdefault(name, []).append(record)
+                found.setdefault(record["by"], []).append(record)
         return dict(sorted(found.items()))
 
     def ways(self) -> Counter[str]:

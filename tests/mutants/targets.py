@@ -25,18 +25,13 @@ def modules() -> tuple[str, ...]:
 def shares(counts: dict[str, int], size: int) -> dict[str, int]:
     """`size` distributed over modules in proportion to their counts, each with one at least.
 
-    By largest remainders; a module gives no more than it has.
+    A module gives no more than it has.
     """
     total = sum(counts.values())
-    if size >= total:
-        return dict(counts)
-    exact = {name: n * size / total for name, n in counts.items()}
-    given = {name: max(1, int(x)) for name, x in exact.items()}
-    by_rest = sorted(exact, key=lambda name: (given[name] - exact[name], name))
-    while sum(given.values()) < size:
-        for name in by_rest:
-            if sum(given.values()) < size and given[name] < counts[name]:
-                given[name] += 1
+    given = dict.fromkeys(counts, 1)
+    for _ in range(min(size, total) - len(counts)):
+        wanting = [name for name in sorted(counts) if given[name] < counts[name]]
+        given[max(wanting, key=lambda name: counts[name] * size / total - given[name])] += 1
     return given
 
 
@@ -52,5 +47,7 @@ def sample(size: int, seed: int, chosen: tuple[str, ...] | None = None) -> list[
         draw = random.Random(f"{seed} {name}")  # noqa: S311 - a sample, not a secret
         mixed = list(mutants(name))
         draw.shuffle(mixed)
-        drawn += [((k + draw.random()) / share[name], m) for k, m in enumerate(mixed[: share[name]])]
+        drawn += [
+            ((k + draw.random()) / share[name], m) for k, m in enumerate(mixed[: share[name]])
+        ]
     return [m for _, m in sorted(drawn, key=lambda pair: (pair[0], pair[1].key))]
