@@ -27,7 +27,7 @@ BUDGET = 4.0  # seconds for one property on the sound code: some compile kernels
 
 def there() -> bool:
     """Whether the properties are there to be run; imports nothing of `verify`."""
-    return all((ROOT / "verify" / n).exists() for n in ("properties", "property.py", "strategies"))
+    return all((ROOT / "verify" / n).exists() for n in ("properties", "drawn_scenes.py"))
 
 
 # == PLUG IN ==================================================================================
@@ -41,39 +41,19 @@ def catalogue() -> dict[str, Any]:
     return {name: properties.get(name) for name in properties.names()}
 
 
-def drawn_scenes(examples: int, number: int) -> list[Any]:
-    """That many scenes of any scheme, and some of each: the same for the same number.
+def drawn_scenes(examples: int, seed: int) -> list[Any]:
+    """That many scenes of any scheme, and some of each: the same for the same seed.
 
-    Of sixty scenes of any scheme most have one of a few: a scheme that is not drawn hides its
-    mutants. The order is mixed, as the dear properties look at the first scenes only.
+    A scheme that is not drawn hides its mutants. The order is mixed, as the dear properties look
+    at the first scenes only.
     """
-    from hypothesis import strategies as st
-
-    scenes, schemes = (import_module(f"verify.{n}") for n in ("strategies", "schemes"))
-    found = _drawn(scenes.scenes(), examples, number)
-    for name in schemes.names():
-        found += _drawn(scenes.scenes(schemes=st.just(schemes.get(name))), _OF_EACH, number)
-    random.Random(number).shuffle(found)  # noqa: S311 - no secret
-    return found
-
-
-def _drawn(strategy: Any, examples: int, number: int) -> list[Any]:
-    """Examples of a strategy; none is made smaller, none is kept."""
-    from hypothesis import HealthCheck, Phase, given, seed, settings
-
-    found: list[Any] = []
-
-    @seed(number)
-    @settings(
-        max_examples=examples, database=None, deadline=None, phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )  # fmt: skip
-    @given(strategy)
-    def take(scene: Any) -> None:
-        found.append(scene)
-
-    take()
-    return found
+    drawer, tasks, schemes = (
+        import_module(f"verify.{name}") for name in ("drawn_scenes", "tasks", "schemes")
+    )
+    asked = [(tasks.Drawn(), k) for k in range(examples)]
+    asked += [(tasks.Drawn(schemes=(n,)), k) for n in schemes.names() for k in range(_OF_EACH)]
+    random.Random(seed).shuffle(asked)  # noqa: S311 - no secret
+    return [drawer.drawn_scene(drawn, seed, k) for drawn, k in asked]
 
 
 def example_of(scene: Any) -> Any:

@@ -43,10 +43,23 @@ class Ended:
 
 
 def warm_up() -> None:
-    """Imports the libraries; to be called once, before the first child."""
+    """Imports the libraries; to be called once, before the first child.
+
+    hypothesis calls what packages have registered with it when it is imported, `verify` too: here
+    it must not, and `register` does so in the child.
+    """
+    os.environ["HYPOTHESIS_NO_PLUGINS"] = "1"
     for name in LIBRARIES:
         importlib.import_module(name)
+    del os.environ["HYPOTHESIS_NO_PLUGINS"]
     assert not [n for n in sys.modules if n.partition(".")[0] == "verify"]
+
+
+def register() -> None:
+    """Calls what is registered with hypothesis: imports `verify`, with what is planted in it."""
+    from hypothesis.entry_points import run
+
+    run()
 
 
 def forked(work: Callable[[], dict[str, Any]], seconds: float) -> Ended:

@@ -14,6 +14,7 @@ from types import CodeType
 from typing import Any
 
 from tests.mutants import battery
+from tests.mutants.forked import register
 from tests.mutants.mutate import ROOT, path_of
 from tests.mutants.planted import planted
 
@@ -81,6 +82,7 @@ def by_property(
 def _tests(path: Path, sound: dict[str, Any]) -> dict[str, Any]:
     import pytest
 
+    register()
     _settle_hypothesis()
     first = _First()
     plain = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-o", "addopts="]

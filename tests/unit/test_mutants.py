@@ -210,10 +210,10 @@ CHECK = """
 from verify import schemes
 from verify.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-def test_the_determinant_of_lie2_has_order_three():
-    map = schemes.get("lie2").step_map(Hamiltonian.parse("p**2/2 + q**4/4"))
-    proof = prove(map, schemes.get("lie2"))
-    assert (proof.order, proof.convergence_order) == (3, 2)
+def test_ruth3_has_order_three():
+    scheme = schemes.get("ruth3")
+    proof = prove(scheme.step_map(Hamiltonian.parse("p**2/2 + q**4/4")), scheme)
+    assert proof.convergence_order == 3
 """
 RUN = """
 import json, sys
@@ -222,30 +222,27 @@ from pathlib import Path
 from tests.mutants import forked, killers
 forked.warm_up()
 killer = killers.Killer("mine", 2, partial(killers._tests, Path({path!r})))
-found = [forked.forked(partial(killers.on_sound_code, killer, ("verify.schemes.lie",)), 60).value]
+found = [forked.forked(partial(killers.on_sound_code, killer, ("verify.schemes.ruth3",)), 60).value]
 for index in {indices}:
-    work = partial(killers.on_mutant, killer, "verify.schemes.lie", index, {{}})
+    work = partial(killers.on_mutant, killer, "verify.schemes.ruth3", index, {{}})
     found.append(forked.forked(work, 60).value)
 print(json.dumps(found))
 """
 
 
 def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) -> None:
-    """Also one that cannot be imported; and what it does not look at lives."""
+    """Also one that raises; and what it does not look at lives."""
     path = tmp_path / "test_mine.py"
     path.write_text(CHECK)
-    lie = "verify.schemes.lie"
-    wrong = [
-        one(lie, "h ** n * x / math.factorial(n) → h ** n * x * math.factorial(n)"),
-        one(lie, "h ** n → h * n"),
-    ]
-    unseen = one(lie, "constant 3 → 4")  # digits of η
-    text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, unseen)])
+    ruth = "verify.schemes.ruth3"
+    wrong = [one(ruth, "minus-dropped -2"), one(ruth, "Rational(7, 24) → Rational(24, 7)")]
+    broken, unseen = one(ruth, "constant 0 → 1"), one(ruth, "truth False → True")
+    text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, broken, unseen)])
     sound, *killed, lives = json.loads(in_a_process(text).splitlines()[-1])
     assert sound["by"] is None
-    assert len(sound["entered"][lie]) > 3
-    name = "test_mine.py::test_the_determinant_of_lie2_has_order_three"
-    assert {k["by"] for k in killed} == {name}
+    assert len(sound["entered"][ruth]) == 2, "the module's own code, and make"
+    assert {k["by"] for k in killed} == {"test_mine.py::test_ruth3_has_order_three"}
+    assert "IndexError" in killed[-1]["why"]
     assert lives["by"] is None
 
 
