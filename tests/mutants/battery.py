@@ -22,7 +22,7 @@ from tests.mutants.planted import planted
 
 EXAMPLES, SEED = 60, 7
 _OF_EACH = 3  # more scenes of each scheme
-BUDGET = 4.0  # seconds for one property on the sound code: some compile kernels for each scene
+BUDGET = 1.0  # seconds for one property on the sound code: some compile kernels for each scene
 
 
 def there() -> bool:
@@ -77,17 +77,23 @@ def battery(
     plan: Mapping[str, int] | None = None,
     budget: float = BUDGET,
     only: Sequence[str] = (),
+    module: str = "",
 ) -> dict[str, Any]:
     """The first property that is violated, of the cheap before the dear.
 
     An unexpected exception kills as a violation does, and so does it that no property says anything
     of any scene. `plan`: how many scenes each property looks at, as it was found on the sound code,
     so that a mutant is held against the same; where it is None, as many as take `budget` seconds
-    of the processor. `only`: of these properties alone.
+    of the processor. `only`: of these properties alone. `module`: where the mutant is; that of a
+    scheme is held against the scenes of this scheme alone, and by all properties.
     """
     used = _Used(time.process_time())
     properties = {n: p for n, p in catalogue().items() if not only or n in only}
     made = [example_of(scene) for scene in drawn_scenes(examples, seed)]
+    own = getattr(import_module(module), "EXAMPLES", ()) if module else ()
+    near = [example for example in made if example.scheme.name in own]
+    if near and plan is not None:
+        made, plan = near, dict.fromkeys(plan, len(near))
     first = made[:1] if plan is None else []
     for name, one in properties.items():  # one scene of each, to know which are dear
         if used.killed(name, one, first, budget):
@@ -108,6 +114,7 @@ class _Used:
     said: int = 0
     scenes: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    plan: dict[str, int] = field(default_factory=dict)
     wrong: tuple[str, str, str] | None = None
 
     def killed(self, name: str, one: Any, examples: list[Any], budget: float) -> bool:
@@ -125,6 +132,8 @@ class _Used:
                 self.wrong = (name, "raised", f"{type(error).__name__}: {error}")
             self.seconds[name] = self.seconds.get(name, 0) + time.process_time() - before
             self.scenes[name] = self.scenes.get(name, 0) + 1
+            if self.seconds[name] <= budget or name not in self.plan:
+                self.plan[name] = self.scenes[name]  # without the scene that was too dear
             if self.wrong:
                 return True
         return False
@@ -136,7 +145,7 @@ class _Used:
             "killed_by": name,
             "how": how,
             "why": why.partition("\n")[0][:300],
-            "plan": {n: self.scenes[n] for n in sorted(cost, key=lambda n: cost[n])},
+            "plan": {n: self.plan[n] for n in sorted(cost, key=lambda n: cost[n])},
             "seconds": round(time.process_time() - self.started, 2),
         }
 

@@ -65,7 +65,7 @@ def concerns(path: Path, module: str) -> bool:
 
 
 def _battery(examples: int, sound: dict[str, Any]) -> dict[str, Any]:
-    found = battery.battery(examples, plan=sound.get("plan"))
+    found = battery.battery(examples, plan=sound.get("plan"), module=sound.get("mutated", ""))
     plan = {} if "plan" in sound else {"plan": found["plan"]}
     return {"by": found["killed_by"], "how": found["how"], "why": found["why"], **plan}
 
@@ -75,7 +75,7 @@ def by_property(
 ) -> dict[str, Any]:
     """One property of the battery on a mutant; to be called in a child."""
     planted(module, index)
-    found = battery.battery(examples, plan=sound["plan"], only=[name])
+    found = battery.battery(examples, plan=sound["plan"], only=[name], module=module)
     return {"by": found["killed_by"], "how": found["how"], "why": found["why"]}
 
 
@@ -128,7 +128,7 @@ def _settle_hypothesis() -> None:
 def on_mutant(killer: Killer, module: str, index: int, sound: dict[str, Any]) -> dict[str, Any]:
     """The killer's work on a mutant; to be called in a child."""
     planted(module, index)
-    return killer.work(sound)
+    return killer.work(sound | {"mutated": module})
 
 
 def on_sound_code(killer: Killer, modules: tuple[str, ...]) -> dict[str, Any]:

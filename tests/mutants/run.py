@@ -114,13 +114,14 @@ def main() -> None:
         asked.workers, mp_context=context, initializer=forked.end_with_parent
     ) as pool:
         sound = _sound(pool, order, known, asked.into)
-        done = {r["key"] for r in records.of_kind(known, "mutant")}
+        mine = records.of_kind(known, "mutant")
+        done = {r["key"] for r in mine if r["killed"] or r["last"] >= asked.stage}
         waiting = [m for m in wanted if m.key not in done]
         work = [
             pool.submit(attempt, m, sound, ordered(m, sound, order), asked.timeout) for m in waiting
         ]
         for n, future in enumerate(as_completed(work), 1):
-            record = future.result()
+            record = future.result() | {"last": asked.stage}
             records.add(asked.into, record)
             said = record["by"] if record["killed"] else "LIVES"
             print(f"{n}/{len(waiting)} {record['seconds']:6.1f} s {record['key']}: {said}")
