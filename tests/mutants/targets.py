@@ -1,0 +1,53 @@
+"""Which modules are mutated, and a sample of their mutants."""
+
+import random
+
+from tests.mutants.mutate import ROOT, Mutant, mutants
+
+PATTERNS = (
+    "proof/*.py",
+    "schemes/*.py",
+    "arithmetic/*.py",
+    "step_map.py",
+    "substep.py",
+    "separation*.py",
+)
+
+
+def modules() -> tuple[str, ...]:
+    """The modules under test that have something to change."""
+    paths = {p for pattern in PATTERNS for p in (ROOT / "verify").glob(pattern)}
+    names = (p.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".") for p in paths)
+    names = (name.removesuffix(".__init__") for name in names)
+    return tuple(sorted(name for name in names if mutants(name)))
+
+
+def shares(counts: dict[str, int], size: int) -> dict[str, int]:
+    """`size` distributed over modules in proportion to their counts, each with one at least.
+
+    A module gives no more than it has.
+    """
+    total = sum(counts.values())
+    given = dict.fromkeys(counts, 1)
+    for _ in range(min(size, total) - len(counts)):
+        wanting = [name for name in sorted(counts) if given[name] < counts[name]]
+        given[max(wanting, key=lambda name: counts[name] * size / total - given[name])] += 1
+    return given
+
+
+def sample(size: int, seed: int, chosen: tuple[str, ...] | None = None) -> list[Mutant]:
+    """A random sample, the same for the same source: stratified over the modules.
+
+    The order is mixed, so that a first part of it is a sample, too.
+    """
+    names = chosen or modules()
+    share = shares({name: len(mutants(name)) for name in names}, size)
+    drawn: list[tuple[float, Mutant]] = []
+    for name in names:
+        draw = random.Random(f"{seed} {name}")  # noqa: S311 - a sample, not a secret
+        mixed = list(mutants(name))
+        draw.shuffle(mixed)
+        drawn += [
+            ((k + draw.random()) / share[name], m) for k, m in enumerate(mixed[: share[name]])
+        ]
+    return [m for _, m in sorted(drawn, key=lambda pair: (pair[0], pair[1].key))]
