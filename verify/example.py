@@ -13,8 +13,8 @@ from verify.scheme import Scheme
 from verify.schemes import get
 from verify.step_map import StepMap
 
-_MOST_TERMS = 40  # of an ordinary map, in all its parts
-_MOST_OF_POINTS = 150  # of one that is looked at in a few points
+# Terms of a map in all its parts, so that a kernel is written, a proof made, a point looked at.
+_MOST_OF_KERNELS, _MOST_TERMS, _MOST_OF_POINTS = 20, 40, 150
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class Example:
 
     @cached_property
     def ordinary(self) -> bool:
-        """Whether its map is short enough to be proved and compiled in a moment.
+        """Whether its map is short enough to be proved in a moment.
 
-        What needs a proof or a kernel speaks of these alone, so that among thousands of drawn
+        What needs a proof speaks of these alone, so that among thousands of drawn
         scenes not one takes minutes: lie6 of a trigonometric H has a thousand terms, and a
         composition's series for a rational H as many denominators.
         """
@@ -71,6 +71,11 @@ class Example:
             return True
         by_turns = bool(getattr(scheme.generic, "separable", False))
         return by_turns and not self._kinds & {"inverse", "root"}
+
+    @property
+    def short(self) -> bool:
+        """Whether kernels of it are written in a moment."""
+        return self.ordinary and self._terms <= _MOST_OF_KERNELS
 
     @property
     def brief(self) -> bool:

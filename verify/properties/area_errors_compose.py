@@ -13,7 +13,7 @@ _KNOWN = Fraction(1, 10**30)
 
 
 def holds(example: Example) -> bool:
-    if example.steps < 2 or not example.ordinary or example.step_map.preserves_area:
+    if example.steps < 2 or not example.short or example.step_map.preserves_area:
         return False
     middle = example.steps // 2
     whole = _run(example, example.start, example.steps)

@@ -21,7 +21,7 @@ _OBSERVABLES = ("lambda",)
 
 
 def holds(example: Example) -> bool:
-    if not example.ordinary:
+    if not example.short:
         return False
     name = _turn(example)
     wanted = _enclosed(example)

@@ -20,7 +20,7 @@ _DIGITS = 8
 
 
 def holds(example: Example) -> bool:
-    if not example.ordinary:
+    if not example.short:
         return False
     given = example.hamiltonian, example.scheme.name, example.start, example.steps
     try:
