@@ -17,6 +17,7 @@ from hypothesis.database import InMemoryExampleDatabase
 from verify import schemes, strategies
 from verify.property import Violation
 from verify.scene import Scene
+from verify.strategies.schemes import needs_separable
 from verify.tasks import Drawn
 
 _BYTES = 4096
@@ -32,16 +33,12 @@ def scenes_of(drawn: Drawn) -> st.SearchStrategy[Scene]:
     given_schemes = strategies.schemes(names=drawn.schemes) if drawn.schemes else None
     hamiltonians = None
     if drawn.kinds or drawn.degree != Drawn().degree:
-        separable = True if any(_separable(name) for name in drawn.schemes) else None
+        separable = True if any(map(needs_separable, map(schemes.get, drawn.schemes))) else None
         kinds = drawn.kinds or strategies.KINDS
         hamiltonians = strategies.hamiltonians(kinds, degree=drawn.degree, separable=separable)
     return strategies.scenes(
         hamiltonians=hamiltonians, schemes=given_schemes, steps=(1, _MOST_STEPS)
     )
-
-
-def _separable(scheme: str) -> bool:
-    return bool(getattr(schemes.get(scheme).generic, "separable", False))
 
 
 def drawn_scene(drawn: Drawn, seed: int, number: int) -> Scene:

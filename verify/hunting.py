@@ -30,6 +30,7 @@ from verify.planned import Plan
 from verify.scene import Scene, scene_from
 from verify.scene_text import scene_text
 from verify.scene_values import InitialValue
+from verify.strategies.schemes import needs_separable
 from verify.tasks import Drawn, HuntTask
 
 REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
@@ -221,7 +222,7 @@ def _climb(begin: Worst, look: Look) -> None:
 
 def _scenes(drawn: Drawn, steps: int) -> st.SearchStrategy[Scene]:
     """Ordinary-looking ones: a few terms, initial values in tenths, h from 1/1000 to 1/10."""
-    separable = True if any(_separable(name) for name in drawn.schemes) else None
+    separable = True if any(map(needs_separable, map(schemes.get, drawn.schemes))) else None
     # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
     # the modules loaded, and what is drawn would then depend on which these are. A coefficient with
     # its sign is drawn as a number below 2·SIZE².
@@ -239,7 +240,3 @@ def _scenes(drawn: Drawn, steps: int) -> st.SearchStrategy[Scene]:
         step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
         steps=(steps, steps),
     )
-
-
-def _separable(scheme: str) -> bool:
-    return bool(getattr(schemes.get(scheme).generic, "separable", False))

@@ -87,10 +87,13 @@ def at_point(partial: Partial, u: Series, v: Series) -> Series:
         both = along_p
         for j in range(most + 1 - i):
             derivative = partial(i, j)
-            if derivative != 0:
-                share = Fraction(1, math.factorial(i) * math.factorial(j))
-                total += both.times(derivative * ring.constant(share))
+            if derivative == 0:  # and so are all further ones by q
+                break
+            share = Fraction(1, math.factorial(i) * math.factorial(j))
+            total += both.times(derivative * ring.constant(share))
             both = both * v
+        if partial(i, 0) == 0:
+            break
         along_p = along_p * u
     return total
 
