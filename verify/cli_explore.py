@@ -95,7 +95,8 @@ def explore(
     from verify.tasks import Drawn
 
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
-    drawn = Drawn(kinds=kinds, degree=degree, schemes=schemes)
+    looks = _looks(claims, names) if maximise is None else {}
+    drawn = Drawn(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
     if maximise is not None:
         if claims or names:
             raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
@@ -107,7 +108,7 @@ def explore(
     asked = Exploration(
         seed=seed,
         examples=examples,
-        **_looks(claims, names),
+        **looks,
         drawn=drawn,
     )
     if keep is not None:
@@ -138,6 +139,15 @@ def _looks(claims: str | None, names: Sequence[str]) -> dict[str, Any]:
     if not path.is_file():
         raise InputError("CLAIMS", claims, "is no file")
     return {"properties": tuple(names), "claims": claim_texts(load_claims(path).claims)}
+
+
+def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:
+    """The schemes that the claims speak of, where nothing else is looked at; else any."""
+    from verify.explore_claims import scheme_of
+
+    if looks.get("properties") or not looks.get("claims"):
+        return ()
+    return tuple(dict.fromkeys(map(scheme_of, looks["claims"])))
 
 
 def _as_json(report: "ExploreReport", written: Sequence[Path]) -> dict[str, Any]:

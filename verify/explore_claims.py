@@ -30,6 +30,12 @@ def claim_texts(claims: list[Claim]) -> tuple[str, ...]:
     return tuple(json.dumps(claim.model_dump(mode="json"), sort_keys=True) for claim in claims)
 
 
+def scheme_of(text: str) -> str:
+    """The scheme that the claim speaks of."""
+    scheme: str = json.loads(text)["scheme"]
+    return scheme
+
+
 @lru_cache(maxsize=256)
 def claim_property(text: str) -> Property:
     """The property that the claim makes."""

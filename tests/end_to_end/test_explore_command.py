@@ -66,6 +66,7 @@ def test_a_false_claim_is_shrunk_to_a_scene_that_report_takes(
     assert failure["property"] == "fourth-order"
     path = Path(failure["file"])
     assert path.read_text() == failure["scene"]
+    assert 'schemes = ["lie2"]' in failure["scene"], "the scheme that the claim speaks of"
     assert here(capsys, "report", str(path), "-o", "page", "--workers", "1")[0] == 0
     assert Path("page/index.html").exists()
     status, out, _ = here(capsys, *asked[:-1])
