@@ -143,7 +143,7 @@ def cost(task: Task) -> int:
     if isinstance(task, ExploreTask):
         return _SCENE_COST * task.count * (len(task.properties) + len(task.claims))
     if isinstance(task, HuntTask):
-        return 10 * _SCENE_COST * task.count
+        return task.count * (10 * _SCENE_COST + 3 * task.steps * _STEP_COST["mpfr"])
     if isinstance(task, RunTask):
         checked = task.arithmetic == "float64" and task.steps <= DIRECT_STEPS
         return task.steps * _STEP_COST.get(AUTO if checked else task.arithmetic, 500)

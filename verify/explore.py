@@ -33,7 +33,7 @@ from verify.scene_text import scene_text
 from verify.tasks import Drawn, ExploreTask, ShrinkTask
 
 MOST_EXAMPLES = 10**12
-_STRETCH, _MOST_TASKS = 50, 10_000  # scenes of a task, and tasks
+_STRETCH, _MOST_TASKS = 50, 20_000  # scenes of a task, and tasks
 
 
 @dataclass(frozen=True)
