@@ -172,7 +172,7 @@ def _show(
     first = {r["by"] for r in records.of_kind(known, "mutant") if r.get("how") == "violated"}
     first |= {r["property"] for r in records.of_kind(known, "shown")}
     whole = [r for r in sound if r["killer"] == BATTERY]
-    missing = [name for r in whole for name in r["plan"] if name not in first]
+    missing = [name for r in whole for name in r["plan"]["looks"] if name not in first]
     work = [pool.submit(shown, n, wanted, whole[0], asked.examples, asked.timeout) for n in missing]
     for future in as_completed(work):
         record = future.result()
