@@ -3,22 +3,25 @@
     python -m tests.mutants.battery MODULE INDEX --examples 60
 
 plants a mutant and prints one line of JSON: `killed_by` (a property, or null), `how` ("violated",
-"raised" or "refused"), `why`, `plan` (how many scenes each property has looked at), `seconds` (of
+"raised" or "refused"), `why`, `plan` (the scenes that were looked at), `seconds` (of
 the processor). INDEX −1 plants nothing: then `killed_by` must be null.
 """
 
 import argparse
+import contextlib
 import json
 import math
 import random
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
 from tests.mutants.mutate import ROOT
 from tests.mutants.planted import planted
+
+Plan = dict[str, Any]  # `kept`: the scenes by number; `looks`: how many each property looks at
 
 EXAMPLES, SEED = 60, 7
 _OF_EACH = 3  # more scenes of each scheme
@@ -74,7 +77,7 @@ def battery(
     examples: int = EXAMPLES,
     seed: int = SEED,
     *,
-    plan: Mapping[str, int] | None = None,
+    plan: Plan | None = None,
     budget: float = BUDGET,
     only: Sequence[str] = (),
     module: str = "",
@@ -82,28 +85,39 @@ def battery(
     """The first property that is violated, of the cheap before the dear.
 
     An unexpected exception kills as a violation does, and so does it that no property says anything
-    of any scene. `plan`: how many scenes each property looks at, as it was found on the sound code,
-    so that a mutant is held against the same; where it is None, as many as take `budget` seconds
-    of the processor. `only`: of these properties alone. `module`: where the mutant is; that of a
-    scheme is held against the scenes of this scheme alone, and by all properties.
+    of any scene. `plan`: what was looked at on the sound code, so that a mutant is held against the
+    same; where it is None, by each property so many scenes as take `budget` seconds of the
+    processor, without those whose proof alone takes longer. `only`: of these properties alone.
+    `module`: where the mutant is; for a scheme's, the scenes of this scheme come first.
     """
     used = _Used(time.process_time())
     properties = {n: p for n, p in catalogue().items() if not only or n in only}
     made = [example_of(scene) for scene in drawn_scenes(examples, seed)]
-    own = getattr(import_module(module), "EXAMPLES", ()) if module else ()
-    near = [example for example in made if example.scheme.name in own]
-    if near and plan is not None:
-        made, plan = near, dict.fromkeys(plan, len(near))
-    first = made[:1] if plan is None else []
-    for name, one in properties.items():  # one scene of each, to know which are dear
-        if used.killed(name, one, first, budget):
-            return used.found()
-    for name in plan or sorted(properties, key=lambda n: used.seconds[n]):
-        if name in properties:
-            rest = made[len(first) :] if plan is None else made[: plan[name]]
-            if used.killed(name, properties[name], rest, budget if plan is None else math.inf):
+    if plan is None:
+        used.kept = [k for k, example in enumerate(made) if _proved_in(example, budget)]
+        made = [made[k] for k in used.kept]
+        for name, one in properties.items():  # one scene of each, to know which are dear
+            if used.killed(name, one, made[:1], budget):
                 return used.found()
+        looks = {n: len(made) for n in sorted(properties, key=lambda n: used.seconds[n])}
+        made, limit = made[1:], budget
+    else:
+        made, looks, limit = [made[k] for k in plan["kept"]], plan["looks"], math.inf
+        own = getattr(import_module(module), "EXAMPLES", ()) if module else ()
+        made.sort(key=lambda example: example.scheme.name not in own)
+        near = sum(example.scheme.name in own for example in made)
+        looks = {name: max(most, near) for name, most in looks.items()}
+    for name, most in looks.items():
+        if name in properties and used.killed(name, properties[name], made[:most], limit):
+            return used.found()
     return used.found() if used.said else used.found(("every scene", "refused", "nothing is said"))
+
+
+def _proved_in(example: Any, seconds: float) -> bool:
+    before = time.process_time()
+    with contextlib.suppress(Exception):  # a property will say so
+        _ = example.proof
+    return time.process_time() - before <= seconds
 
 
 @dataclass
@@ -114,7 +128,8 @@ class _Used:
     said: int = 0
     scenes: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
-    plan: dict[str, int] = field(default_factory=dict)
+    looks: dict[str, int] = field(default_factory=dict)
+    kept: list[int] = field(default_factory=list)
     wrong: tuple[str, str, str] | None = None
 
     def killed(self, name: str, one: Any, examples: list[Any], budget: float) -> bool:
@@ -132,8 +147,8 @@ class _Used:
                 self.wrong = (name, "raised", f"{type(error).__name__}: {error}")
             self.seconds[name] = self.seconds.get(name, 0) + time.process_time() - before
             self.scenes[name] = self.scenes.get(name, 0) + 1
-            if self.seconds[name] <= budget or name not in self.plan:
-                self.plan[name] = self.scenes[name]  # without the scene that was too dear
+            if self.seconds[name] <= budget or name not in self.looks:
+                self.looks[name] = self.scenes[name]  # without the scene that was too dear
             if self.wrong:
                 return True
         return False
@@ -145,7 +160,10 @@ class _Used:
             "killed_by": name,
             "how": how,
             "why": why.partition("\n")[0][:300],
-            "plan": {n: self.plan[n] for n in sorted(cost, key=lambda n: cost[n])},
+            "plan": {
+                "kept": self.kept,
+                "looks": {n: self.looks[n] for n in sorted(cost, key=lambda n: cost[n])},
+            },
             "seconds": round(time.process_time() - self.started, 2),
         }
 
