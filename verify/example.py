@@ -98,6 +98,11 @@ class Example:
         return {g.kind for g in field.ring.used(field.h_p, field.h_q)}
 
     @property
+    def turn(self) -> int:
+        """A number by which properties that take long choose their examples."""
+        return 7 * self.steps + abs(self.p.numerator) + self.q.denominator
+
+    @property
     def start(self) -> dict[str, Fraction]:
         """p, q and h by name, as a job and an enclosure want them."""
         return {"p": self.p, "q": self.q, "h": self.step_size}

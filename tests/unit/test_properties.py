@@ -36,6 +36,12 @@ def example_of(scheme: str, hamiltonian: str = "p**2/2 + q**2/2 + q**4/4") -> Ex
     return Example.of(scene_from(data, "scene"))
 
 
+@pytest.fixture(autouse=True)
+def _every_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What looks at one example in a few looks at these."""
+    monkeypatch.setattr(Example, "turn", 0)
+
+
 def with_map(example: Example, change: Callable[[Substep], tuple[Any, Any]]) -> Example:
     """The example, its scheme's last part changed for every H."""
 
@@ -135,16 +141,79 @@ def a_lost_sign(example: Example, patch: Patch) -> Example:
     return example
 
 
+def believes_all(example: Example, patch: Patch) -> Example:
+    """A checker for which every polynomial is zero."""
+    from verify.proof.checker import Algebra
+
+    patch.setattr(Algebra, "zero", lambda *_: None)
+    return example
+
+
+def an_order_too_high(example: Example, patch: Patch) -> Example:
+    from verify.properties import every_hamiltonian as module
+
+    true = module._proved
+    patch.setattr(module, "_proved", lambda name: replace(true(name), order=4))
+    return example
+
+
+def half_a_flow(example: Example, patch: Patch) -> Example:
+    """q moves with the flow of H, and p by half of it."""
+    from verify.proof.exact_flow import Flow
+
+    true = Flow.__init__
+
+    def made(self: Flow, *given: Any) -> None:
+        true(self, *given)
+        both = self._slopes
+        self._slopes = lambda p, q: (both(p, q)[0] / 2, both(p, q)[1])
+
+    patch.setattr(Flow, "__init__", made)
+    return example
+
+
+def values_too_large(example: Example, patch: Patch) -> Example:
+    """The averaged function by a thousandth larger along the orbit."""
+    from verify.proof.closed_orbit import Orbit
+
+    true = Orbit.values
+
+    def wrong(self: Orbit, g: Any) -> Any:
+        with self.flow.arithmetic.context():
+            return [x + x / 1000 for x in true(self, g)]
+
+    patch.setattr(Orbit, "values", wrong)
+    return example
+
+
+def a_part_misprinted(example: Example, patch: Patch) -> Example:
+    from verify.separation_chain import Chain
+
+    true = Chain.final
+
+    def wrong(self: Chain, name: str) -> Any:
+        value, bound = true(self, name)
+        return (2 * value if name == "trajectory" else value), bound
+
+    patch.setattr(Chain, "final", wrong)
+    return example
+
+
 PLANTED: dict[str, tuple[str, Plant]] = {
     "area-errors-compose": ("lie2", sums_for_products),
+    "certificates": ("lie2", believes_all),
     "claims-of-schemes": ("lie2", added(0, 1, 2)),
     "convergence-order": ("lie3", wrong_order),
+    "every-hamiltonian": ("lie2", an_order_too_high),
+    "exact-flows": ("lie2", half_a_flow),
     "exchange-of-p-and-q": ("lie2", added(1, 2, 3)),
     "growth-laws": ("lie2", twice_the_potential),
     "linear-canonical-maps": ("lie2", added(1, 2, 3)),
     "number-systems-agree": ("lie2", off_by_a_digit),
+    "orbit-averages": ("lie2", values_too_large),
     "order-by-jets": ("lie2", another_proof),
     "planted-errors": ("lie2", blind),
+    "printed-parts": ("lie2", a_part_misprinted),
     "quadratic-hamiltonians": ("lie2", added(1, 0, 4)),
     "results-read-back": ("lie2", a_lost_sign),
     "separated-parts-add-up": ("lie2", a_part_twice),

@@ -1,0 +1,81 @@
+"""The exact flow keeps H, comes back with time reversed, and moves G by the leading term X·G.
+
+G is the potential of the leading coefficient of ΔJ, where it has one. The flow is followed by
+extrapolation, to 40 digits over a short time.
+"""
+
+from fractions import Fraction
+
+from verify.balls import Ball, around, rational_ball, shown
+from verify.enclosure import enclose_over
+from verify.example import Example
+from verify.precision import working_precision
+from verify.proof.exact_flow import Flow, NoFlowError
+from verify.proof.potential import potential_of
+from verify.property import Violation
+from verify.ring import Poly, Ring
+
+_IN = 3  # one in so many examples
+_DIGITS, _BITS = 40, 220
+_TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
+_KNOWN = Fraction(1, 10**30)  # of a state that was followed over _TIME
+_WITHIN = Fraction(1, 2**20)  # of 1 + |L|: what (G(φ_t z) − G(z))/t leaves out is t times H's own
+Point = tuple[Fraction, Fraction]
+
+
+def holds(example: Example) -> bool:
+    if example.turn % _IN or not example.ordinary:
+        return False
+    field, (energy,) = example.hamiltonian.field(example.hamiltonian.exact)
+    flow = Flow(field, _DIGITS)
+    start = example.p, example.q
+    try:
+        after = _followed(flow, start, _TIME)
+        back = _followed(flow, after, -_TIME)
+    except NoFlowError:
+        return False
+    for name, x, y in zip("pq", start, back, strict=True):
+        if abs(x - y) > _KNOWN * (1 + abs(x)):
+            raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
+    before, then = (_value(field.ring, energy, point) for point in (start, after))
+    if before is None or then is None:
+        return False
+    with working_precision(_BITS):
+        if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
+            raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
+    return _potential_moves(example) or True
+
+
+def _potential_moves(example: Example) -> bool:
+    """Holds the change of G over an instant against L; False where there is no G."""
+    found = potential_of(example.proof, example.scheme) if example.polynomial else None
+    if found is None or not found.holds or found.element is None:
+        return False
+    ring, potential = found.element
+    leading = example.proof.first.element
+    assert leading is not None  # noqa: S101 - it has a potential
+    field, _ = example.hamiltonian.field()
+    start = example.p, example.q
+    end = _followed(Flow(field, 2 * _DIGITS), start, _INSTANT)
+    ends = [_value(ring, potential, point) for point in (start, end)]
+    wanted = _value(*leading, start)
+    if wanted is None or ends[0] is None or ends[1] is None:
+        return False
+    with working_precision(_BITS):
+        rate = (ends[1] - ends[0]) / rational_ball(_INSTANT)
+        wrong = abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
+    if wrong:
+        raise Violation(f"G grows by {shown(rate, 12)} a time, and L is {shown(wanted, 12)}")
+    return True
+
+
+def _followed(flow: Flow, start: Point, time: Fraction) -> Point:
+    arithmetic = flow.arithmetic
+    p, q = flow.follow((arithmetic.number(start[0]), arithmetic.number(start[1])), time)
+    return arithmetic.exact(p), arithmetic.exact(q)
+
+
+def _value(ring: Ring, x: Poly, point: Point) -> Ball | None:
+    with working_precision(_BITS):
+        p, q = (around(at, Fraction(0)) for at in point)
+        return enclose_over(ring, x, {"p": p, "q": q})

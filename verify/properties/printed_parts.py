@@ -1,0 +1,45 @@
+"""The parts of Λ as they are printed add up to its printed value, within their printed bounds.
+
+One example in a few is looked at.
+"""
+
+from fractions import Fraction
+
+from verify.example import Example
+from verify.property import Violation
+from verify.results import Parts
+from verify.separation import separate
+from verify.separation_chain import PARTS
+
+_IN = 5  # one in so many examples
+_DIGITS = 6
+
+
+def holds(example: Example) -> bool:
+    if example.turn % _IN or not example.short:
+        return False
+    found = separate(
+        example.hamiltonian,
+        example.scheme.name,
+        q=example.q,
+        p=example.p,
+        step_size=example.step_size,
+        steps=example.steps,
+        digits=_DIGITS,
+    )
+    if found.status != "finished":
+        return False
+    for evaluation in (found.plain, found.closed_form):
+        if evaluation is not None:
+            _must_add_up(evaluation.parts, ("truncation", *PARTS), "lambda_working")
+            _must_add_up(evaluation.parts, PARTS, "total")
+    return True
+
+
+def _must_add_up(parts: Parts, names: tuple[str, ...], whole: str) -> None:
+    values = [getattr(parts, name) for name in (*names, whole)]
+    numbers, bounds = ([Fraction(getattr(v, key)) for v in values] for key in ("value", "bound"))
+    apart = abs(sum(numbers[:-1]) - numbers[-1])
+    if apart > sum(bounds):
+        told = f"{float(apart):.3e} apart, with bounds of {float(sum(bounds)):.3e}"
+        raise Violation(f"{' + '.join(names)} and {whole} are {told}")
