@@ -91,7 +91,7 @@ def hunted() -> Report:
     scenes = [shown(KEPT, hamiltonian=formula, value=4.0 - n) for n, formula in enumerate(formulas)]
     others = [shown(CROSSED, meaningless_after=100), shown(NOTHING), shown(None, hamiltonian=EVIL)]
     found = gallery(*scenes, *others, sentence=f"greatest part {EVIL}")
-    return gallery_report(found, "verify explore", 0.0, 0, 1)
+    return gallery_report(found, "verify explore", 0.0, 0, 1, HERE)
 
 
 def _report(
