@@ -50,12 +50,12 @@ class Along:
                 return self.power("p", 0), self.power("q", 0)
             below, h = self.truncated(eta - 1), self.ring.variable("h") ** eta
             p, q = (x + h * self.term(name, eta) for x, name in zip(below, "pq", strict=True))
-            self._truncated[eta] = p, q
+            self._truncated.setdefault(eta, (p, q))  # another thread's own may be there by now
         return self._truncated[eta]
 
     def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
         """The η whose `truncated` these very objects are; None for any other elements."""
-        for eta, (p, q) in self._truncated.items():
+        for eta, (p, q) in list(self._truncated.items()):
             if p is p_next and q is q_next:
                 return eta
         return None
@@ -66,9 +66,14 @@ class Along:
         if key in self._delta_j:
             return self._delta_j[key]
         total = -self.ring.one if n == 0 else self.ring.zero
-        for k in range(max(0, n - eta), min(n, eta) + 1):
-            (x_p, x_q), (y_p, y_q) = self._gradient("p", k), self._gradient("q", n - k)
-            total += (x_p * y_q - x_q * y_p) / (math.factorial(k) * math.factorial(n - k))
+        if 0 < n <= eta:
+            # Beside ΔJ of the map without hⁿ: the two brackets with p or q itself.
+            (x_p, _), (_, y_q) = self._gradient("p", n), self._gradient("q", n)
+            total = self.delta_j(n, n - 1) + (x_p + y_q) / math.factorial(n)
+        else:
+            for k in range(max(0, n - eta), min(n, eta) + 1):
+                (x_p, x_q), (y_p, y_q) = self._gradient("p", k), self._gradient("q", n - k)
+                total += (x_p * y_q - x_q * y_p) / (math.factorial(k) * math.factorial(n - k))
         total = self.ring.reduce(total)
         if len(total) <= _MOST_KEPT:
             self._delta_j[key] = total

@@ -20,6 +20,7 @@ from sympy.printing.str import StrPrinter
 from verify.constants import within_reach
 from verify.errors import InputError
 from verify.exact import rational
+from verify.monomials import DEEPEST, Monomials, is_of_name
 
 MAX_LENGTH = 4000
 MAX_DEPTH = 60
@@ -114,7 +115,7 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
         raise InputError(source, text, "not a formula; allowed: + - * / ** and functions") from None
     known = None if names is None else frozenset(names)
     result = _Reader(source, text, line, known).read(tree, 0)
-    return checked(result, source, text)
+    return result if isinstance(tree, ast.BinOp) else checked(result, source, text)
 
 
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
@@ -158,11 +159,6 @@ def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str)
         raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
         raise InputError(source, text, f"is not defined: the root of {base} < 0")
-
-
-def _is_of_name(x: sympy.Expr) -> bool:
-    """Whether it is a name or a power of one with an integer exponent."""
-    return bool(x.is_Symbol or (x.is_Pow and x.base.is_Symbol and x.exp.is_Integer))
 
 
 class _Reader:
@@ -266,11 +262,11 @@ class _Reader:
             first = first.operand
         else:
             minus = False
-        value = self.read(first, depth + 1)
         if ast.Add in kinds:
-            return self.finite(sympy.Add(value, *self.terms(chain, depth)))
+            return self.finite(sympy.Add(*self.terms(first, chain, depth)))
+        value = self.read(first, depth + 1)
         factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
-        if value.is_Rational and all(op is ast.Mult and _is_of_name(x) for op, x in factors):
+        if value.is_Rational and all(op is ast.Mult and is_of_name(x) for op, x in factors):
             # sympy remembers a product of names, and makes a number times it at once.
             value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
             return self.finite(-value if minus else value)
@@ -280,11 +276,15 @@ class _Reader:
             value = _APPLY[op](value, right)
         return self.finite(-value if minus else value)
 
-    def terms(self, chain: list[ast.BinOp], depth: int) -> Iterator[sympy.Expr]:
-        """What a chain of + and − adds to its left end, summed at once as it may be long."""
-        for step in reversed(chain):
-            right = self.read(step.right, depth + 1)
-            yield -right if isinstance(step.op, ast.Sub) else right
+    def terms(self, first: ast.expr, chain: list[ast.BinOp], depth: int) -> Iterator[sympy.Expr]:
+        """What a chain of + and − sums, to be summed at once as it may be long."""
+        signs = [(step.right, -1 if isinstance(step.op, ast.Sub) else 1) for step in chain]
+        plain = Monomials(self.line, self.name)
+        for node, sign in ((first, 1), *reversed(signs)):
+            if depth + DEEPEST >= MAX_DEPTH or not plain.take(node, sign):
+                term = self.read(node, depth + 1)
+                yield term if sign > 0 else -term
+        yield from plain.terms()
 
     def power(self, base: sympy.Expr, exponent: sympy.Expr) -> sympy.Expr:
         if not exponent.is_Rational:

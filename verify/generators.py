@@ -21,6 +21,7 @@ from verify.functions_in import (
     subexpressions,
 )
 from verify.lattice import lattice
+from verify.monomials import exponents
 from verify.ring import Poly, Ring, RingFullError
 
 MAX_TERMS = 20000
@@ -208,10 +209,7 @@ class _Builder:
         if node is sympy.pi:
             return ring.add("pi", sympy.pi)
         if node.is_Add:
-            total = ring.zero
-            for argument in node.args:
-                total += self.element(argument)
-            return total
+            return self.sum(node)
         if node.is_Mul:
             total = ring.one
             for argument in node.args:
@@ -220,6 +218,19 @@ class _Builder:
         if node.is_Pow and node.exp.is_Rational:
             return self.power(node)
         raise InputError("formula", str(node), f"{type(node).__name__} cannot be handled exactly")
+
+    def sum(self, node: sympy.Add) -> Poly:
+        ring, plain = self.ring, dict[tuple[int, ...], flint.fmpq]()
+        total, length = ring.zero, ring.room + len(ring.variables)
+        for argument in node.args:
+            found = exponents(argument, ring.places, length)
+            if found is None:
+                total += self.element(argument)
+            else:
+                monomial, number = found
+                value = flint.fmpq(int(number.p), int(number.q))
+                plain[monomial] = plain.get(monomial, 0) + value
+        return total + ring.context.from_dict(plain)
 
     def power(self, node: sympy.Expr) -> Poly:
         base = self.element(node.base)

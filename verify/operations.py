@@ -113,6 +113,7 @@ class Program:
         del self.ops[mark.ops :], self.static[mark.ops :], self.depth[mark.ops :]
         del self._keys[mark.keys :], self.loops[mark.loops :]
         self.cost = mark.cost
+        self._live.clear()  # what is written next may be as long, and is other
         if any(index >= mark.ops for index in self._special):
             self._special = {i: x for i, x in self._special.items() if i < mark.ops}
         return tail

@@ -29,14 +29,13 @@ import sympy
 
 from verify.decision import Decision as Decision
 from verify.decision import decided
-from verify.formula import symbol, to_text
-from verify.generator import Generator, rational_of
+from verify.formula import symbol
+from verify.generator import Generator
 from verify.generator import Poly as Poly
-from verify.writing import as_expression, as_it_stands
+from verify.writing import as_expression, as_product, as_text
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _MOST_FACTORS = 4
-_MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
 
 def _occurring(x: Poly) -> list[int]:
@@ -53,7 +52,7 @@ class Ring:
     def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE) -> None:
         self.variables = tuple(variables)
         self.room = room + spare
-        names = [f"g{k}_" for k in range(self.room)]
+        names = [f"_{k}" for k in range(self.room)]  # no parameter's name begins so
         # Lexicographic with the newest generator first: relations then reduce to older ones.
         self.context = flint.fmpq_mpoly_ctx.get([*names, *self.variables], flint.Ordering.lex)
         self._gens = self.context.gens()
@@ -62,7 +61,7 @@ class Ring:
             for k, name in enumerate(self.variables)
         ]
         self._by_index = {g.index: g for g in self.generators}
-        self._at = {name: self.room + k for k, name in enumerate(self.variables)}
+        self.places = {name: self.room + k for k, name in enumerate(self.variables)}
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
@@ -85,7 +84,7 @@ class Ring:
         return self.context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def variable(self, name: str) -> Poly:
-        return self._gens[self._at[name]]
+        return self._gens[self.places[name]]
 
     def reduce(self, x: Poly) -> Poly:
         """The normal form of x modulo the relations, newest generator first."""
@@ -99,7 +98,7 @@ class Ring:
 
     def diff(self, x: Poly, name: str) -> Poly:
         """∂x/∂name in normal form, by the chain rule over the generators."""
-        total = x.derivative(self._at[name])
+        total = x.derivative(self.places[name])
         for index in self._functions_in(x):
             total += x.derivative(index) * self._partial(index, name)
         return self.reduce(total)
@@ -162,7 +161,7 @@ class Ring:
 
         The caller sees to it that no generator in x depends on that variable.
         """
-        return self.split(x, self._at[name])
+        return self.split(x, self.places[name])
 
     def split(self, x: Poly, at: int) -> dict[int, Poly]:
         """x as a polynomial in the generator of that index; `powers` for a variable.
@@ -183,17 +182,11 @@ class Ring:
 
     def text(self, x: Poly) -> str:
         """x as a formula: factored where it has few terms, else as it stands in the ring."""
-        if len(x) <= _MOST_FACTORED:
-            return to_text(self.factored(x))
-        return as_it_stands(self, x)
+        return as_text(self, x)
 
     def factored(self, x: Poly) -> sympy.Expr:
         """x as an expression, factored into irreducible polynomials in the generators."""
-        if x == 0:
-            return sympy.Integer(0)
-        content, factors = x.factor()
-        parts = [self.expression(f) ** int(n) for f, n in factors]
-        return sympy.Mul(rational_of(content), *parts)
+        return as_product(self, x)
 
     # -- generators ---------------------------------------------------------------------------
 

@@ -69,6 +69,18 @@ def test_a_constant_that_is_taken_back_is_written_anew() -> None:
     assert program.mul(x, y) != x
 
 
+def test_what_is_live_is_found_anew_after_something_was_taken_back() -> None:
+    program = Program()
+    x, y = (program.input(name, static=False) for name in STATE)
+    mark = program.mark()
+    first = program.add(x, y)
+    assert program.live([first]) == [x, y, first]
+    program.cut(mark)
+    second = program.mul(x, x)  # as long a program, with another last operation
+    assert second == first
+    assert program.live([second]) == [x, second]
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.booleans(), polynomials, polynomials)
 def test_a_copy_grows_on_its_own(pipelined: bool, one: Polynomial, two: Polynomial) -> None:

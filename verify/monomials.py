@@ -1,0 +1,122 @@
+"""Monomials, read at once: of polynomials that are written out as sums of them there are many.
+
+What else a formula is made of goes node by node through sympy, which looks at every product for
+what it could be simplified to.
+"""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+from functools import lru_cache
+
+import sympy
+
+from verify.errors import InputError
+
+DEEPEST = 6  # levels of nesting within a monomial, at most
+_LONGEST = 18  # digits of a number
+_MOST_BITS, _MOST_POWER = 1000, 64
+
+Powers = tuple[tuple[sympy.Symbol, int], ...]
+Quotient = tuple[int, int]  # numerator, denominator
+
+
+class Monomials:
+    """Collects those terms of a sum that are numbers times powers of names, by their powers.
+
+    `line`: the text that the nodes are of. `name` gives a name's symbol, or what else it
+    stands for, and raises InputError for one that is not allowed.
+    """
+
+    def __init__(self, line: str, name: Callable[[str], sympy.Expr]) -> None:
+        self.line, self.name = line, name
+        self.collected: dict[Powers, Fraction] = {}
+
+    def take(self, node: ast.expr, sign: int) -> bool:
+        """Adds the term times its sign; False where it is to be read in the ordinary way."""
+        powers: dict[str, int] = {}
+        quotient = self._quotient(node, powers, DEEPEST)
+        if quotient is None or max(powers.values(), default=0) > _MOST_POWER:
+            return False
+        try:
+            symbols = [(self.name(name), n) for name, n in powers.items()]
+        except InputError:  # of several errors the first one in the text is told
+            return False
+        if not all(symbol.is_Symbol for symbol, _ in symbols):
+            return False
+        key = tuple(sorted(((s, n) for s, n in symbols if n), key=lambda pair: pair[0].name))
+        self.collected[key] = self.collected.get(key, Fraction(0)) + sign * Fraction(*quotient)
+        return True
+
+    def terms(self) -> Iterator[sympy.Expr]:
+        """The sum of what was taken, term by term."""
+        for powers, c in self.collected.items():
+            if c:
+                # As sympy writes them: the number first, where it is not 1, and names in its order.
+                names = _names(powers) if powers else ()
+                number = [sympy.Rational(c.numerator, c.denominator)] if c != 1 or not names else []
+                yield sympy.Mul(*number, *names, evaluate=False)
+
+    def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
+        """The number before the names, whose powers are added to `powers`; None of what else it
+        may be, and of what the ordinary way would refuse."""
+        match node:
+            case ast.Constant():
+                written = self.line[node.col_offset : node.end_col_offset]
+                short = written.isdecimal() and len(written) <= _LONGEST
+                return (int(written), 1) if short else None
+            case ast.Name(id=name):
+                powers[name] = powers.get(name, 0) + 1
+                return 1, 1
+            case ast.UnaryOp(op=ast.USub(), operand=operand) if levels:
+                found = self._quotient(operand, powers, levels - 1)
+                return found and (-found[0], found[1])
+            case ast.BinOp(op=ast.Pow(), left=ast.Name(id=name), right=ast.Constant()):
+                found = self._quotient(node.right, {}, 0)
+                powers[name] = powers.get(name, 0) + (found[0] if found else 0)
+                return found and (1, 1)
+            case ast.BinOp(op=ast.Mult() | ast.Div()) if levels:
+                return self._product(node, powers, levels - 1)
+        return None
+
+    def _product(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
+        above = below = 1
+        while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+            divided = isinstance(node.op, ast.Div)
+            inner: dict[str, int] = {} if divided else powers
+            found = self._quotient(node.right, inner, levels)
+            if found is None or (divided and (inner or found[0] == 0)):
+                return None
+            over, under = found[::-1] if divided else found
+            above, below, node = above * over, below * under, node.left
+        found = self._quotient(node, powers, levels)
+        if found is None:
+            return None
+        above, below = above * found[0], below * found[1]
+        return (above, below) if max(abs(above), abs(below)).bit_length() <= _MOST_BITS else None
+
+
+@lru_cache(maxsize=1024)
+def _names(powers: Powers) -> tuple[sympy.Expr, ...]:
+    return sympy.Mul.make_args(sympy.Mul(*(symbol**n for symbol, n in powers)))  # type: ignore[no-any-return]
+
+
+def is_of_name(x: sympy.Expr) -> bool:
+    """Whether it is a name or a power of one with an integer exponent."""
+    return bool(x.is_Symbol or (x.is_Pow and x.base.is_Symbol and x.exp.is_Integer))
+
+
+def exponents(
+    term: sympy.Expr, at: Mapping[str, int], length: int
+) -> tuple[tuple[int, ...], sympy.Rational] | None:
+    """A term's exponents, that of a name at its place among so many, and its number; None where it
+    is no monomial."""
+    found, number = [0] * length, sympy.S.One
+    for factor in term.args if term.is_Mul else (term,):
+        if factor.is_Rational:
+            number = factor
+        elif is_of_name(factor) and (n := int(factor.as_base_exp()[1])) > 0:
+            found[at[factor.as_base_exp()[0].name]] += n
+        else:
+            return None
+    return tuple(found), number
