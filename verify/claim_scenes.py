@@ -86,7 +86,7 @@ def scene_for(
         if isinstance(claim, FlowClaim):
             raise InputError("scene", "", "is missing: a [[flow]] of a scene is spoken of")
         own = Subject.model_validate(subject)
-        scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=_slug(claim.id))
+        scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
         return _with_grid(claim, own.system or "own", scene, None, runs)
     if "parameters" in subject:
         raise InputError("parameters", "", "stand in the scene's own file")
@@ -206,5 +206,6 @@ def _observables(claim: Claim) -> tuple[str, ...]:
     return tuple(dict.fromkeys(o for name in names for o in NEEDS[name]))
 
 
-def _slug(name: str) -> str:
+def slug(name: str) -> str:
+    """The name with what a scene's name, or a file's, cannot have made a dash."""
     return "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in name)[:80]

@@ -101,7 +101,7 @@ def run(
     exact = hamiltonian_of(system, hamiltonian, params)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     if keep is not None:
-        writable(keep)
+        writable(keep, "--keep")
     asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
     keeper = Keeper(keep, name_of(asked))
     with steps_bar(steps) as tell:

@@ -69,7 +69,7 @@ def check(
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)
     if keep is not None:
-        writable(keep)
+        writable(keep, "--keep")
     with told(prepared.plan.tasks, keep) as done:
         found = prepared.run(Store(keep), where=where, done=done)
     if as_json:

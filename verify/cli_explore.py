@@ -1,6 +1,6 @@
 """The command `verify explore`: properties, or a user's claims, over many drawn scenes."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +8,7 @@ import click
 
 from verify import show
 from verify.cli_hunt import STEPS, hunt
-from verify.cli_input import writable
+from verify.cli_input import writable, writable_later
 from verify.cli_tasks import told, with_tasks
 from verify.errors import InputError
 
@@ -95,7 +95,7 @@ def explore(
     from verify.tasks import Drawn
 
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
-    looks = _looks(claims, names) if maximise is None else {}
+    looks, left_out = _looks(claims, names) if maximise is None else ({}, {})
     drawn = Drawn(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
     if maximise is not None:
         if claims or names:
@@ -105,40 +105,47 @@ def explore(
         return
     if steps is not None:
         raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
-    asked = Exploration(
-        seed=seed,
-        examples=examples,
-        **looks,
-        drawn=drawn,
-    )
+    asked = Exploration(seed=seed, examples=examples, **looks, drawn=drawn)
+    writable_later(output)
     if keep is not None:
-        writable(keep)
+        writable(keep, "--keep")
     earlier = found_earlier(output) if output.is_dir() else []
     with told(asked.plan().tasks, keep) as done:
         report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)
-    written = keep_found(report, output)
+    unwritten, written = None, [""] * len(report.failures)
+    try:
+        written = [str(path) for path in keep_found(report, output)]
+    except OSError as error:  # what was found is told all the same
+        unwritten = InputError("--output", str(output), error.strerror or "cannot be written to")
     if as_json:
-        show.print_json(_as_json(report, written))
+        show.print_json(_as_json(report, written, left_out))
     else:
-        _print(report, written)
+        _print(report, written, left_out)
+    if unwritten is not None:
+        raise unwritten
     if report.failures or any(each.message for each in report.again):
         raise SystemExit(FAILED)
 
 
-def _looks(claims: str | None, names: Sequence[str]) -> dict[str, Any]:
-    """The properties and claims that are asked for: all properties where nothing is named."""
+def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """The properties and claims that are asked for: all properties where nothing is named.
+
+    And the claims that can be asked of no other scene, by the reason.
+    """
     from verify import properties
     from verify.claims_file import load_claims
-    from verify.explore_claims import claim_texts
+    from verify.explore_claims import claim_texts, left_out
 
     for name in names:
         properties.get(name)
+    named = tuple(dict.fromkeys(names))
     if claims is None:
-        return {"properties": tuple(dict.fromkeys(names)) or properties.names()}
+        return {"properties": named or properties.names()}, {}
     path = Path(claims)
     if not path.is_file():
         raise InputError("CLAIMS", claims, "is no file")
-    return {"properties": tuple(names), "claims": claim_texts(load_claims(path).claims)}
+    given = load_claims(path).claims
+    return {"properties": named, "claims": claim_texts(given)}, left_out(given)
 
 
 def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:
@@ -150,25 +157,33 @@ def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(map(scheme_of, looks["claims"])))
 
 
-def _as_json(report: "ExploreReport", written: Sequence[Path]) -> dict[str, Any]:
+def _as_json(
+    report: "ExploreReport", written: Sequence[str], left_out: Mapping[str, Sequence[str]]
+) -> dict[str, Any]:
     found = report.model_dump(mode="json")
     for failure, path in zip(found["failures"], written, strict=True):
-        failure["file"] = str(path)
-    return found
+        failure["file"] = path
+    without = [{"claim": name, "reason": why} for why, names in left_out.items() for name in names]
+    return found | {"left_out": without}
 
 
-def _print(report: "ExploreReport", written: Sequence[Path]) -> None:
+def _print(
+    report: "ExploreReport", written: Sequence[str], left_out: Mapping[str, Sequence[str]]
+) -> None:
     width = max(len(each.name) for each in report.properties)
     for each in report.properties:
         verdict = f"FAILS for {each.failures:,}" if each.failures else "holds"
-        click.echo(f"{each.name:{width}}  {verdict} of {each.looked_at:,}")
+        of = f"{verdict} of {each.looked_at:,}" if each.looked_at else "speaks of none of them"
+        click.echo(f"{each.name:{width}}  {of}")
+    for why, names in left_out.items():
+        click.echo(f"left out, as {why}: {', '.join(names)}")
     for again in report.again:
         now = f"still fails: {again.message}" if again.message else "holds now"
         click.echo(f"{again.file}: {again.property} {now}")
     for failure, path in zip(report.failures, written, strict=True):
         click.echo(f"\n{failure.property} fails at example {failure.example}, shrunk:")
         click.echo("".join(f"  {line}\n" for line in failure.scene.splitlines()), nl=False)
-        click.echo(f"  → {path}, which `verify report` takes")
+        click.echo(f"  → {path}, which `verify report` takes" if path else "  → not written")
     failing = sum(1 for each in report.properties if each.failures)
     of = f"{report.examples:,} scenes of seed {report.seed}"
     click.echo(f"{of}: {failing or 'no'} propert{'y fails' if failing == 1 else 'ies fail'}")

@@ -45,7 +45,7 @@ def flow(scene: str, keep: Path | None, where: "Where", as_json: bool) -> None:
     if not plan.tasks:
         raise InputError("SCENE", scene, "asks for no [[flow]]")
     if keep is not None:
-        writable(keep)
+        writable(keep, "--keep")
     with told(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]

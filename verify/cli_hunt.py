@@ -43,7 +43,7 @@ def hunt(
     asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
     writable(output)
     if keep is not None:
-        writable(keep)
+        writable(keep, "--keep")
     store, begun, tasks = Store(keep), time.perf_counter(), asked.plan().tasks
     with told(tasks, keep) as done:
         found = hunt(asked, store, where=where, done=done)

@@ -89,9 +89,22 @@ def _suite(name: str) -> "list[Scene]":
     return [load_scene(path) for path in sorted(folder.glob("*.toml"))]
 
 
-def writable(folder: Path) -> None:
-    """Makes the folder; InputError where that cannot be."""
+def writable(folder: Path, option: str = "--output") -> None:
+    """Makes the folder, and sees that a file can be made in it; InputError where that cannot be."""
+    from tempfile import TemporaryFile
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=folder):
+            pass
     except OSError as error:
-        raise InputError("--output", str(folder), error.strerror or "cannot be made") from None
+        problem = error.strerror or "cannot be written to"
+        raise InputError(option, str(folder), problem) from None
+
+
+def writable_later(folder: Path) -> None:
+    """As `writable` for --output, and leaves no folder that was not there."""
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
+    writable(folder)
+    for path in made:
+        path.rmdir()

@@ -68,7 +68,7 @@ def _of_scenes(
         problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
         raise InputError("SCENE", given, problem)
     if keep is not None:
-        writable(keep)
+        writable(keep, "--keep")
     with told(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     found = findings_of(scenes, results)

@@ -20,8 +20,9 @@ from verify.claims import (
 from verify.errors import InputError
 from verify.exact_claims import PRINTED_AS, delta_j_printed, differs_below
 from verify.findings import result
-from verify.formula import parse, symbol
+from verify.formula import parse, symbol, to_text
 from verify.generators import embed
+from verify.hamiltonian import Hamiltonian
 from verify.results import ClaimResult
 from verify.schemes import get
 from verify.step_map import H_STEP
@@ -101,6 +102,18 @@ def _times(name: str) -> tuple[int, int]:
     """How often a derivative is taken by p, and by q."""
     by = name.partition("_")[2]
     return (int(by[0]), int(by[1])) if by.isdecimal() else (by.count("p"), by.count("q"))
+
+
+def of_hamiltonian(claim: DeltaJClaim, hamiltonian: Hamiltonian) -> str:
+    """The claim's formula with the derivatives of this H put in. InputError where it is too long
+    to be read, or names more than derivatives."""
+    found = read_every_formula(claim, claim.formula)
+    put = {}
+    for s in found.free_symbols:
+        if _DERIVATIVE.fullmatch(s.name):
+            p_times, q_times = _times(s.name)
+            put[s] = hamiltonian.exact.diff((symbol("p"), p_times), (symbol("q"), q_times))
+    return to_text(found.xreplace(put))
 
 
 def read_every_formula(claim: DeltaJClaim, formula: str) -> sympy.Expr:

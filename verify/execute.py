@@ -32,7 +32,6 @@ from verify.tasks import (
 
 Done = Callable[[str, Result], None]  # called with a task's key and its result
 
-_VERSIONED = ("areaproof", "sympy", "python-flint", "mpmath", "gmpy2", "numba", "numpy")
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
 _CASE_COST = 2_000_000  # about what a case costs that is judged, however short
 _CASES_OF_BISECTION = 20

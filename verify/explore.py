@@ -5,12 +5,14 @@ cut, as scene k is made of the seed and k alone (see `verify.drawn_scenes`). Of 
 fails the first scene by number is shrunk.
 """
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from verify import properties
+from verify.claim_scenes import slug
 from verify.drawn_scenes import drawn_scene, scenes_of, simplest
 from verify.errors import InputError
 from verify.example import Example
@@ -41,7 +43,7 @@ class Exploration:
     """What is asked for: so many scenes of a seed, held against properties and claims.
 
     `claims`: each as JSON, by `verify.explore_claims`. Raises InputError for an unknown property,
-    none at all, fewer than one example, and what scenes cannot be drawn of.
+    none at all, two of one name, fewer than one example, and what scenes cannot be drawn of.
     """
 
     seed: int
@@ -55,8 +57,12 @@ class Exploration:
             raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
         if self.seed < 0:
             raise InputError("seed", self.seed, "must be 0 or more")
-        if not self.looks:
+        names = [each.name for each in self.looks]
+        if not names:
             raise InputError("properties", "", "give one at least")
+        for name, count in Counter(names).items():
+            if count > 1:
+                raise InputError("properties", name, f"{count} of them have this name")
         scenes_of(self.drawn)
 
     @property
@@ -141,7 +147,10 @@ def shrink(task: ShrinkTask) -> ShrunkResult:
     scene, message = simplest(
         task.drawn, task.seed, task.example, lambda scene: outcome(asked, Example.of(scene))[1]
     )
-    named = scene.model_copy(update={"name": asked.name})
+    # Another scheme may have been drawn than the one that a claim speaks of.
+    named = scene.model_copy(
+        update={"name": slug(asked.name), "schemes": (asked.scheme or scene.schemes[0],)}
+    )
     origin = f"example {task.example} of seed {task.seed}, shrunk"
     comment = f"{asked.name}: {asked.sentence}\n{message}\n{origin}"
     return ShrunkResult(
@@ -195,30 +204,37 @@ def explore(
 
 
 def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator[FoundAgain]:
-    by_name = {each.name: each for each in asked.looks}
     for name, scene in earlier:
-        if name in by_name:
-            wrong = outcome(by_name[name], Example.of(scene))[1]
-            yield FoundAgain(file=f"{scene.name}.toml", property=name, message=wrong)
+        for each in asked.looks:
+            if slug(each.name) == name:
+                wrong = outcome(each, Example.of(scene))[1]
+                yield FoundAgain(file=f"{scene.name}.toml", property=each.name, message=wrong)
 
 
 # -- the scenes that were found -------------------------------------------------------------------
+
+
+_FOUND = re.compile(r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml")  # what is written, and no other file
 
 
 def keep_found(report: ExploreReport, folder: Path) -> list[Path]:
     """Writes each shrunk scene into the folder, under its property's name."""
     written = []
     for failure in report.failures:
-        path = folder / f"{failure.property}.{name_of(failure.scene)[:8]}.toml"
+        path = folder / f"{slug(failure.property)}.{name_of(failure.scene)[:8]}.toml"
         write_atomically(path, failure.scene)
         written.append(path)
     return written
 
 
 def found_earlier(folder: Path) -> list[tuple[str, Scene]]:
-    """The scenes that earlier explorations wrote there, each with its property's name."""
+    """The scenes that earlier explorations wrote there, each with its property's name as the file
+    has it. InputError for one that was changed into what is no scene, or has no [grid]."""
     found = []
     for path in sorted(folder.glob("*.toml")):
-        scene = load_scene(path)
-        found.append((path.stem.partition(".")[0], scene.model_copy(update={"name": path.stem})))
+        if own := _FOUND.fullmatch(path.name):
+            scene = load_scene(path)
+            if scene.grid is None:
+                raise InputError("scene", str(path), "has no [grid], which gives step and start")
+            found.append((own[1], scene.model_copy(update={"name": path.stem})))
     return found

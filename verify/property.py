@@ -14,10 +14,11 @@ class Violation(Exception):  # noqa: N818 - it is a finding about the code, not 
 class Property:
     """`holds(example)`: True, or False where the sentence does not speak of the example.
 
-    It raises Violation where the sentence is wrong for it. Any other exception, but for
-    NotDefined, is an error of the code under test, too.
+    It raises Violation where the sentence is wrong for it. Any other exception is an error of the
+    code under test, too. `scheme`: that of which it speaks, where this is not the example's.
     """
 
     name: str
     sentence: str
     holds: Callable[[Example], bool]
+    scheme: str = ""

@@ -1,5 +1,6 @@
 """`verify explore`: the same from a seed everywhere, interrupted and resumed, claims, bad input."""
 
+import errno
 import time
 from pathlib import Path
 
@@ -107,6 +108,55 @@ def test_bad_input_is_one_line(
     assert said in err
     assert err.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("option", ["-o", "--keep"])
+def test_where_nothing_can_be_written_nothing_is_begun(
+    option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    for folder in ("file", "file/below"):
+        status, out, err = here(capsys, "explore", "--examples", "1", option, folder)
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert f"{'--output' if option == '-o' else option}={folder}: " in err
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_what_cannot_be_written_is_told_all_the_same(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.chdir(tmp_path)
+    Path("claims.toml").write_text(FALSE)
+    monkeypatch.setattr("verify.explore.write_atomically", full)
+    status, out, err = here(capsys, "explore", "claims.toml", "--examples", "20", "--seed", "1",
+                            "--degree", "3", "--workers", "1")  # fmt: skip
+    assert status == 2
+    assert "fourth-order fails at example" in out
+    assert "→ not written" in out
+    assert err == "verify: --output=explored: No space left on device\n"
+
+
+def test_claims_that_no_other_scene_can_be_asked_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    own = FALSE.replace("fourth-order", "formula").replace("order = 4", 'formula = "0"')
+    own = own.replace('"order"', '"delta_j"').replace("at_least = true", "")
+    asked = ("explore", "claims.toml", "--examples", "1", "--seed", "1", "--workers", "1")
+    Path("claims.toml").write_text(own)
+    status, out, err = here(capsys, *asked)
+    assert (status, out) == (2, "")
+    assert "claim=formula: a printed formula is that of its own Hamiltonian" in err
+    Path("claims.toml").write_text(FALSE.replace("order = 4", "order = 3") + own)
+    status, out, _ = here(capsys, *asked)
+    assert status == 0
+    assert "left out, as a printed formula is that of its own Hamiltonian: formula\n" in out
+    found = json_of(here(capsys, *asked, "--json")[1])
+    assert [each["claim"] for each in found["left_out"]] == ["formula"]
 
 
 def test_without_a_seed_one_is_told(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,19 +1,16 @@
 """Exploring: scenes by seed and number, what is counted, shrunk and kept; claims as properties."""
 
-import json
 from pathlib import Path
 
 import pytest
 
 from verify import properties
-from verify.claims_file import load_claims
 from verify.drawn_scenes import drawn_scene
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Store
 from verify.executors import HERE
 from verify.explore import Exploration, explore, found_earlier, keep_found
-from verify.explore_claims import claim_property, claim_texts
 from verify.explore_results import ExploreReport
 from verify.property import Property, Violation
 from verify.scene import load_scene
@@ -153,73 +150,14 @@ def test_bad_arguments_are_named(changes: dict[str, object], name: str) -> None:
     assert error.value.name == name
 
 
-# -- claims ---------------------------------------------------------------------------------------
-
-CLAIMS = """
-[defaults]
-scheme = "lie2"
-system = "duffing"
-parameters = { delta = 1 }
-
-[[claim]]
-id = "third-order"
-kind = "order"
-order = 3
-at_least = true
-
-[[claim]]
-id = "fourth-order"
-kind = "order"
-order = 4
-at_least = true
-
-[[claim]]
-id = "small"
-kind = "bounded"
-bound = "1e300"
-step_size = 0.01
-steps = 5
-q = 1
-p = 0
-"""
-
-
-def claims_of(tmp_path: Path, text: str = CLAIMS) -> tuple[str, ...]:
-    path = tmp_path / "claims.toml"
-    path.write_text(text)
-    return claim_texts(load_claims(path).claims)
-
-
-def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
-    texts = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "small"')])
-    asked = exploration(properties=(), claims=texts, examples=25)
-    report = explore(asked, Store(None), where=HERE)
-    true, false = report.properties
-    assert (true.name, true.failures) == ("third-order", 0)
-    assert true.looked_at == 25
-    assert (false.name, false.failures > 0) == ("fourth-order", True)
-    assert [f.property for f in report.failures] == ["fourth-order"]
-    shrunk = json.dumps(report.failures[0].scene)
-    assert "p**2/2 + q**2/2" not in shrunk, "for that H the claim holds: ΔJ is of order 4"
-
-
-def test_a_claim_on_a_run_is_asked_of_the_drawn_run(tmp_path: Path) -> None:
-    text = CLAIMS.partition("[[claim]]")[0] + CLAIMS[CLAIMS.index('[[claim]]\nid = "small"') :]
-    (claim,) = claims_of(tmp_path, text)
-    scene = drawn_scene(Drawn(schemes=("lie2",), degree=3), 5, 0)
-    assert claim_property(claim).holds(Example.of(scene))
-    (zero,) = claims_of(tmp_path, text.replace("1e300", "0"))
-    with pytest.raises(Violation):
-        claim_property(zero).holds(Example.of(scene))
-
-
-def test_a_claim_of_a_theorem_is_refused(tmp_path: Path) -> None:
-    text = '[[claim]]\nid = "t"\nkind = "theorem"\nname = "matrix-vector"\nscheme = "lie2"\n'
-    with pytest.raises(InputError, match="t"):
-        claims_of(tmp_path, text)
-
-
-def test_a_claim_keeps_its_own_scheme(tmp_path: Path) -> None:
-    (text, *_) = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "fourth')])
-    scene = drawn_scene(Drawn(schemes=("lie1",)), 5, 0)
-    assert claim_property(text).holds(Example.of(scene)), "of lie2, though lie1 was drawn"
+def test_other_files_in_the_folder_are_no_found_scenes(tmp_path: Path) -> None:
+    (tmp_path / "claims.toml").write_text("[[claim]]\n")
+    (tmp_path / "worst-1.toml").write_text("x =")
+    assert found_earlier(tmp_path) == []
+    broken = tmp_path / "time-scaling.0123abcd.toml"
+    broken.write_text("x =")
+    with pytest.raises(InputError, match="is not TOML"):
+        found_earlier(tmp_path)
+    broken.write_text('hamiltonian = "p**2"\nschemes = ["lie1"]\n')
+    with pytest.raises(InputError, match=r"time-scaling.0123abcd.toml: has no \[grid\]"):
+        found_earlier(tmp_path)

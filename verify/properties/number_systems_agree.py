@@ -1,14 +1,19 @@
-"""Every number system's p, q and Λ lie within their bounds of what balls enclose, or reach there.
+"""Every number system's values lie within their bounds of what balls enclose, or reach there.
 
 One number system an example, by its numbers, so that all of them get their turn. Where the step
 solves equations, which balls do not do here, float64 is held against 40 digits.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
+from functools import reduce
+from itertools import pairwise
+
+import flint
 
 from verify import arithmetic as number_systems
-from verify.ball_steps import BITS, ball_steps
-from verify.balls import Ball, around, shown
+from verify.ball_steps import BITS, BallState, ball_steps
+from verify.balls import Ball, around, rational_ball, shown
 from verify.example import Example
 from verify.precision import working_precision
 from verify.property import Violation
@@ -17,7 +22,7 @@ from verify.runs import run
 
 _DIGITS = 30
 _COMPILED = 997  # of so many examples one is run in fixed point
-_OBSERVABLES = ("lambda",)
+_OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
 def holds(example: Example) -> bool:
@@ -58,8 +63,22 @@ def _enclosed(example: Example) -> dict[str, Ball] | None:
     states = ball_steps(example.step_map, *start, example.steps)
     if states is None:
         return None
+    if not all(state.sharp for state in states):
+        return None
     with working_precision(BITS):
-        return {"p": states[-1].p, "q": states[-1].q, "lambda": states[-1].product - 1}
+        return _of_states(states)
+
+
+def _of_states(states: Sequence[BallState]) -> dict[str, Ball]:
+    """The values of a run, from balls of its states."""
+    errors = [abs(state.product - 1) for state in states[1:]]
+    # det J of a single step, where no step before had det J = 0.
+    changes = [abs(two.product / one.product - 1) for one, two in pairwise(states)]
+    found = {"p": states[-1].p, "q": states[-1].q, "lambda": states[-1].product - 1}
+    found["lambda_max"] = reduce(flint.arb.max, errors)
+    found["delta_j_max"] = reduce(flint.arb.max, changes)
+    found["mse"] = sum((x * x for x in changes), rational_ball(Fraction())) / len(changes)
+    return found
 
 
 def _ball(value: Value) -> Ball:

@@ -31,6 +31,5 @@ def holds(example: Example) -> bool:
 
 
 def _back(example: Example, state: BallState) -> BallState | None:
-
     with working_precision(BITS):
         return stepped(example.step_map, state, rational_ball(-example.step_size))
