@@ -11,7 +11,7 @@ from typing import Any
 
 import flint
 
-from verify.balls import Ball, rational_ball
+from verify.balls import Ball, rational_ball, shown
 from verify.enclosure import enclose_over
 from verify.precision import working_precision
 from verify.step_map import StepMap
@@ -66,6 +66,14 @@ def stepped(step_map: StepMap, state: BallState, h: Ball) -> BallState | None:
         p, q, a, b, c, d = found
         product = product * (a * d - b * c)
     return BallState(p, q, product)
+
+
+def unlike(found: Ball, wanted: Ball) -> str:
+    """`found` and what it should be, with their difference, which 12 digits may not show."""
+    with working_precision(BITS):
+        difference = found - wanted
+    given = f"{shown(found, 12)}, and should be {shown(wanted, 12)}"
+    return f"{given}: {shown(difference, 3)} more"
 
 
 def sharp(x: Ball) -> bool:

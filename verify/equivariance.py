@@ -9,8 +9,8 @@ from fractions import Fraction
 
 import sympy
 
-from verify.ball_steps import BITS, BallState, ball_steps
-from verify.balls import Ball, rational_ball, shown
+from verify.ball_steps import BITS, BallState, ball_steps, unlike
+from verify.balls import Ball, rational_ball
 from verify.example import Example
 from verify.formula import symbol
 from verify.generic import RungeKutta, TaylorSeries
@@ -72,7 +72,7 @@ def _must_overlap(wanted: BallState, found: BallState) -> None:
         x, y = getattr(wanted, name), getattr(found, name)
         if not x.overlaps(y):
             what = "det J" if name == "product" else f"{name}'"
-            raise Violation(f"{what} is {shown(y, 12)}, and should be {shown(x, 12)}")
+            raise Violation(f"{what} is {unlike(y, x)}")
 
 
 def _rational(x: Fraction) -> sympy.Rational:

@@ -15,8 +15,8 @@ from verify.precision import working_precision
 from verify.proof.exact_flow import Flow, NoFlowError
 from verify.property import Violation
 
-_STEP = Fraction(1, 2**32)
-_BITS_A_POWER, _SPARE, _LOST = 32, 200, 60
+_STEP = Fraction(1, 2**96)
+_BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
 _DIGITS_A_BIT = Fraction(30103, 100000)
 _WITHIN = Fraction(1, 10)  # of a whole order
 _BESIDE = Fraction(3, 70), Fraction(1, 55)  # in p and q

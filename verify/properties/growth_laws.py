@@ -6,8 +6,8 @@ its least term.
 
 from fractions import Fraction
 
-from verify.ball_steps import BallState, ball_steps, sharp
-from verify.balls import Ball, rational_ball, shown
+from verify.ball_steps import BallState, ball_steps, sharp, unlike
+from verify.balls import Ball, rational_ball
 from verify.enclosure import enclose_over
 from verify.errors import InputError
 from verify.example import Example
@@ -53,8 +53,7 @@ def _by_law(law: GrowthLaw, *ends: BallState) -> bool:
     if not (sharp(found) and sharp(rate)):
         return False
     if abs(found - rate) > (1 + abs(rate)) * rational_ball(_WITHIN):
-        grows = f"Λ grows by {shown(found, 12)} h^{law.power + 1} T"
-        raise Violation(f"{grows}, by the law {shown(rate, 12)}")
+        raise Violation(f"Λ/(h^{law.power + 1} T) is {unlike(found, rate)}, by the law")
     return True
 
 

@@ -1,12 +1,14 @@
 """Truncation and the four kinds of rounding add up exactly to the Λ that float64 gives.
 
-That Λ is, bit for bit, what the float64 kernel gives without the separation; and the truncation
-part is the Λ that balls enclose.
+That Λ is, bit for bit, what the float64 kernel gives without the separation. The truncation part is
+the Λ that balls enclose, and with the input part it is that at inputs rounded to float64.
 """
+
+from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.ball_steps import BITS, ball_steps
-from verify.balls import around, shown
+from verify.balls import Ball, around, shown
 from verify.exact import decimal
 from verify.example import Example
 from verify.precision import working_precision
@@ -14,6 +16,7 @@ from verify.property import Violation
 from verify.separation_chain import PARTS, Chain, Separation
 from verify.separation_kernel import WORKING
 from verify.separation_working import Stopped
+from verify.step_map import StepMap
 from verify.stepping import Job
 
 _DIGITS = 8
@@ -48,15 +51,34 @@ def _must_add_up(chain: Chain) -> None:
 
 
 def _must_be_true(example: Example, chain: Chain) -> None:
-    """The truncation part against balls, where those can be had."""
+    """The parts of exact steps against balls, where those can be had."""
     start = example.p, example.q, example.step_size
-    states = ball_steps(example.step_map, *start, example.steps)
-    if states is None:
-        return
+    truncation, inputs = chain.final("truncation"), chain.final("input")
+    _must_reach("the truncation part is", truncation, _area_error(example, example.step_map, start))
+    p, q, h = (Fraction(float(x)) for x in start)
+    given = {name: Fraction(float(x)) for name, x in example.hamiltonian.values}
+    step_map = example.scheme.step_map(example.hamiltonian.with_values(given))
+    both = truncation[0] + inputs[0], truncation[1] + inputs[1]
+    wanted = _area_error(example, step_map, (p, q, h))
+    _must_reach("truncation and input together are", both, wanted)
+
+
+def _area_error(
+    example: Example, step_map: StepMap, start: tuple[Fraction, Fraction, Fraction]
+) -> Ball | None:
+    """Λ of the example's steps; None where balls do not know it."""
+    states = ball_steps(step_map, *start, example.steps)
+    if states is None or not states[-1].sharp:
+        return None
     with working_precision(BITS):
-        wanted = states[-1].product - 1
-        value, bound = chain.final("truncation")
-        found_there = around(value, bound)
-    if not found_there.overlaps(wanted):
-        found = f"{decimal(value, 12)} ± {decimal(bound, 3)}"
-        raise Violation(f"the truncation part is {found}, and truly {shown(wanted, 12)}")
+        return states[-1].product - 1
+
+
+def _must_reach(what: str, found: tuple[Fraction, Fraction], wanted: Ball | None) -> None:
+    """Violation where a value does not lie within its bound of what balls enclose."""
+    value, bound = found
+    with working_precision(BITS):
+        there = around(value, bound)
+    if wanted is not None and not there.overlaps(wanted):
+        given = f"{decimal(value, 12)} ± {decimal(bound, 3)}"
+        raise Violation(f"{what} {given}, and truly {shown(wanted, 12)}")

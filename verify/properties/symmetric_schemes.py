@@ -1,7 +1,7 @@
 """The step of −h undoes the step of h, for a scheme that claims to be symmetric."""
 
-from verify.ball_steps import BITS, BallState, ball_steps, stepped
-from verify.balls import rational_ball, shown
+from verify.ball_steps import BITS, BallState, ball_steps, stepped, unlike
+from verify.balls import rational_ball
 from verify.example import Example
 from verify.precision import working_precision
 from verify.proof.symmetry import by_series
@@ -26,7 +26,7 @@ def holds(example: Example) -> bool:
         return False
     for name, ball, start in (("p", back.p, states[0].p), ("q", back.q, states[0].q)):
         if not ball.overlaps(start):
-            raise Violation(f"{name} comes back as {shown(ball, 12)}, from {shown(start, 12)}")
+            raise Violation(f"{name} comes back as {unlike(ball, start)}")
     return True
 
 

@@ -6,8 +6,8 @@ Where the step solves equations the entries are multiplied along a run with 40 d
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.ball_steps import ball_steps
-from verify.balls import shown
+from verify.ball_steps import ball_steps, unlike
+from verify.balls import rational_ball
 from verify.exact import decimal
 from verify.example import Example
 from verify.property import Violation
@@ -28,7 +28,7 @@ def holds(example: Example) -> bool:
     if states is None or not states[-1].sharp:
         return False
     if not states[-1].product.contains(1):
-        raise Violation(f"det J is {shown(states[-1].product, 12)}, and not 1")
+        raise Violation(f"det J is {unlike(states[-1].product, rational_ball(Fraction(1)))}")
     return True
 
 
