@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
+from tests.unit.made_gallery import gallery, shown
 from verify import (
     execute,
     flow_results,
@@ -259,9 +260,10 @@ def full_report(folder: Path) -> Report:
     (folder / "claims.toml").write_text(CLAIMS)
     file = load_claims(folder / "claims.toml")
     store, figures = execute.Store(None), file.figures
-    return make_report(
+    made = make_report(
         "All", [scene], file.claims, store, figures=figures, command="test", where=HERE
     )
+    return made.model_copy(update={"gallery": gallery(shown())})
 
 
 def models(value: object) -> set[type]:
