@@ -69,7 +69,7 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
             return Bounds({}, method, "left range", second.done + 1)
         unit = Fraction(1, 2 ** (own.bits - 2))
         found = {
-            n: (second.values[n], abs(x - second.values[n]) + unit * abs(x))
+            n: (second.values[n], abs(x - second.values[n]) + unit * _rounded(n, x))
             for n, x in first.values.items()
         }
         missing = max(missing_of(name, *value, digits) for name, value in found.items())
@@ -78,6 +78,11 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
         own = number_systems.get(own.name, digits_of(own) + missing + 5)
         first = job.go(own)
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
+
+
+def _rounded(name: str, value: Fraction) -> Fraction:
+    """The size of what was rounded on the way to a value: Λ the plain way is a product less 1."""
+    return abs(value) + (1 if name == "lambda_plain" else 0)
 
 
 def digits_of(own: Arithmetic) -> int:

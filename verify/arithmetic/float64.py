@@ -5,10 +5,12 @@ overflow give infinities and NaN, which the run finds.
 """
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 from verify.number_system import Arithmetic, interpreted
@@ -56,9 +58,11 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
     """The kernel, compiled once it has so many steps to do that it repays.
 
     Until then Python does them, with the same bits, as its operators and functions are those of
-    IEEE and of the same C library. What Python refuses, as 1/0, is left to the compiled one.
+    IEEE and of the same C library. What Python refuses, as 1/0, is done again with functions that
+    give infinities and NaN; where there is division elsewhere, it is left to the compiled one.
     """
     plain = interpreted(source, name, namespace)
+    unrefused = cache(lambda: _unrefused(source, name, namespace))
     compiled: Callable[..., Any] | None = None
     repaid = _REPAID if source.count("for ") < 2 else _REPAID_SOLVING
     done = 0
@@ -67,11 +71,11 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
         nonlocal compiled, done
         steps = first if isinstance(first, int) else 1  # a function that is no kernel has none
         if compiled is None and done + steps <= repaid:
-            try:
-                result = plain(first, *arguments)
-            except (ArithmeticError, ValueError):
-                pass
-            else:
+            for way in (lambda: plain, unrefused):
+                try:
+                    result = way()(first, *arguments)
+                except (ArithmeticError, ValueError):
+                    continue
                 done += steps
                 return result
         if compiled is None:
@@ -81,6 +85,15 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
     return kernel
 
 
+def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """The kernel in Python that gives infinities and NaN, as IEEE and a compiled one do.
+
+    A compiled kernel stays in memory for good, and orbits that escape are no rarity.
+    """
+    own = {f: made for f, made in _IEEE.items() if f in namespace}
+    return interpreted(_INVERSE.sub(r"over(\1)", source), name, {**namespace, **own, **_OVER})
+
+
 def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     import numba
 
@@ -88,6 +101,35 @@ def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[
     exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
     compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(scope[name])
     return compiled
+
+
+def _either(function: Callable[[float], float], beyond: Callable[[float], float]) -> Any:
+    """The function, and `beyond` where Python's own refuses."""
+
+    def made(x: float) -> float:
+        try:
+            return function(x)
+        except (OverflowError, ValueError):
+            return beyond(x)
+
+    return made
+
+
+def _over(x: float) -> float:
+    return 1.0 / x if x else math.copysign(math.inf, x)
+
+
+_INVERSE = re.compile(r"(?<!\w)1 / (\w+)")
+_OVER = {"over": _over}
+_IEEE = {
+    "exp": _either(math.exp, lambda _: math.inf),
+    "cosh": _either(math.cosh, lambda _: math.inf),
+    "sinh": _either(math.sinh, lambda x: math.copysign(math.inf, x)),
+    "log": _either(math.log, lambda x: math.nan if x else -math.inf),
+    "sqrt": _either(math.sqrt, lambda _: math.nan),
+    "sin": _either(math.sin, lambda _: math.nan),
+    "cos": _either(math.cos, lambda _: math.nan),
+}
 
 
 def _root(x: float, n: int) -> float:
