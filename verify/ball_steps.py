@@ -73,7 +73,7 @@ def unlike(found: Ball, wanted: Ball) -> str:
     with working_precision(BITS):
         difference = found - wanted
     given = f"{shown(found, 12)}, and should be {shown(wanted, 12)}"
-    return f"{given}: {shown(difference, 3)} more"
+    return f"{given} (too large by {shown(difference, 3)})"
 
 
 def sharp(x: Ball) -> bool:

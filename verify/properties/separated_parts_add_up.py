@@ -4,6 +4,7 @@ That Λ is, bit for bit, what the float64 kernel gives without the separation. T
 the Λ that balls enclose, and with the input part it is that at inputs rounded to float64.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
@@ -30,10 +31,14 @@ def holds(example: Example) -> bool:
         chains = Separation(*given).chains(_DIGITS)
     except Stopped:
         return False
+    exact, rounded = _wanted(example)
     for chain in (chains.plain, chains.closed_form):
         if chain is not None:
             _must_add_up(chain)
-            _must_be_true(example, chain)
+            (truncation, bound), (inputs, more) = (chain.final(n) for n in ("truncation", "input"))
+            _must_reach("the truncation part is", truncation, bound, exact)
+            both = truncation + inputs, bound + more
+            _must_reach("truncation and input together are", *both, rounded)
     job = Job(*given, WORKING, 0)
     bare = job.go(number_systems.get("float64", 17)).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
@@ -50,33 +55,36 @@ def _must_add_up(chain: Chain) -> None:
             raise Violation(f"the parts do not add up after {chain.marks[k]} steps")
 
 
-def _must_be_true(example: Example, chain: Chain) -> None:
-    """The parts of exact steps against balls, where those can be had."""
+def _wanted(example: Example) -> tuple[Ball | None, Ball | None]:
+    """Λ by balls, of the example's numbers and of the nearest float64s."""
     start = example.p, example.q, example.step_size
-    truncation, inputs = chain.final("truncation"), chain.final("input")
-    _must_reach("the truncation part is", truncation, _area_error(example, example.step_map, start))
-    p, q, h = (Fraction(float(x)) for x in start)
-    given = {name: Fraction(float(x)) for name, x in example.hamiltonian.values}
-    step_map = example.scheme.step_map(example.hamiltonian.with_values(given))
-    both = truncation[0] + inputs[0], truncation[1] + inputs[1]
-    wanted = _area_error(example, step_map, (p, q, h))
-    _must_reach("truncation and input together are", both, wanted)
+    exact = _area_error(example, example.step_map, start)
+    rounded = tuple(map(_nearest, start))
+    given = {name: _nearest(x) for name, x in example.hamiltonian.values}
+    if given == dict(example.hamiltonian.values):
+        of_it = example.step_map
+    else:
+        of_it = example.scheme.step_map(example.hamiltonian.with_values(given))
+    same = rounded == start and of_it is example.step_map
+    return exact, exact if same else _area_error(example, of_it, rounded)
 
 
-def _area_error(
-    example: Example, step_map: StepMap, start: tuple[Fraction, Fraction, Fraction]
-) -> Ball | None:
+def _nearest(x: Fraction) -> Fraction:
+    return Fraction(float(x))
+
+
+def _area_error(example: Example, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
     """Λ of the example's steps; None where balls do not know it."""
-    states = ball_steps(step_map, *start, example.steps)
+    p, q, h = start
+    states = ball_steps(step_map, p, q, h, example.steps)
     if states is None or not states[-1].sharp:
         return None
     with working_precision(BITS):
         return states[-1].product - 1
 
 
-def _must_reach(what: str, found: tuple[Fraction, Fraction], wanted: Ball | None) -> None:
+def _must_reach(what: str, value: Fraction, bound: Fraction, wanted: Ball | None) -> None:
     """Violation where a value does not lie within its bound of what balls enclose."""
-    value, bound = found
     with working_precision(BITS):
         there = around(value, bound)
     if wanted is not None and not there.overlaps(wanted):
