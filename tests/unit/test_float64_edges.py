@@ -28,13 +28,13 @@ FORMULAS = [
 VALUES = (0.0, -0.0, 1.0, -1.0, 1e-200, 1e160, -1e300, 5e-324)
 
 
-def kernels(formula: str) -> tuple[Kernel, Kernel]:
+def kernels(formula: str, scheme: str) -> tuple[Kernel, Kernel]:
     """That of a short run, and the compiled one."""
     h = Hamiltonian.parse(formula)
     kernel_for.cache_clear()  # both arithmetics have one name and precision
-    short = kernel_for(h, "lie2", float64.make(17), ASKED)
+    short = kernel_for(h, scheme, float64.make(17), ASKED)
     kernel_for.cache_clear()
-    long = kernel_for(h, "lie2", float64.compiled_at_once(), ASKED)
+    long = kernel_for(h, scheme, float64.compiled_at_once(), ASKED)
     kernel_for.cache_clear()
     return short, long
 
@@ -46,11 +46,14 @@ def same(x: Any, y: Any) -> bool:
     return bool(x == y and math.copysign(1.0, x) == math.copysign(1.0, y))
 
 
-@pytest.mark.parametrize("formula", FORMULAS)
+@pytest.mark.parametrize(
+    ("formula", "scheme"),
+    [*((text, "lie2") for text in FORMULAS), ("1/(q**2 + 1) - 4*p**5/3", "implicit-midpoint")],
+)
 def test_what_python_refuses_has_the_bits_of_the_compiled_kernel(
-    formula: str, monkeypatch: pytest.MonkeyPatch
+    formula: str, scheme: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    short, long = kernels(formula)
+    short, long = kernels(formula, scheme)
     starts = list(product(VALUES, VALUES))
     wanted = [long.function(3, 0.5, p, q, *map(float, long.start)) for p, q in starts]
     monkeypatch.setattr(float64, "_compiled", None)  # not called

@@ -59,10 +59,14 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
 
     Until then Python does them, with the same bits, as its operators and functions are those of
     IEEE and of the same C library. What Python refuses, as 1/0, is done again with functions that
-    give infinities and NaN; where there is division elsewhere, it is left to the compiled one.
+    give infinities and NaN; what is refused even so is left to the compiled one.
     """
     plain = interpreted(source, name, namespace)
-    unrefused = cache(lambda: _unrefused(source, name, namespace))
+
+    @cache
+    def unrefused() -> Callable[..., Any]:
+        return _unrefused(source, name, namespace)
+
     compiled: Callable[..., Any] | None = None
     repaid = _REPAID if source.count("for ") < 2 else _REPAID_SOLVING
     done = 0
@@ -71,9 +75,9 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
         nonlocal compiled, done
         steps = first if isinstance(first, int) else 1  # a function that is no kernel has none
         if compiled is None and done + steps <= repaid:
-            for way in (lambda: plain, unrefused):
+            for way in (0, 1):
                 try:
-                    result = way()(first, *arguments)
+                    result = (unrefused() if way else plain)(first, *arguments)
                 except (ArithmeticError, ValueError):
                     continue
                 done += steps
@@ -91,7 +95,7 @@ def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
     A compiled kernel stays in memory for good, and orbits that escape are no rarity.
     """
     own = {f: made for f, made in _IEEE.items() if f in namespace}
-    return interpreted(_INVERSE.sub(r"over(\1)", source), name, {**namespace, **own, **_OVER})
+    return interpreted(_DIVISION.sub(r"over(\1, \2)", source), name, {**namespace, **own, **_OVER})
 
 
 def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
@@ -115,11 +119,13 @@ def _either(function: Callable[[float], float], beyond: Callable[[float], float]
     return made
 
 
-def _over(x: float) -> float:
-    return 1.0 / x if x else math.copysign(math.inf, x)
+def _over(x: float, y: float) -> float:
+    if y:
+        return x / y
+    return math.copysign(math.inf, x) * math.copysign(1.0, y) if x and x == x else math.nan
 
 
-_INVERSE = re.compile(r"(?<!\w)1 / (\w+)")
+_DIVISION = re.compile(r"(\w+|\([^()]*\)) / (\w+|\([^()]*\))")
 _OVER = {"over": _over}
 _IEEE = {
     "exp": _either(math.exp, lambda _: math.inf),
