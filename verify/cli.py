@@ -1,6 +1,8 @@
 """The command `verify`. Heavy libraries are imported inside the command that needs them."""
 
+import contextlib
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +24,7 @@ from verify.show_plan import print_plan
 if TYPE_CHECKING:
     from verify.executors import Where
 
-INTERRUPTED = 130
+INTERRUPTED, TERMINATED = 130, 143
 BAD_INPUT = 2
 
 
@@ -260,8 +262,10 @@ def _writer(name: str) -> Any:
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit.
 
-    0 done, 1 a check failed, 2 bad input or workers lost, 130 interrupted.
+    0 done, 1 a check failed, 2 bad input or workers lost, 130 interrupted, 143 terminated.
     """
+    with contextlib.suppress(ValueError):  # not in the main thread, which alone is signalled
+        signal.signal(signal.SIGTERM, _terminated)
     try:
         cli.main(args=arguments, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
@@ -275,6 +279,11 @@ def main(arguments: list[str] | None = None) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         _fail(f"{error.filename or 'file'}: {error.strerror or error}")
+
+
+def _terminated(*_: object) -> None:
+    """As an interruption: worker processes are ended, and what is finished is kept."""
+    sys.exit(TERMINATED)
 
 
 def _fail(message: str) -> None:

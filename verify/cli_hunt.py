@@ -98,6 +98,8 @@ def _when(each: "GalleryScene") -> str:
     beyond = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
     if of.plain is None:
         return f"over {of.steps:,} steps it is {of.status}"
+    if all(at.total == at.truncation == "0" for at in of.plain.series):
+        return f"over {of.steps:,} steps no digit of a part of Λ is known but 0{beyond}"
     if after is None:
         return f"over {of.steps:,} steps truncation is the larger part of Λ{beyond}"
     until = f" until {each.meaningful_from:,}" if each.meaningful_from else ""

@@ -6,27 +6,19 @@ again. What another process gives is that of this same code, or an error.
 """
 
 import contextlib
-import multiprocessing
 import os
 import re
-import signal
 import socket
 import threading
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 from verify.errors import InputError, PlaceError
 from verify.keeping import fingerprint
+from verify.processes import Processes
 
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
 _LOOK = 5.0  # seconds after which the place is looked at, though nothing is finished
@@ -111,7 +103,7 @@ def opened(where: Where) -> Iterator[Place]:
     elif where.workers == 1:
         yield _Here()
     else:
-        processes = _Processes(where.workers or os.cpu_count() or 1)
+        processes = Processes(where.workers or os.cpu_count() or 1)
         try:
             yield processes
         except BaseException:
@@ -211,7 +203,7 @@ def there(source: str, function: Callable[..., Any], arguments: tuple[Any, ...])
         return function(*arguments)
 
 
-# -- on this machine ------------------------------------------------------------------------------
+# -- in this process -------------------------------------------------------------------------------
 
 
 class _Here:
@@ -228,65 +220,3 @@ class _Here:
         return False
 
     def look(self) -> None: ...
-
-
-class _Processes:
-    """Worker processes, each of them a pool of one, which has one call at a time.
-
-    A pool of several is broken as a whole when one of its workers is killed, and does not tell
-    which call that was; of a pool of one nothing else is lost, and there is nothing to guess.
-    """
-
-    local, attempts, blames = True, 3, True
-
-    def __init__(self, workers: int) -> None:
-        self.room = workers
-        self._idle: list[ProcessPoolExecutor] = []
-        self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
-
-    def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        pool = self._idle.pop() if self._idle else _process()
-        try:
-            future = pool.submit(function, *arguments)
-        except BrokenExecutor:  # lost while it was idle
-            pool = _process()
-            future = pool.submit(function, *arguments)
-        self._busy[future] = pool
-        return future
-
-    def release(self, future: "Future[Any]") -> None:
-        pool = self._busy.pop(future)
-        if isinstance(future.exception(), BrokenExecutor):
-            pool.shutdown(wait=False)
-        else:
-            self._idle.append(pool)
-
-    def lost(self, error: BaseException) -> bool:
-        return isinstance(error, BrokenExecutor)
-
-    def look(self) -> None: ...
-
-    def end(self) -> None:
-        """Ends the processes at once, whatever they are at."""
-        for pool in (*self._idle, *self._busy.values()):
-            # The executor has no public way to end a task that is running.
-            for process in (pool._processes or {}).values():
-                process.terminate()
-            pool.shutdown(wait=False, cancel_futures=True)
-
-    def close(self) -> None:
-        """Ends the processes, which are idle, together."""
-        if self._idle:
-            with ThreadPoolExecutor(len(self._idle)) as threads:
-                list(threads.map(ProcessPoolExecutor.shutdown, self._idle))
-
-
-def _process() -> ProcessPoolExecutor:
-    # Spawned, not forked: this process may have threads (the progress bar's, a kernel's).
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(1, mp_context=context, initializer=_ignore_interrupts)
-
-
-def _ignore_interrupts() -> None:
-    # Ctrl-C reaches the whole process group; the parent alone answers it.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -54,6 +54,27 @@ def test_an_interrupted_exploration_goes_on_to_the_same_bytes(tmp_path: Path) ->
     assert resumed.stdout == fresh.stdout
 
 
+def test_a_terminated_exploration_leaves_no_process_and_keeps_what_is_finished(
+    tmp_path: Path,
+) -> None:
+    """As a job's manager ends it: SIGTERM, to the one process that it knows."""
+    kept = tmp_path / "kept"
+    asked = (*QUICK, "--examples", "100000", "--keep", str(kept), "--workers", "2")
+    with started(*asked) as process:
+        until = time.monotonic() + 60
+        while len(list(kept.glob("*.json"))) < 2:
+            assert time.monotonic() < until
+            time.sleep(0.05)
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        workers = children.read_text().split() if children.exists() else []
+        process.terminate()
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (143, "", "")
+    while any(Path(f"/proc/{pid}").exists() for pid in workers):
+        assert time.monotonic() < until + 30, "they are left behind"
+        time.sleep(0.05)
+
+
 def test_a_false_claim_is_shrunk_to_a_scene_that_report_takes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -190,3 +190,42 @@ def test_a_call_that_always_loses_its_worker_is_named_and_no_other_is_lost() -> 
     with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again"):
         collect(found, 2, calls)
     assert right(found, 2)
+
+
+def test_workers_end_when_their_parent_is_killed() -> None:
+    """It cannot end them then; nor would they see by themselves that no more calls come."""
+    parent = subprocess.Popen(
+        [sys.executable, "-c", _HAS_WORKERS], stdout=subprocess.PIPE, text=True, cwd=_ROOT
+    )
+    with parent:
+        assert parent.stdout is not None
+        workers = [int(pid) for pid in parent.stdout.readline().split()]
+        assert len(workers) == 2
+        parent.kill()
+    until = time.monotonic() + 30
+    while any(map(alive, workers)):
+        assert time.monotonic() < until, "orphans"
+        time.sleep(0.1)
+
+
+_ROOT = Path(__file__).parents[2]
+_HAS_WORKERS = """
+import time
+from tests.unit.sent import process
+from verify.executors import Call, Where, opened, performed
+
+if __name__ == "__main__":
+    with opened(Where(2)) as place:
+        print(*{pid for _, pid in performed(place, [Call(str(k), process) for k in range(2)])},
+              flush=True)
+        time.sleep(60)
+"""
+
+
+def alive(pid: int) -> bool:
+    """Whether there is such a process; one that ended and was not waited for is none."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"

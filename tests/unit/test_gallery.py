@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.unit.made_gallery import at, gallery, shown
-from verify.cli_hunt import _command, _keep_scenes
+from verify.cli_hunt import _command, _keep_scenes, _when
 from verify.execute import Store
 from verify.executors import HERE
 from verify.explore_results import HuntResult, Worst
@@ -64,6 +64,18 @@ def test_the_command_makes_the_same_hunt_again() -> None:
     assert _command(asked).endswith(
         "--steps 50 --scheme lie1 --scheme 'p_next = p; q_next = q' --kind polynomial --degree 4"
     )
+
+
+def test_where_nothing_of_lambda_is_known_neither_part_is_said_to_be_the_larger() -> None:
+    """Størmer–Verlet of a quadratic H: truncation and rounding are both 0."""
+    text = _text("p**2/2 + q**2/2").replace("lie2", "stormer-verlet")
+    asked = Hunt(measure="digits-lost", seed=1, examples=1, steps=2)
+    found = Found((Worst(value=1.0, scene=text),), 1)
+    (each,) = gallery_of(asked, found, Store(None), where=HERE).scenes
+    assert _when(each) == "over 200 steps no digit of a part of Λ is known but 0"
+    lies = Found((Worst(value=1.0, scene=_text("p**2/2 + q**2/2")),), 1)
+    (other,) = gallery_of(asked, lies, Store(None), where=HERE).scenes
+    assert _when(other) == "over 200 steps truncation is the larger part of Λ"
 
 
 def test_scenes_of_an_earlier_hunt_do_not_stay(tmp_path: Path) -> None:
