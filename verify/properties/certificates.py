@@ -1,7 +1,7 @@
 """The certificate of a proof is accepted by its checker, and refused with one number changed.
 
-The number is one of the leading coefficient, or of p' where ΔJ ≡ 0. One example in a few is looked
-at, as the checker works with plain dictionaries.
+The number is one of the leading coefficient, or of the first power of h in p' or q'. One example in
+a few is looked at, as the checker works with plain dictionaries.
 """
 
 import json
@@ -31,7 +31,7 @@ def holds(example: Example) -> bool:
     refused = _refused(data)
     if refused:
         raise Violation(f"the certificate is refused: {refused}")
-    for name in ("leading", "p_next"):
+    for name in ("leading", "p_next", "q_next"):
         changed = _changed(data, name)
         if changed is not None and not _refused(changed):
             raise Violation(f"with a number of {name} changed the certificate is accepted")
@@ -48,11 +48,13 @@ def _refused(data: dict[str, Any]) -> str:
 
 
 def _changed(data: dict[str, Any], name: str) -> dict[str, Any] | None:
-    """A copy with the first number of that entry doubled; None where it has none."""
+    """A copy with a zero added to a number of that entry; None where it has none.
+
+    Of p' and q' it is one of h¹, by which the map agrees with the flow: with one of a higher power
+    the certificate might be that of another map, of which it says the truth.
+    """
     copied: dict[str, Any] = json.loads(json.dumps(data))
-    terms = copied[name]
-    while terms and isinstance(terms[0], list) and isinstance(terms[0][0], list):
-        terms = terms[-1]
+    terms = copied[name] if name == "leading" else copied[name][1]
     if not terms:
         return None
     terms[0][0] = f"{terms[0][0]}0"
