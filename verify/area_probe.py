@@ -8,7 +8,7 @@ the panels' differences count without their signs. All curves are carried togeth
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, Protocol
@@ -89,10 +89,11 @@ _Part = tuple[int, int, Fraction, Fraction]  # outline, arc, and from where to w
 
 @dataclass(frozen=True)
 class Family:
-    """A panel in halves, with how much they differ from the whole."""
+    """A panel in halves, with how much they differ from the whole: both areas, or the own alone."""
 
     halves: tuple[Panel, Panel]
     difference: int
+    unsure: int
     stuck: bool = False
 
     @property
@@ -149,6 +150,10 @@ class Probe:
             for arc in range(len(outline.arcs)):
                 parts += [(index, arc, a, b) for a, b in pairwise(ends)]
         families = self._families(self._panels(parts))
+        for index in range(len(self.outlines)):
+            own = self._of(families, index)
+            if sum(family.unsure for family in own) <= self._nothing(own):
+                self._must_bound(own)  # before a goal that is a part of 0 is sought for long
         cut = self._to_cut(families)
         for _ in range(_MOST_ROUNDS):
             if not cut or NODES * 2 * (len(families) + len(cut)) > MOST_NODES:
@@ -193,10 +198,11 @@ class Probe:
     def _families(self, panels: Sequence[Panel]) -> list[Family]:
         halves = self._panels([half for panel in panels for half in panel.halves])
         pairs = zip(halves[::2], halves[1::2], strict=True)
-        return [
-            Family(both, _difference(panel, both))
-            for panel, both in zip(panels, pairs, strict=True)
-        ]
+        found = []
+        for panel, both in zip(panels, pairs, strict=True):
+            unsure = _apart("before", panel, both)
+            found.append(Family(both, unsure + _apart("after", panel, both), unsure))
+        return found
 
     # -- where to cut -------------------------------------------------------------------------
 
@@ -232,7 +238,7 @@ class Probe:
             halved = _STUCK * sum(f.difference for f in two) <= family.difference
             noise = sizes[family.halves[0].outline] >> (self.plane.bits // 2)
             if not halved and family.difference < noise:
-                two = [Family(f.halves, f.difference, stuck=True) for f in two]
+                two = [replace(f, stuck=True) for f in two]
             result += two
         return result
 
@@ -241,10 +247,7 @@ class Probe:
     def _measured(self, families: Sequence[Family], rounding: int, exhausted: bool) -> Measured:
         panels = tuple(half for family in families for half in family.halves)
         area, size = sum(panel.before for panel in panels), self._size(families)
-        # A curve that goes round nothing, as a figure of eight may: its parts take each other away.
-        if size * 2 ** (self.plane.bits // 2) <= sum(abs(panel.before) for panel in panels):
-            name = self.outlines[panels[0].outline].name
-            raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
+        self._must_bound(families)
         return Measured(
             area=area * self.unit,
             change=Fraction(sum(panel.change for panel in panels), area),
@@ -253,6 +256,18 @@ class Probe:
             panels=panels,
             exhausted=exhausted,
         )
+
+    def _nothing(self, families: Sequence[Family]) -> int:
+        """An area that is 0 beside those that the parts of the curve sweep."""
+        swept = sum(abs(panel.before) for family in families for panel in family.halves)
+        return swept >> (self.plane.bits // 2)
+
+    def _must_bound(self, families: Sequence[Family]) -> None:
+        """Raises NoAreaError for a curve that goes round nothing, as a figure of eight may: its
+        parts take each other away."""
+        if self._size(families) <= self._nothing(families):
+            name = self.outlines[families[0].halves[0].outline].name
+            raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
 
     def _roundings(self, families: Sequence[Family]) -> list[int]:
         """Differences of the panels' areas from those in finer arithmetic, without their signs.
@@ -283,7 +298,7 @@ class Probe:
         return len(panels) * NODES**2 * largest**2
 
 
-def _difference(whole: Panel, halves: tuple[Panel, Panel]) -> int:
-    before = whole.before - halves[0].before - halves[1].before
-    after = whole.after - halves[0].after - halves[1].after
-    return abs(before) + abs(after)
+def _apart(area: str, whole: Panel, halves: tuple[Panel, Panel]) -> int:
+    """How much the area of the whole differs from that of its halves."""
+    own, first, second = (int(getattr(panel, area)) for panel in (whole, *halves))
+    return abs(own - first - second)
