@@ -15,6 +15,7 @@ DASHES = ((), (5, 2), (1.5, 1.5), (6, 2, 1.5, 2), (9, 2), (3, 2), (5, 1.5, 1, 1.
 MOST_STYLES = len(SERIES)
 
 _LABEL_GAP, _LETTER = 0.03, 0.025  # of the axis: room between tick labels, and for a letter
+_LINE = 0.075  # of the axes: the height of one line of text
 _FAINT = {"color": INK, "alpha": 0.15, "linewidth": 0.6}
 
 
@@ -116,3 +117,24 @@ def offset_ticks(axis: Any, low: float, high: float, *, around_one: bool = False
         return f"{'−' if mantissa < 0 else ''}{digits}"
 
     axis.set_major_formatter(FuncFormatter(shown))
+
+
+def mark_places(axes: Any, places: Sequence[tuple[float, str]], room: float) -> None:
+    """A dashed vertical line at each x, its label on a line of its own above all points.
+
+    `places`: from left to right, so that no line runs through another's label. `room`: what a label
+    takes of the axes' width.
+    """
+    low, high = axes.get_ylim()
+    above = _LINE * (len(places) + 0.5)
+    axes.set_ylim(low, high + (high - low) * above / (1 - above))
+    left, right = axes.get_xlim()
+    for row, (x, label) in enumerate(places):
+        top = 1 - _LINE * row
+        axes.axvline(x, ymax=top, color=INK, alpha=0.6, linewidth=0.9, dashes=(4, 3))
+        to_the_right = (right - x) / (right - left) > room
+        axes.annotate(
+            label, (x, top), xycoords=axes.get_xaxis_transform(),
+            xytext=(4 if to_the_right else -4, 0), textcoords="offset points",
+            ha="left" if to_the_right else "right", va="top", fontsize=11,
+        )  # fmt: skip

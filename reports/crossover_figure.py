@@ -3,21 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any
 
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from reports.axes import decades, grid_lines, line_style
+from reports.axes import decades, grid_lines, line_style, mark_places
 from reports.figures import Line, canvas, plot_line
 from reports.logarithm import lg
 from reports.separation_caption import WAYS, short, ways_of
-from reports.svg import INK, drawn
+from reports.svg import drawn
 from reports.typography import NBSP
 from verify.results import SeparationGrid
 
 _HEIGHT = 350
-_LINE = 0.075  # of the axes: the height of one line of text
 _ROOM = 0.45  # of the axes: what a mark's label takes
 
 
@@ -58,7 +56,7 @@ def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Ma
     for index, each in enumerate(plotted):
         plot_line(axes, each, line_style(index, len(plotted)))
     axes.margins(x=0.05, y=0.06)
-    _mark(axes, marks)
+    mark_places(axes, sorted((lg(mark.step_size), mark.label) for mark in marks), _ROOM)
     grid_lines(axes)
     decades(axes.xaxis, most=7)
     decades(axes.yaxis)
@@ -66,21 +64,3 @@ def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Ma
     axes.set_title("greatest |part of Λ|")
     figure.legend(loc="outside lower center", ncols=1, handlelength=3.2)
     return figure
-
-
-def _mark(axes: Any, marks: Sequence[Mark]) -> None:
-    """Each label on a line of its own above all points; no line runs through another's label."""
-    placed = sorted((lg(mark.step_size), mark.label) for mark in marks)
-    low, high = axes.get_ylim()
-    above = _LINE * (len(placed) + 0.5)
-    axes.set_ylim(low, high + (high - low) * above / (1 - above))
-    left, right = axes.get_xlim()
-    for row, (x, text) in enumerate(placed):
-        top = 1 - _LINE * row
-        axes.axvline(x, ymax=top, color=INK, alpha=0.6, linewidth=0.9, dashes=(4, 3))
-        to_the_right = (right - x) / (right - left) > _ROOM
-        axes.annotate(
-            text, (x, top), xycoords=axes.get_xaxis_transform(),
-            xytext=(4 if to_the_right else -4, 0), textcoords="offset points",
-            ha="left" if to_the_right else "right", va="top", fontsize=11,
-        )  # fmt: skip

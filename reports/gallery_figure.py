@@ -3,13 +3,12 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, log10, nan
-from typing import Any
 
 from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from reports.axes import decades, grid_lines, line_style
+from reports.axes import decades, grid_lines, line_style, mark_places
 from reports.figures import canvas
 from reports.logarithm import lg
 from reports.svg import INK, SERIES, drawn
@@ -21,7 +20,6 @@ _MOST_UNLIKE = 4  # a plane so many times as long as it is high has one scale fo
 _LEAST_SPAN = 1e-3  # of the greatest |q|, |p|: an orbit's points have six digits
 _ROOM = 0.08  # of the axes, around the orbit
 _WIDE = 1.3  # of the plane's frame: its width by its height
-_LINE = 0.075  # of the axes: the height of one line of text
 _ASIDE = 0.5  # of the axes: what a mark's label takes
 
 
@@ -102,7 +100,8 @@ def draw_parts(each: GalleryScene) -> Figure:
         if any(map(isfinite, y)):
             axes.plot(x, y, label=label, **line_style(index, len(kinds)))
     axes.margins(x=0.05, y=0.06)
-    _mark(axes, list(marks(each)))
+    if found := [(log10(mark.steps), mark.label) for mark in marks(each)]:
+        mark_places(axes, found, _ASIDE)
     grid_lines(axes)
     decades(axes.xaxis, most=6)
     decades(axes.yaxis)
@@ -129,20 +128,3 @@ def marks(each: GalleryScene) -> Iterator[Mark]:
         yield Mark(after, f"rounding overtakes, N{NBSP}={NBSP}{whole(after)}")
     if over is not None:
         yield Mark(over, f"truncation overtakes, N{NBSP}={NBSP}{whole(over)}")
-
-
-def _mark(axes: Any, found: Sequence[Mark]) -> None:
-    """Each label on a line of its own above all points."""
-    low, high = axes.get_ylim()
-    above = _LINE * (len(found) + 0.5) if found else 0.0
-    axes.set_ylim(low, high + (high - low) * above / (1 - above))
-    left, right = axes.get_xlim()
-    for row, mark in enumerate(found):
-        x, top = log10(mark.steps), 1 - _LINE * row
-        axes.axvline(x, ymax=top, color=INK, alpha=0.6, linewidth=0.9, dashes=(4, 3))
-        to_the_right = (right - x) / (right - left) > _ASIDE
-        axes.annotate(
-            mark.label, (x, top), xycoords=axes.get_xaxis_transform(),
-            xytext=(4 if to_the_right else -4, 0), textcoords="offset points",
-            ha="left" if to_the_right else "right", va="top", fontsize=11,
-        )  # fmt: skip

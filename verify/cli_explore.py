@@ -110,7 +110,7 @@ def explore(
     if keep is not None:
         writable(keep, "--keep")
     earlier = found_earlier(output) if output.is_dir() else []
-    with told(asked.plan().tasks, keep) as done:
+    with told(asked.plan.tasks, keep) as done:
         report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)
     unwritten, written = None, [""] * len(report.failures)
     try:

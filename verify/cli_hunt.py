@@ -44,7 +44,7 @@ def hunt(
     writable(output)
     if keep is not None:
         writable(keep, "--keep")
-    store, begun, tasks = Store(keep), time.perf_counter(), asked.plan().tasks
+    store, begun, tasks = Store(keep), time.perf_counter(), asked.plan.tasks
     with told(tasks, keep) as done:
         found = hunt(asked, store, where=where, done=done)
     shown = gallery(asked, found, store, where=where)

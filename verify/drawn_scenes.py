@@ -14,10 +14,10 @@ from hypothesis import seed as seeded
 from hypothesis import strategies as st
 from hypothesis.database import InMemoryExampleDatabase
 
-from verify import schemes, strategies
+from verify import strategies
 from verify.property import Violation
 from verify.scene import Scene
-from verify.strategies.schemes import needs_separable
+from verify.strategies.schemes import separable_for
 from verify.tasks import Drawn
 
 _BYTES = 4096
@@ -33,9 +33,10 @@ def scenes_of(drawn: Drawn) -> st.SearchStrategy[Scene]:
     given_schemes = strategies.schemes(names=drawn.schemes) if drawn.schemes else None
     hamiltonians = None
     if drawn.kinds or drawn.degree != Drawn().degree:
-        separable = True if any(map(needs_separable, map(schemes.get, drawn.schemes))) else None
         kinds = drawn.kinds or strategies.KINDS
-        hamiltonians = strategies.hamiltonians(kinds, degree=drawn.degree, separable=separable)
+        hamiltonians = strategies.hamiltonians(
+            kinds, degree=drawn.degree, separable=separable_for(drawn.schemes)
+        )
     return strategies.scenes(
         hamiltonians=hamiltonians, schemes=given_schemes, steps=(1, _MOST_STEPS)
     )

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 from verify.errors import InputError
 from verify.generic import TaylorSeries
@@ -69,8 +70,7 @@ class Example:
             return False
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.generic, TaylorSeries):
             return True
-        by_turns = bool(getattr(scheme.generic, "separable", False))
-        return by_turns and not self._kinds & {"inverse", "root"}
+        return scheme.needs_separable and not self._kinds & {"inverse", "root"}
 
     @property
     def short(self) -> bool:
@@ -101,6 +101,16 @@ class Example:
     def turn(self) -> int:
         """A number by which properties that take long choose their examples."""
         return 7 * self.steps + abs(self.p.numerator) + self.q.denominator
+
+    @property
+    def given(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
+        """What a `Job` and a `Separation` begin with."""
+        return self.hamiltonian, self.scheme.name, self.start, self.steps
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """What `run` and `separate` are called with beside H and the scheme."""
+        return {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
 
     @property
     def start(self) -> dict[str, Fraction]:

@@ -9,6 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from verify import properties
@@ -69,6 +70,7 @@ class Exploration:
     def looks(self) -> tuple[Property, ...]:
         return _looks(self.properties, self.claims)
 
+    @cached_property
     def plan(self) -> Plan:
         """The tasks, each of a stretch of scenes."""
         plan = Plan()
@@ -177,7 +179,7 @@ def explore(
     `earlier`: scenes found before, each with the name of the property that failed.
     """
     again = tuple(_again(asked, earlier))
-    plan = asked.plan()
+    plan = asked.plan
     results = execute(plan, store, where=where, done=done)
     found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
     first: dict[str, Failure] = {}

@@ -67,10 +67,7 @@ def _task(worst: Worst, steps: int) -> SeparationTask:
     return SeparationTask(
         **example.scene.given(),
         scheme=example.scheme.name,
-        q=example.q,
-        p=example.p,
-        step_size=example.step_size,
-        steps=steps,
+        **example.asked | {"steps": steps},
         digits=_DIGITS,
     )
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from tomllib import loads
 
 import sympy
@@ -18,7 +19,7 @@ from hypothesis import seed as seeded
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
-from verify import schemes, strategies
+from verify import strategies
 from verify.errors import InputError
 from verify.example import Example
 from verify.execute import Done, Store, execute
@@ -30,7 +31,7 @@ from verify.planned import Plan
 from verify.scene import Scene, scene_from
 from verify.scene_text import scene_text
 from verify.scene_values import InitialValue
-from verify.strategies.schemes import needs_separable
+from verify.strategies.schemes import separable_for
 from verify.tasks import Drawn, HuntTask
 
 REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
@@ -71,6 +72,7 @@ class Hunt:
             raise InputError("steps", self.steps, f"must be 2 … {_MOST_STEPS}")
         _scenes(self.drawn, self.steps)
 
+    @cached_property
     def plan(self) -> Plan:
         plan = Plan()
         for island, first in enumerate(range(0, self.examples, _ISLAND)):
@@ -96,7 +98,7 @@ class Found:
 
 def hunt(asked: Hunt, store: Store, *, where: Where = ANYWHERE, done: Done | None = None) -> Found:
     """The worst scenes found on all islands."""
-    plan = asked.plan()
+    plan = asked.plan
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
     together = sorted((each for island in islands for each in island.worst), key=_order)
@@ -222,7 +224,6 @@ def _climb(begin: Worst, look: Look) -> None:
 
 def _scenes(drawn: Drawn, steps: int) -> st.SearchStrategy[Scene]:
     """Ordinary-looking ones: a few terms, initial values in tenths, h from 1/1000 to 1/10."""
-    separable = True if any(map(needs_separable, map(schemes.get, drawn.schemes))) else None
     # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
     # the modules loaded, and what is drawn would then depend on which these are. A coefficient with
     # its sign is drawn as a number below 2·SIZE².
@@ -231,7 +232,7 @@ def _scenes(drawn: Drawn, steps: int) -> st.SearchStrategy[Scene]:
         hamiltonians=strategies.hamiltonians(
             drawn.kinds or strategies.KINDS,
             degree=drawn.degree,
-            separable=separable,
+            separable=separable_for(drawn.schemes),
             terms=3,
             size=SIZE,
         ),

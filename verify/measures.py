@@ -40,8 +40,7 @@ def rounding_share(example: Example, digits: int = DIGITS) -> float | None:
     if _stays(example, digits) is None:
         return None
     try:
-        given = example.hamiltonian, example.scheme.name, example.start, example.steps
-        chain = Separation(*given).chains(max(1, digits // _SHARE)).plain
+        chain = Separation(*example.given).chains(max(1, digits // _SHARE)).plain
     except Stopped:
         return None
     truncation, rounding = (_greatest(*chain.trail(n)) for n in ("truncation", "total"))
@@ -82,8 +81,7 @@ def growth(example: Example, digits: int = DIGITS) -> float | None:
 
 def orbit(example: Example) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
-    given = example.hamiltonian, example.scheme.name, example.start, example.steps
-    job = Job(*given, frozenset(), 0, sections=_POINTS)
+    job = Job(*example.given, frozenset(), 0, sections=_POINTS)
     trail = job.go(number_systems.get("mpfr", DIGITS)).trail
     return [(example.q, example.p), *((x["q"], x["p"]) for x in trail)]
 
@@ -98,8 +96,7 @@ def _stays(example: Example, digits: int) -> Outcome | None:
 
 
 def _job(example: Example, observables: frozenset[str]) -> Job:
-    given = example.hamiltonian, example.scheme.name, example.start, example.steps
-    return Job(*given, observables, 0)
+    return Job(*example.given, observables, 0)
 
 
 def _lg(x: Fraction) -> float:

@@ -31,5 +31,10 @@ class Scheme:
     build: Callable[[Hamiltonian], StepMap]
     generic: Generic | ByConditions | None = None
 
+    @property
+    def needs_separable(self) -> bool:
+        """Whether it is known to be for H = T(p) + V(q) only."""
+        return bool(getattr(self.generic, "separable", False))
+
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
         return self.build(hamiltonian)

@@ -142,11 +142,14 @@ class Drawn(Frozen):
     schemes: tuple[str, ...] = ()
 
 
-class _OfProperties(_Task):
-    """`properties`: names of the catalogue; `claims`: claims to be looked at so, each as JSON."""
-
+class _OfDrawn(_Task):
     drawn: Drawn
     seed: int
+
+
+class _OfProperties(_OfDrawn):
+    """`properties`: names of the catalogue; `claims`: claims to be looked at so, each as JSON."""
+
     properties: tuple[str, ...]
     claims: tuple[str, ...]
 
@@ -166,12 +169,10 @@ class ShrinkTask(_OfProperties):
     example: int
 
 
-class HuntTask(_Task):
+class HuntTask(_OfDrawn):
     """Search one island for scenes that make a measure as large as can be."""
 
     kind: Literal["hunt"] = "hunt"
-    drawn: Drawn
-    seed: int
     measure: str
     island: int
     count: int

@@ -76,7 +76,7 @@ def test_examples_are_counted_and_properties_hold() -> None:
 def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = explore(exploration(), Store(None), where=HERE)
     monkeypatch.setattr("verify.explore._STRETCH", 7)
-    assert len(exploration().plan().tasks) == 5
+    assert len(exploration().plan.tasks) == 5
     assert explore(exploration(), Store(None), where=HERE) == whole
 
 
@@ -129,7 +129,7 @@ def test_kept_results_are_taken_up_and_give_the_same_report(tmp_path: Path) -> N
     first = explore(exploration(), Store(tmp_path), where=HERE)
     store = Store(tmp_path)
     assert explore(exploration(), store, where=HERE) == first
-    assert store.taken == len(exploration().plan().tasks)
+    assert store.taken == len(exploration().plan.tasks)
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ extrapolation, to 40 digits over a short time.
 
 from fractions import Fraction
 
-from verify.balls import Ball, around, rational_ball, shown
-from verify.enclosure import enclose_over
+from verify.balls import Ball, rational_ball, shown
+from verify.enclosure import enclose
 from verify.example import Example
 from verify.precision import working_precision
 from verify.proof.exact_flow import Flow, NoFlowError
@@ -43,14 +43,15 @@ def holds(example: Example) -> bool:
     with working_precision(_BITS):
         if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
             raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
-    return _potential_moves(example) or True
+    _potential_must_move(example)
+    return True
 
 
-def _potential_moves(example: Example) -> bool:
-    """Holds the change of G over an instant against L; False where there is no G."""
+def _potential_must_move(example: Example) -> None:
+    """Holds the change of G over an instant against L, where there is a G."""
     found = potential_of(example.proof, example.scheme) if example.polynomial else None
     if found is None or not found.holds or found.element is None:
-        return False
+        return
     ring, potential = found.element
     leading = example.proof.first.element
     assert leading is not None  # noqa: S101 - it has a potential
@@ -60,13 +61,12 @@ def _potential_moves(example: Example) -> bool:
     ends = [_value(ring, potential, point) for point in (start, end)]
     wanted = _value(*leading, start)
     if wanted is None or ends[0] is None or ends[1] is None:
-        return False
+        return
     with working_precision(_BITS):
         rate = (ends[1] - ends[0]) / rational_ball(_INSTANT)
         wrong = abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
     if wrong:
         raise Violation(f"G grows by {shown(rate, 12)} a time, and L is {shown(wanted, 12)}")
-    return True
 
 
 def _followed(flow: Flow, start: Point, time: Fraction) -> Point:
@@ -76,6 +76,4 @@ def _followed(flow: Flow, start: Point, time: Fraction) -> Point:
 
 
 def _value(ring: Ring, x: Poly, point: Point) -> Ball | None:
-    with working_precision(_BITS):
-        p, q = (around(at, Fraction(0)) for at in point)
-        return enclose_over(ring, x, {"p": p, "q": q})
+    return enclose(ring, x, dict(zip("pq", point, strict=True)), _BITS)

@@ -90,10 +90,7 @@ def _run(example: Example, arithmetic: str, digits: int) -> RunResult | None:
     found = run(
         example.hamiltonian,
         example.scheme.name,
-        q=example.q,
-        p=example.p,
-        step_size=example.step_size,
-        steps=example.steps,
+        **example.asked,
         arithmetic=arithmetic,
         digits=digits,
         observables=_OBSERVABLES,

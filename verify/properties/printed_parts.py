@@ -21,10 +21,7 @@ def holds(example: Example) -> bool:
     found = separate(
         example.hamiltonian,
         example.scheme.name,
-        q=example.q,
-        p=example.p,
-        step_size=example.step_size,
-        steps=example.steps,
+        **example.asked,
         digits=_DIGITS,
     )
     if found.status != "finished":

@@ -26,9 +26,8 @@ _DIGITS = 8
 def holds(example: Example) -> bool:
     if not example.short:
         return False
-    given = example.hamiltonian, example.scheme.name, example.start, example.steps
     try:
-        chains = Separation(*given).chains(_DIGITS)
+        chains = Separation(*example.given).chains(_DIGITS)
     except Stopped:
         return False
     exact, rounded = _wanted(example)
@@ -39,7 +38,7 @@ def holds(example: Example) -> bool:
             _must_reach("the truncation part is", truncation, bound, exact)
             both = truncation + inputs, bound + more
             _must_reach("truncation and input together are", *both, rounded)
-    job = Job(*given, WORKING, 0)
+    job = Job(*example.given, WORKING, 0)
     bare = job.go(number_systems.get("float64", 17)).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
     alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds

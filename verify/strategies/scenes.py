@@ -18,7 +18,7 @@ from verify.strategies.hamiltonians import drawn_formulas, made
 from verify.strategies.numbers import initial_values as drawn_values
 from verify.strategies.numbers import parameters
 from verify.strategies.numbers import step_sizes as drawn_steps
-from verify.strategies.schemes import choices, needs_separable, takers
+from verify.strategies.schemes import choices, takers
 
 
 def scenes(
@@ -67,7 +67,7 @@ def _grid(steps: int, step_size: Fraction, initial_value: InitialValue) -> Grid:
 
 def _of_formulas(grids: st.SearchStrategy[Grid]) -> st.SearchStrategy[Scene]:
     found = choices()
-    of_any = st.sampled_from([scheme for scheme in found if not needs_separable(scheme)])
+    of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
     of_separable = st.sampled_from(found)
     formulas = _formulas()
 
@@ -87,7 +87,7 @@ def _of_schemes(
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
         scheme = draw(schemes)
-        formula = draw(separable if needs_separable(scheme) else any_formula)
+        formula = draw(separable if scheme.needs_separable else any_formula)
         if scheme.generic is not None:
             return _scene(formula, scheme, draw(grids))
         return _fitting(made(formula), scheme, draw(grids))

@@ -83,7 +83,7 @@ def takers(found: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
 
 def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
     if scheme.generic is not None:
-        return separable or not needs_separable(scheme)
+        return separable or not scheme.needs_separable
     try:  # a scheme of the user's own: nothing else is known of it
         scheme.step_map(hamiltonian)
     except InputError:
@@ -91,9 +91,9 @@ def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
     return True
 
 
-def needs_separable(scheme: Scheme) -> bool:
-    """Whether the scheme is known to be for H = T(p) + V(q) only."""
-    return bool(getattr(scheme.generic, "separable", False))
+def separable_for(names: Iterable[str]) -> bool | None:
+    """What `hamiltonians` is to be asked for, so that each scheme of these names takes them."""
+    return True if any(catalogue.get(name).needs_separable for name in names) else None
 
 
 def is_separable(hamiltonian: Hamiltonian) -> bool:
