@@ -7,12 +7,11 @@ rigorous. ΔJ is taken from the four entries of J, not from its closed form.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 import flint
 
 from verify.balls import Ball, rational_ball, shown
-from verify.enclosure import enclose_over
+from verify.enclosure import enclose_all
 from verify.precision import working_precision
 from verify.step_map import StepMap
 
@@ -58,10 +57,9 @@ def stepped(step_map: StepMap, state: BallState, h: Ball) -> BallState | None:
     """One step from a state, in flint's present precision; None where it is not defined."""
     p, q, product = state.p, state.q, state.product
     for step in step_map.substeps:
-        box, known = {"p": p, "q": q, "h": h}, dict[int, Any]()
         wanted = step.p_next, step.q_next, *step.jacobian
-        found = [enclose_over(step.ring, x, box, known) for x in wanted]
-        if any(x is None or not x.is_finite() for x in found):
+        found = enclose_all(step.ring, wanted, {"p": p, "q": q, "h": h})
+        if found is None or not all(x.is_finite() for x in found):
             return None
         p, q, a, b, c, d = found
         product = product * (a * d - b * c)

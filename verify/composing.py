@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import sympy
 
 from verify.formula import symbol
+from verify.generator import terms_of
 from verify.ring import Poly, Ring
 
 Map = tuple[Poly, Poly]  # p' and q'
@@ -59,7 +60,7 @@ def _put(ring: Ring, x: Poly, images: Mapping[int, Poly], most: int) -> Poly | N
         return powers[index, n]
 
     total = ring.zero
-    for monomial, coefficient in x.to_dict().items():
+    for monomial, coefficient in terms_of(x):
         term = ring.context.constant(coefficient)
         for index, degree in enumerate(monomial):
             for n in range(1, int(degree) + 1):

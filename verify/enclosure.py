@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import flint
 
+from verify.generator import terms_of
 from verify.precision import working_precision
 
 if TYPE_CHECKING:
@@ -35,18 +36,20 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
         return enclose_over(ring, x, exact)
 
 
-def enclose_over(
-    ring: "Ring", x: Any, box: Mapping[str, Any], known: dict[int, Any] | None = None
-) -> Any:
+def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
     """A ball that contains x at every point of a box of balls, or None where x may be undefined.
 
-    In flint's present precision. `known` keeps the generators' balls, for other x over one box.
+    In flint's present precision.
     """
-    values: dict[int, Any] = {} if known is None else known
-    for g in ring.used(x):
-        if g.index in values:
-            pass
-        elif g.kind == "variable":
+    found = enclose_all(ring, [x], box)
+    return None if found is None else found[0]
+
+
+def enclose_all(ring: "Ring", elements: Sequence[Any], box: Mapping[str, Any]) -> list[Any] | None:
+    """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
+    values: dict[int, Any] = {}
+    for g in ring.used(*elements):
+        if g.kind == "variable":
             values[g.index] = box[g.name]
         elif g.kind == "pi":
             values[g.index] = flint.arb.pi()
@@ -58,7 +61,7 @@ def enclose_over(
             values[g.index] = BALLS[g.kind](_at(g.argument, values), g.degree)
         if not values[g.index].is_finite():
             return None
-    return _at(x, values)
+    return [_at(x, values) for x in elements]
 
 
 def power_of(x: Any, n: int) -> Any:
@@ -91,7 +94,7 @@ def _at(x: Any, values: dict[int, Any]) -> Any:
     total = flint.arb(0)
     present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
     powers = {}
-    for monomial, coefficient in x.to_dict().items():
+    for monomial, coefficient in terms_of(x):
         term = flint.arb(coefficient)
         for index in present:
             if power := int(monomial[index]):

@@ -10,7 +10,7 @@ from typing import Any
 import flint
 
 from verify.enclosure import BALLS, power_of
-from verify.generator import Generator
+from verify.generator import Generator, terms_of
 from verify.ring import Poly, Ring
 
 Ball = Any  # flint.arb
@@ -89,5 +89,5 @@ def _terms(x: Poly) -> Terms:
     present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
     return [
         (coefficient, [(index, int(n)) for index in present if (n := monomial[index])])
-        for monomial, coefficient in x.to_dict().items()
+        for monomial, coefficient in terms_of(x)
     ]

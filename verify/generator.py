@@ -1,6 +1,6 @@
 """One generator of a ring: which function it is, of what, and how it is written."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +30,14 @@ class Generator:
         """Of a variable."""
         assert self.kind == "variable"  # noqa: S101 - the caller looks at the kind
         return str(self.expression.name)  # type: ignore[union-attr]
+
+
+def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], Any]]:
+    """Each monomial, as the powers of all generators, with its coefficient.
+
+    Far faster than by a dictionary of flint's own making.
+    """
+    return zip(x.monoms(), x.coeffs(), strict=True)
 
 
 def written(g: Generator, argument: sympy.Expr) -> sympy.Expr:

@@ -5,6 +5,7 @@ from typing import Any
 
 import flint
 
+from verify.generator import terms_of
 from verify.ring import Poly, Ring
 
 MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
@@ -18,7 +19,7 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
     sin(q)) each argument is a basis element of its own: nothing wrong can follow, only an
     identity may go unseen.
     """
-    terms = [a.to_dict() for a in arguments]
+    terms = [dict(terms_of(a)) for a in arguments]
     monomials = sorted({m for t in terms for m in t}, reverse=True)
     common = 1
     for t in terms:

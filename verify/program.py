@@ -9,7 +9,7 @@ from fractions import Fraction
 from itertools import permutations
 from typing import Any, TypeVar
 
-from verify.generator import Generator
+from verify.generator import Generator, terms_of
 from verify.operations import Loop, Tail
 from verify.operations import Op as Op
 from verify.operations import Program as Program
@@ -137,7 +137,7 @@ class Evaluator:
         parts: dict[tuple[int, ...], int] = {}
         program, at = self.program, [(i, self._at[i]) for i in sorted(static)]
         by_outer: dict[tuple[int, ...], list[tuple[Any, Any]]] = {}
-        for monomial, c in x.to_dict().items():
+        for monomial, c in terms_of(x):
             outer = tuple([int(monomial[i]) for i in dynamic])
             by_outer.setdefault(outer, []).append((monomial, c))
         zero, powers = Fraction(0), dict[tuple[int, Any], int]()

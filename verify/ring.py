@@ -88,9 +88,12 @@ class Ring:
 
     def reduce(self, x: Poly) -> Poly:
         """The normal form of x modulo the relations, newest generator first."""
-        for index, power, relation in reversed(self.relations):
-            if x.degrees()[index] >= power:
-                x = divmod(x, relation)[1]
+        if self.relations:
+            degrees = x.degrees()
+            for index, power, relation in reversed(self.relations):
+                if degrees[index] >= power:
+                    x = divmod(x, relation)[1]
+                    degrees = x.degrees()
         return x
 
     def multiply(self, x: Poly, y: Poly) -> Poly:

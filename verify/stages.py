@@ -13,7 +13,7 @@ working precision it costs the digits from h², or h, to the order of ΔJ; bound
 
 from collections.abc import Sequence
 
-from verify.generator import Generator
+from verify.generator import Generator, terms_of
 from verify.hamiltonian import VectorField
 from verify.ring import Poly, Ring
 
@@ -96,7 +96,7 @@ class _Moved:
 
     def __call__(self, x: Poly) -> Poly:
         target, total = self.target, self.target.zero
-        for monomial, coefficient in x.to_dict().items():
+        for monomial, coefficient in terms_of(x):
             term = target.context.constant(coefficient)
             for index, n in enumerate(monomial):
                 if n:

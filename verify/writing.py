@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import sympy
 
 from verify.formula import to_text
-from verify.generator import Generator, Poly, rational_of, written
+from verify.generator import Generator, Poly, rational_of, terms_of, written
 
 if TYPE_CHECKING:
     from verify.ring import Ring
@@ -18,7 +18,7 @@ def as_expression(ring: "Ring", x: Poly, known: dict[int, sympy.Expr]) -> sympy.
     """x as an expression, its terms as they stand; `known` keeps what its generators became."""
     made = {g.index: g for g in ring.generators}
     terms = []
-    for monomial, coefficient in x.to_dict().items():
+    for monomial, coefficient in terms_of(x):
         factors = [_of(ring, made[k], known) ** int(n) for k, n in enumerate(monomial) if n]
         terms.append(sympy.Mul(rational_of(coefficient), *factors))
     return sympy.Add(*terms)

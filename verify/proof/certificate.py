@@ -22,6 +22,7 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.exact import text
+from verify.generator import terms_of
 from verify.generic import Generic, StageEquations, TaylorSeries
 from verify.proof.checking import FORMAT
 from verify.proof.every import EveryProof
@@ -80,5 +81,5 @@ def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
     """The polynomial as a list of terms; `names`: of the variables by their index."""
     return [
         [str(c), *(names[k] for k, n in enumerate(monomial) for _ in range(int(n)))]
-        for monomial, c in x.to_dict().items()
+        for monomial, c in terms_of(x)
     ]

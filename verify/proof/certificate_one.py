@@ -12,6 +12,7 @@ import sympy
 
 from verify.errors import InputError
 from verify.exact import text
+from verify.generator import terms_of
 from verify.proof.certificate import map_of, terms
 from verify.proof.checking import FORMAT
 from verify.proof.order import Proof
@@ -71,7 +72,7 @@ def _without_constants(ring: Ring, x: Poly) -> Poly:
     """Without the terms that depend on neither p nor q, which X takes to 0."""
     kept = {
         monomial: c
-        for monomial, c in x.to_dict().items()
+        for monomial, c in terms_of(x)
         if any(n and not _parameter(ring, k) for k, n in enumerate(monomial))
     }
     return ring.context.from_dict(kept)

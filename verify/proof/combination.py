@@ -5,7 +5,10 @@ from typing import Any
 
 import flint
 
+from verify.generator import terms_of
 from verify.ring import Poly
+
+_PRIME = 2**61 - 1
 
 
 def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, Any] | None, int]:
@@ -13,7 +16,7 @@ def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, Any] |
 
     None for the coefficients where there are none.
     """
-    terms = [x.to_dict() for x in (*columns, wanted)]
+    terms = [dict(terms_of(x)) for x in (*columns, wanted)]
     rows = {m: k for k, m in enumerate({m for column in terms for m in column})}
     matrix = flint.fmpq_mat(len(rows), len(terms))
     for at, column in enumerate(terms):
@@ -25,3 +28,22 @@ def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, Any] |
     if last in pivots:
         return None, rank - 1
     return {c: reduced[r, last] for r, c in enumerate(pivots)}, rank
+
+
+def may_combine(columns: Sequence[Poly], wanted: Poly) -> bool:
+    """Whether `wanted` is a combination of the columns modulo a prime; far cheaper to know.
+
+    Where it is not, it is none over the rationals either, unless the prime divides a denominator of
+    every such combination: good enough to give up a search, not to refute.
+    """
+    terms = [dict(terms_of(x)) for x in (*columns, wanted)]
+    rows = {m: k for k, m in enumerate({m for column in terms for m in column})}
+    matrix = flint.nmod_mat(len(rows), len(terms), _PRIME)
+    for at, column in enumerate(terms):
+        for monomial, coefficient in column.items():
+            if coefficient.q % _PRIME == 0:
+                return True
+            matrix[rows[monomial], at] = int(coefficient.p * pow(int(coefficient.q), -1, _PRIME))
+    reduced, rank = matrix.rref()
+    last = len(columns)
+    return rank == 0 or any(int(reduced[rank - 1, c]) for c in range(last))

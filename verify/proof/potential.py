@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import combinations_with_replacement, islice, product
+from itertools import chain, combinations_with_replacement, islice, product
 
 import sympy
 
@@ -19,14 +19,14 @@ from verify.errors import InputError
 from verify.generators import embed
 from verify.generic import TaylorSeries
 from verify.hamiltonian import VectorField
-from verify.proof.combination import combination
+from verify.proof.combination import combination, may_combine
 from verify.proof.order import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.ring import Poly, Ring
 from verify.scheme import Scheme
 from verify.step_map import P, Q
 
-_MOST_MONOMIALS = 300
+_MOST_MONOMIALS, _MOST_DEGREE = 300, 20
 _PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)
 
 
@@ -134,18 +134,22 @@ def _among_polynomials(field: VectorField, leading: Poly) -> Poly | None:
     gens = [x for k, x in enumerate(ring.context.gens()) if k in used and x != ring.variable("h")]
     if ring.variable("q") not in gens:
         gens.append(ring.variable("q"))
-    monomials: list[Poly] = []
-    for more in _by_degree(gens, ring.one):
-        monomials += more
-        if len(monomials) > _MOST_MONOMIALS:
-            return None
-        found, _ = combination([field.derive(m) for m in monomials], leading)
+    degrees = list(_by_degree(gens, ring.one))
+    moved = [[field.derive(m) for m in monomials] for monomials in degrees]
+    if not may_combine(list(chain(*moved)), leading):
+        return None
+    for most in range(1, len(degrees) + 1):
+        found, _ = combination(list(chain(*moved[:most])), leading)
         if found is not None:
+            monomials = list(chain(*degrees[:most]))
             return sum((c * monomials[k] for k, c in found.items()), ring.zero)
     return None
 
 
 def _by_degree(gens: list[Poly], one: Poly) -> Iterator[list[Poly]]:
-    for degree in range(1, 20):
+    """The monomials of degree 1, 2, …, up to where they are too many in all."""
+    for degree in range(1, _MOST_DEGREE):
+        if math.comb(len(gens) + degree, degree) > _MOST_MONOMIALS:
+            return
         chosen = combinations_with_replacement(gens, degree)
         yield [math.prod(factors, start=one) for factors in chosen]

@@ -19,6 +19,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from verify.generator import terms_of
 from verify.proof.combination import combination
 from verify.proof.jets import Jets, Poly, shown
 
@@ -67,7 +68,7 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
             f"X·G vanishes where H_p = H_q = 0, for any smooth G; there L is {shown(at_rest)}",
         )
     graded: dict[tuple[int, int, int], dict[tuple[int, ...], Any]] = {}
-    for monomial, coefficient in leading.to_dict().items():
+    for monomial, coefficient in terms_of(leading):
         grade = _grade(jets, monomial)
         graded.setdefault(grade, {})[tuple(map(int, monomial))] = coefficient
     total = jets.zero

@@ -29,6 +29,7 @@ from typing import Any, Protocol
 
 from verify.conditions import Condition
 from verify.errors import InputError
+from verify.generator import terms_of
 from verify.implicit_tableau import ImplicitTableau, Numbers
 from verify.proof.jets import Jets
 from verify.ring import Poly, Ring
@@ -160,7 +161,7 @@ def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
     for tree, gap in gaps.items():
         share = gap / symmetry(tree)
         for part, x in enumerate(differentials.of(tree)):
-            for monomial, coefficient in x.to_dict().items():
+            for monomial, coefficient in terms_of(x):
                 at = part, monomial
                 found[at] = found.get(at, ring.zero) + share * coefficient
     zeros = {ring.decide(x).zero for x in found.values()}

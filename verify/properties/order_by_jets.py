@@ -12,6 +12,7 @@ from verify.ball_steps import BITS, sharp, unlike
 from verify.balls import Ball
 from verify.enclosure import enclose
 from verify.example import Example
+from verify.generator import terms_of
 from verify.generic import Generic, RungeKutta, StageEquations, TaylorSeries
 from verify.precision import working_precision
 from verify.proof.jets import Jets, Poly
@@ -81,7 +82,7 @@ def _derivatives(example: Example, jets: Jets) -> dict[tuple[int, int], Ball] | 
 def _value(x: Poly, derivatives: dict[tuple[int, int], Ball]) -> Ball:
     with working_precision(BITS):
         total, values = flint.arb(0), [flint.arb(0)] * 2 + list(derivatives.values())
-        for monomial, coefficient in x.to_dict().items():
+        for monomial, coefficient in terms_of(x):
             term = flint.arb(coefficient)
             for value, power in zip(values, monomial, strict=True):
                 for _ in range(int(power)):

@@ -13,6 +13,7 @@ from typing import Any
 import flint
 
 from verify.formula import parse, symbol
+from verify.generator import terms_of
 
 Poly = Any  # flint.fmpq_mpoly, which has no type stubs
 
@@ -70,7 +71,7 @@ class Differential:
         """x by powers of a constant: {power: coefficient}, the coefficients non-zero."""
         at = self.names.index(name)
         parts: dict[int, Poly] = {}
-        for monomial, coefficient in x.to_dict().items():
+        for monomial, coefficient in terms_of(x):
             rest = (*monomial[:at], 0, *monomial[at + 1 :])
             term = self.context.from_dict({rest: coefficient})
             power = int(monomial[at])
