@@ -34,8 +34,8 @@ def _energy(
 ) -> tuple[Arithmetic, Callable[..., tuple[Any, ...]]]:
     """H as a function of (p, q), and what to evaluate it in; the cases of one H share it."""
     arithmetic = mpfr.make(digits)
-    field, (element,) = hamiltonian.field(hamiltonian.exact)
-    return arithmetic, functions_at(arithmetic, [(field.ring, element)])
+    field, _ = hamiltonian.field()
+    return arithmetic, functions_at(arithmetic, [(field.ring, field.energy)])
 
 
 class CaseMotion:

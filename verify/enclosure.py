@@ -48,6 +48,7 @@ def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
 def enclose_all(ring: "Ring", elements: Sequence[Any], box: Mapping[str, Any]) -> list[Any] | None:
     """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
     values: dict[int, Any] = {}
+    powers: dict[tuple[int, int], Any] = {}
     for g in ring.used(*elements):
         if g.kind == "variable":
             values[g.index] = box[g.name]
@@ -56,12 +57,12 @@ def enclose_all(ring: "Ring", elements: Sequence[Any], box: Mapping[str, Any]) -
         elif g.kind == "solved":
             return None  # where the equations have a solution is not looked into
         elif g.kind == "stage":
-            values[g.index] = _at(g.argument, values)
+            values[g.index] = _at(g.argument, values, powers)
         else:
-            values[g.index] = BALLS[g.kind](_at(g.argument, values), g.degree)
+            values[g.index] = BALLS[g.kind](_at(g.argument, values, powers), g.degree)
         if not values[g.index].is_finite():
             return None
-    return [_at(x, values) for x in elements]
+    return [_at(x, values, powers) for x in elements]
 
 
 def power_of(x: Any, n: int) -> Any:
@@ -90,17 +91,18 @@ BALLS: dict[str, Callable[[Any, int], Any]] = {
 }
 
 
-def _at(x: Any, values: dict[int, Any]) -> Any:
+def _at(x: Any, values: dict[int, Any], powers: dict[tuple[int, int], Any]) -> Any:
+    """`powers`: those of the values that were made for other elements, too."""
     total = flint.arb(0)
     present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
-    powers = {}
     for monomial, coefficient in terms_of(x):
         term = flint.arb(coefficient)
         for index in present:
             if power := int(monomial[index]):
-                if (index, power) not in powers:
-                    powers[index, power] = power_of(values[index], power)
-                term *= powers[index, power]
+                known = powers.get((index, power))
+                if known is None:
+                    known = powers[index, power] = power_of(values[index], power)
+                term *= known
         total += term
     return total
 

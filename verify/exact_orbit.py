@@ -77,14 +77,14 @@ class _Follow:
     def __init__(
         self, hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction], time: Fraction
     ) -> None:
-        field, (energy,) = hamiltonian.field(hamiltonian.exact)
+        field, _ = hamiltonian.field()
         ring = field.ring
         h_pp, h_pq = (ring.diff(field.h_p, n) for n in ("p", "q"))
         stiffness = ring.reduce(h_pp * ring.diff(field.h_q, "q") - h_pq * h_pq)
         self.flow = Flow(field, _DIGITS + written_digits(start))
         self.arithmetic = self.flow.arithmetic
         self.at = functions_at(
-            self.arithmetic, [(ring, x) for x in (-field.h_q, field.h_p, stiffness, energy)]
+            self.arithmetic, [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
         )
         self.start, self.time = start, self.number(time)
         self.z0: State = self.number(start[0]), self.number(start[1])

@@ -99,8 +99,15 @@ class Example:
 
     @property
     def turn(self) -> int:
-        """A number by which properties that take long choose their examples."""
+        """A number by which properties choose what they look at of an example."""
         return 7 * self.steps + abs(self.p.numerator) + self.q.denominator
+
+    def is_turn(self, one_in: int, after: int = 0) -> bool:
+        """Whether a property that takes long looks at this example: at one in so many.
+
+        `after`: properties with different ones look at different examples.
+        """
+        return self.turn % one_in == after
 
     @property
     def given(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:

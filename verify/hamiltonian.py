@@ -157,15 +157,19 @@ def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
 
 @dataclass(frozen=True)
 class VectorField:
-    """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative."""
+    """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative.
+
+    `energy`: H itself; None in a ring to which only its derivatives were carried.
+    """
 
     ring: Ring
     h_p: Poly
     h_q: Poly
+    energy: Poly = None
 
     @classmethod
     def of(cls, ring: Ring, hamiltonian: Poly) -> "VectorField":
-        return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"))
+        return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"), hamiltonian)
 
     def derive(self, y: Poly) -> Poly:
         """X y, the derivative of y along the flow."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 from verify.conditions import ByConditions
 from verify.drawn import drawn_by
@@ -37,4 +38,11 @@ class Scheme:
         return bool(getattr(self.generic, "separable", False))
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
-        return self.build(hamiltonian)
+        return _made(self.build, hamiltonian)
+
+
+# A scene asks for the same map when it is read, when it is proved and when it is run. Few, since a
+# map keeps what was derived of it.
+@lru_cache(maxsize=8)
+def _made(build: Callable[[Hamiltonian], StepMap], hamiltonian: Hamiltonian) -> StepMap:
+    return build(hamiltonian)

@@ -49,10 +49,18 @@ class Series:
                         total[i + j] += x * y
         return Series(ring, tuple(map(ring.reduce, total)))
 
+    @property
+    def vanishes(self) -> bool:
+        """Whether all coefficients that are kept are 0."""
+        return all(c == 0 for c in self.coefficients)
+
     def times(self, x: Poly | Fraction) -> "Series":
         """Its product with what does not depend on h."""
         factor = self.ring.constant(x) if isinstance(x, Fraction) else x
-        return Series(self.ring, tuple(self.ring.multiply(factor, c) for c in self.coefficients))
+        multiply = self.ring.multiply
+        return Series(
+            self.ring, tuple(multiply(factor, c) if c != 0 else c for c in self.coefficients)
+        )
 
     def shifted(self, n: int) -> "Series":
         """Its product with hⁿ."""
@@ -87,7 +95,7 @@ def at_point(partial: Partial, u: Series, v: Series) -> Series:
         both = along_p
         for j in range(most + 1 - i):
             derivative = partial(i, j)
-            if derivative == 0:  # and so are all further ones by q
+            if derivative == 0 or both.vanishes:  # and so are all further ones by q
                 break
             share = Fraction(1, math.factorial(i) * math.factorial(j))
             total += both.times(derivative * ring.constant(share))

@@ -52,8 +52,8 @@ class Problem:
 
     @cached_property
     def _energy(self) -> tuple[Any, Any]:
-        field, (energy,) = self.hamiltonian.field(self.hamiltonian.exact)
-        return field.ring, energy
+        field, _ = self.hamiltonian.field()
+        return field.ring, field.energy
 
     @property
     def scale(self) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.unit.test_properties import Patch, Plant, example_of, with_map
+from tests.unit.test_properties import Patch, Plant, example_of, take_every_turn, with_map
 from verify import properties
 from verify.exact import decimal
 from verify.example import Example
@@ -19,6 +19,11 @@ from verify.properties import growth_laws, number_systems_agree, planted_errors,
 from verify.property import Violation
 from verify.separation_chain import Chain
 from verify.substep import Substep
+
+
+@pytest.fixture(autouse=True)
+def _every_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    take_every_turn(monkeypatch)
 
 
 def tiny(p_power: int, q_power: int, h_power: int, part: str = "p", size: int = 15) -> Plant:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
 import sympy
 
@@ -21,7 +22,7 @@ from verify.series import Series, delta_j
 from verify.step_map import StepMap
 from verify.verdict import Verdict
 
-_FIRST_ORDERS = 6  # of them, those that are made at once
+_FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
 
 
 @dataclass(frozen=True)
@@ -72,8 +73,9 @@ class Proof:
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """The order of ΔJ and of the map by exact algebra, and whether `scheme`'s claims hold."""
-    convergence = convergence_of(step_map)
-    leading = leading_of(step_map)
+    series = _BySeries(step_map, scheme.order + 1 if scheme else _FIRST_ORDERS)
+    convergence = convergence_of(step_map, series)
+    leading = leading_of(step_map, series)
     verdict, reason = _verdict(convergence, leading, scheme)
     if leading.decision.zero is True and step_map.conditions:
         reason = f"{reason}, {_by_conditions(step_map.conditions)}"
@@ -100,18 +102,21 @@ def _by_conditions(conditions: Sequence[Condition]) -> str:
 class _BySeries:
     """The Taylor coefficients of p', q' and ΔJ of a map of several parts, without its closed form.
 
-    They are made as far as they are looked at.
+    They are made as far as they are looked at; `first`: those of them that are made at once.
     """
 
-    def __init__(self, step_map: StepMap) -> None:
-        self.map = step_map
+    def __init__(self, step_map: StepMap, first: int = _FIRST_ORDERS) -> None:
+        self.map, self.first = step_map, first
         self.made: tuple[VectorField, Series, Series] | None = None
-        self.usable = step_map.of_parts and self.reach(_FIRST_ORDERS)
+
+    @cached_property
+    def usable(self) -> bool:
+        return self.map.of_parts and self.reach(self.first)
 
     def reach(self, n: int) -> bool:
         """Makes the coefficients up to hⁿ, and a few more; False where the map has none."""
         if self.made is None or self.made[1].most < n:
-            most = max(_FIRST_ORDERS, min(n + 1, MOST_ORDERS))  # terms multiply with every order
+            most = max(self.first, min(n + 1, MOST_ORDERS))  # terms multiply with every order
             self.made = self.map.taylor(most)
         return self.made is not None
 
@@ -129,11 +134,11 @@ class _BySeries:
         return field.ring, delta_j(p, q).coefficients[n]
 
 
-def leading_of(step_map: StepMap) -> Leading:
+def leading_of(step_map: StepMap, series: _BySeries | None = None) -> Leading:
     """The first coefficient in h of ΔJ that is not shown to vanish."""
     if step_map.preserves_area:
         return VANISHES
-    series = _BySeries(step_map)
+    series = series or _BySeries(step_map)
     if series.usable:
         return _leading_by(series, step_map)
     step = step_map.flat
@@ -176,12 +181,12 @@ class Convergence:
         return self.order is not None and self.order < claimed
 
 
-def convergence_of(step_map: StepMap) -> Convergence:
+def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Convergence:
     """The order to which the map agrees with the exact flow."""
     known = step_map.known_order()
     if known is not None:
         return Convergence(known, decided=True)
-    series = _BySeries(step_map)
+    series = series or _BySeries(step_map)
     if series.usable:
         return _convergence_by(series)
     step = step_map.flat

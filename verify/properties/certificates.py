@@ -19,7 +19,7 @@ _LONGEST = 400  # terms in a certificate that is checked here
 
 
 def holds(example: Example) -> bool:
-    if example.turn % _IN or not example.ordinary or example.step_map.solved:
+    if not example.is_turn(_IN) or not example.ordinary or example.step_map.solved:
         return False
     proof = example.proof
     try:

@@ -30,7 +30,7 @@ def holds(example: Example) -> bool:
     if wrong:
         raise Violation(f"{wrong}, against what is proved for {every.quantifier}")
     # Where the leading coefficient for every H vanishes for this one, another one leads.
-    same = proof.order == every.order and example.turn % _IN == 0 and example.polynomial
+    same = proof.order == every.order and example.is_turn(_IN) and example.polynomial
     if every.telescopes and same:
         found = potential_of(proof, scheme)
         if found.holds is False:

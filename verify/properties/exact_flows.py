@@ -24,9 +24,9 @@ Point = tuple[Fraction, Fraction]
 
 
 def holds(example: Example) -> bool:
-    if example.turn % _IN or not example.ordinary:
+    if not example.is_turn(_IN) or not example.ordinary:
         return False
-    field, (energy,) = example.hamiltonian.field(example.hamiltonian.exact)
+    field, _ = example.hamiltonian.field()
     flow = Flow(field, _DIGITS)
     start = example.p, example.q
     try:
@@ -37,7 +37,7 @@ def holds(example: Example) -> bool:
     for name, x, y in zip("pq", start, back, strict=True):
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
-    before, then = (_value(field.ring, energy, point) for point in (start, after))
+    before, then = (_value(field.ring, field.energy, point) for point in (start, after))
     if before is None or then is None:
         return False
     with working_precision(_BITS):

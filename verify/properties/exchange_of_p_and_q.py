@@ -8,10 +8,11 @@ from fractions import Fraction
 from verify.equivariance import knows_no_coordinates, same_step
 from verify.example import Example
 
+_IN = 2  # one in so many examples
 _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
 
 
 def holds(example: Example) -> bool:
-    if not knows_no_coordinates(example):
+    if not example.is_turn(_IN) or not knows_no_coordinates(example):
         return False
     return same_step(example, _EXCHANGED, Fraction(-1), Fraction(1))

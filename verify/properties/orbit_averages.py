@@ -19,17 +19,17 @@ _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is 
 
 
 def holds(example: Example) -> bool:
-    if example.turn % _IN or not example.polynomial or not example.ordinary:
+    if not example.is_turn(_IN) or not example.polynomial or not example.ordinary:
         return False
-    field, (energy,) = example.hamiltonian.field(example.hamiltonian.exact)
+    field, _ = example.hamiltonian.field()
     ring = field.ring
     mixed = field.derive(ring.variable("p") * ring.variable("q"))
     start = example.p, example.q
     try:
-        found = average(example.hamiltonian, (ring, energy + mixed), start, _DIGITS)
+        found = average(example.hamiltonian, (ring, field.energy + mixed), start, _DIGITS)
     except NoFlowError:  # the orbit is open
         return False
-    at_start = enclose(ring, energy, example.start, 200)
+    at_start = enclose(ring, field.energy, example.start, 200)
     if at_start is None:
         return False
     wanted = middle_and_radius(at_start)[0]

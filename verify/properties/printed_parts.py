@@ -16,7 +16,7 @@ _DIGITS = 6
 
 
 def holds(example: Example) -> bool:
-    if example.turn % _IN or not example.short:
+    if not example.is_turn(_IN) or not example.short:
         return False
     found = separate(
         example.hamiltonian,

@@ -13,7 +13,7 @@ from verify.scene import scene_from
 from verify.scene_text import scene_text
 from verify.step_map import StepMap
 
-_LONGEST = 15  # terms of a map that is read back
+_IN, _LONGEST = 3, 15  # one map in so many is read back, of no more terms
 
 
 def holds(example: Example) -> bool:
@@ -23,16 +23,17 @@ def holds(example: Example) -> bool:
     given = example.hamiltonian
     read = Hamiltonian.parse(given.formula, dict(given.values))
     _must_be_same(example, given, read)
-    _must_be_same_map(example)
+    if example.is_turn(_IN):
+        _must_be_same_map(example)
     return True
 
 
 def _must_be_same(example: Example, given: Hamiltonian, read: Hamiltonian) -> None:
     values = []
     for hamiltonian in (given, read):
-        field, (energy,) = hamiltonian.field(hamiltonian.exact)
+        field, _ = hamiltonian.field()
         values.append([enclose(field.ring, x, example.start, BITS) for x in
-                       (energy, field.h_p, field.h_q)])  # fmt: skip
+                       (field.energy, field.h_p, field.h_q)])  # fmt: skip
     for x, y in zip(*values, strict=True):
         if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
             raise Violation(f"H reads back as another: {given.formula}")

@@ -14,7 +14,7 @@ _IN = 3  # one in so many examples is looked at by series, too
 def holds(example: Example) -> bool:
     if not example.scheme.symmetric:
         return False
-    if example.turn % _IN == 0 and example.ordinary and not example.step_map.solved:
+    if example.is_turn(_IN) and example.ordinary and not example.step_map.solved:
         series = by_series(example.step_map, example.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")

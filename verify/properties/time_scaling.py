@@ -8,9 +8,10 @@ from fractions import Fraction
 from verify.equivariance import same_step
 from verify.example import Example
 
+_IN = 2  # one in so many examples
 _IDENTITY = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))
 _FACTOR = Fraction(-2, 3)
 
 
 def holds(example: Example) -> bool:
-    return same_step(example, _IDENTITY, _FACTOR, 1 / _FACTOR)
+    return example.is_turn(_IN) and same_step(example, _IDENTITY, _FACTOR, 1 / _FACTOR)
