@@ -136,11 +136,15 @@ def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
 
 def magnitude(value: Fraction) -> int:
     """The decimal exponent e of value ≠ 0: 10^e ≤ |value| < 10^(e+1)."""
-    size = abs(value)
+    top, bottom = abs(value.numerator), value.denominator
     # Bit lengths place the exponent within one; the comparison settles it.
-    bits = size.numerator.bit_length() - size.denominator.bit_length()
-    exponent = bits * 30103 // 100000 - 1
-    while Fraction(10) ** (exponent + 1) <= size:
+    exponent = (top.bit_length() - bottom.bit_length()) * 30103 // 100000 - 1
+    if exponent < 0:
+        top *= 10**-exponent
+    else:
+        bottom *= 10**exponent
+    while 10 * bottom <= top:
+        bottom *= 10
         exponent += 1
     return exponent
 

@@ -14,7 +14,7 @@ from verify.proof.checker import check
 from verify.proof.potential import potential_of
 from verify.property import Violation
 
-_IN = 5  # one in so many examples
+_IN = 10  # one in so many examples
 _LONGEST = 400  # terms in a certificate that is checked here
 
 

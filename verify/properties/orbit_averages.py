@@ -13,7 +13,7 @@ from verify.proof.exact_flow import NoFlowError
 from verify.proof.orbit_average import average
 from verify.property import Violation
 
-_IN = 8  # one in so many examples
+_IN = 16  # one in so many examples
 _DIGITS = 12
 _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
 

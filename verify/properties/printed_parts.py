@@ -11,7 +11,7 @@ from verify.results import Parts
 from verify.separation import separate
 from verify.separation_chain import PARTS
 
-_IN = 5  # one in so many examples
+_IN = 8  # one in so many examples
 _DIGITS = 6
 
 

@@ -27,8 +27,10 @@ _UNIT = 100  # coefficients are whole multiples of 1/100
 
 def holds(example: Example) -> bool:
     generic = example.scheme.generic
+    if not isinstance(generic, TaylorSeries | RungeKutta):
+        return False
     hessian = _hessian(example)
-    if not isinstance(generic, TaylorSeries | RungeKutta) or hessian is None:
+    if hessian is None:
         return False
     h_pp, h_pq, h_qq = hessian
     square = -(example.step_size**2) * (h_pp * h_qq - h_pq**2)
