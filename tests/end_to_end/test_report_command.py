@@ -18,7 +18,7 @@ from tests.end_to_end.test_command_line import RUN, SCENE, apart, arguments, her
 from verify.scene_results import Report
 
 VERIFY = Path(sys.executable).with_name("verify")
-# 9 tasks: six runs of a third of a second or more, a series, two proofs; symplectic Euler is not run.
+# 9 tasks: six runs of a third of a second or more, a series, two proofs; symplectic Euler has none.
 LONG = SCENE.replace("p**2/2 + q**4/4", "p**2/2 - cos(q)").replace(
     'steps = 200\nstep_sizes = [0.01, "1/30", 0.05, 0.1]',
     "steps = 2000000\nstep_sizes = [0.001, 0.002, 0.003]",

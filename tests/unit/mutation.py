@@ -3,7 +3,6 @@
 import ast
 import copy
 from collections.abc import Iterator
-from typing import Any
 
 SWAPS = {"p": ["q"], "q": ["p"], "p_next": ["p", "q"], "delta": ["h"], "h": ["q"],
          "sin": ["cos"], "cos": ["sin"]}  # fmt: skip
