@@ -17,7 +17,7 @@ from typing import Any
 import mpmath
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.property.strategies import P, Q, polynomials, rationals
@@ -62,14 +62,15 @@ def of_drawn(draw: st.DrawFn) -> Data:
     inner = draw(polynomials("q" if separable else "pq", degree=2, most_terms=2))
     bent = draw(st.sampled_from(INVOLVED)).format(f"({inner})")
     text = f"p**2/2 + ({draw(rationals(4))})*{bent} + ({draw(rationals(3))})*q**3 + 5"
-    names = ["lie1", "lie2", "p_next = p - h*q; q_next = q + h*p"]
-    scheme = get(draw(st.sampled_from([*names[:2], "symplectic-euler"] if separable else names)))
-    try:
-        proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
-        return as_read(of_one(proof, potential_of(proof, scheme)))
-    except InputError:
-        assume(False)
-        raise
+    scheme = get(draw(st.sampled_from(["lie1", "lie2", *["symplectic-euler"] * separable])))
+    proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
+    potential = potential_of(proof, scheme)
+    data = as_read(of_one(proof, potential))
+    assert (data["order"], data["convergence_order"]) == (proof.order, proof.convergence_order)
+    assert ("potential" in data) == (potential.potential is not None and proof.order is not None)
+    needed = max(proof.order or 0, proof.convergence_order or 0) + 1
+    assert proof.order is None or max(map(len, (data["p_next"], data["q_next"]))) <= needed
+    return data
 
 
 certificates = st.one_of(
