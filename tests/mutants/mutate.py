@@ -3,7 +3,8 @@
 What is not changed, as no computation depends on it: texts (f-strings too), annotations and type
 aliases, imports, `assert` and what is raised, `__repr__` and its kin, decorators, patterns, what
 stands under `if TYPE_CHECKING`, a `zip`'s `strict`, and at module level the numbers of 100 and
-more, which bound an effort: a bound that is off by one is no error that could be seen.
+more, which bound an effort: a bound that is off by one is no error that could be seen. Nor is the
+order changed of two arguments that commute.
 """
 
 import ast

@@ -92,12 +92,17 @@ def _passed(killer: Killer, work: Callable[[], Record]) -> forked.Ended:
 
 
 def ordered(mutant: Mutant, sound: list[Record], all_killers: list[Killer]) -> list[Killer]:
-    """The battery, then the files that import the module, each by what they cost."""
-    seconds = {r["killer"]: r["seconds"] for r in sound}
+    """The battery and the files that import the module or its package, then the other files.
 
-    def cost(killer: Killer) -> tuple[int, bool, float]:
-        near = killer.stage > 1 and concerns(ROOT / killer.name, mutant.module)
-        return killer.stage, not near, seconds[killer.name]
+    Each by what it costs: what is near and cheap kills most, and a survivor is seen by all.
+    """
+    seconds = {r["killer"]: r["seconds"] for r in sound}
+    package = mutant.module.rpartition(".")[0]
+
+    def cost(killer: Killer) -> tuple[bool, float]:
+        path = ROOT / killer.name
+        near = killer.stage == 1 or any(concerns(path, n) for n in (mutant.module, package))
+        return not near, seconds[killer.name]
 
     return sorted(all_killers, key=cost)
 

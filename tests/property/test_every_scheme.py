@@ -12,7 +12,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.property.strategies import P, Q, H, plain, rationals
+from tests.property.strategies import H, P, Q, plain, polynomials, rationals, zero_there
 from verify.errors import InputError
 from verify.generic import RungeKutta, Stage, StageEquations, TaylorSeries
 from verify.hamiltonian import Hamiltonian
@@ -75,6 +75,31 @@ def test_a_schemes_symmetry_and_explicitness_are_those_of_its_steps(name: str) -
         with pytest.raises(InputError, match=r"T\(p\) \+ V\(q\)"):
             scheme.step_map(Hamiltonian.parse(MIXED))
     assert scheme.source
+
+
+@pytest.mark.parametrize("name", [n for n in names() if n not in ("lie5", "lie6", "triple-jump6")])
+def test_for_one_h_a_scheme_has_the_orders_that_it_has_for_every(name: str) -> None:
+    scheme = get(name)
+    text = SEPARABLE if scheme.needs_separable else MIXED
+    proof, of_every = prove(scheme.step_map(Hamiltonian.parse(text)), scheme), prove_every(name)
+    assert proof.verdict is Verdict.PROVED
+    assert proof.convergence_order == scheme.order
+    assert (proof.order, proof.area_preserving) == (of_every.order, of_every.area_preserving)
+
+
+@few
+@given(polynomials("p", 3, 1), polynomials("q", 2, 1), polynomials("q", 3, 2), st.booleans())
+def test_implicit_symplectic_euler_solves_its_equations(
+    kinetic: str, mixed: str, potential: str, linear: bool
+) -> None:
+    """Where they are solved in closed form: H_q is linear in p."""
+    inner = f"p*({mixed})" if linear else "0"
+    text = f"{kinetic} + {inner} + {potential}"
+    step_map = get("implicit-symplectic-euler").step_map(Hamiltonian.parse(f"p**2/2 + {text}"))
+    whole = plain(f"p**2/2 + {text}")
+    p_next, q_next = step_map.p_next, step_map.q_next
+    assert zero_there(p_next - P + H * whole.diff(Q).subs(P, p_next))
+    assert zero_there(q_next - Q - H * whole.diff(P).subs(P, p_next))
 
 
 @pytest.mark.parametrize("name", names())

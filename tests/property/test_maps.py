@@ -12,7 +12,16 @@ import sympy
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from tests.property.strategies import H, P, Q, lie_step, plain, polynomials, rationals
+from tests.property.strategies import (
+    H,
+    P,
+    Q,
+    lie_step,
+    plain,
+    polynomials,
+    rationals,
+    zero_there,
+)
 from verify.formula import parse, to_text
 from verify.generators import embed
 from verify.hamiltonian import Hamiltonian
@@ -226,12 +235,6 @@ def test_two_substeps_that_change_area_are_composed_in_their_order(
 
 # -- maps that are no polynomials in h ------------------------------------------------------------
 
-def zero(x: sympy.Expr) -> bool:
-    """At one point, to 30 digits."""
-    at = {P: sympy.Rational(3, 7), Q: sympy.Rational(-5, 11), H: sympy.Rational(2, 9)}
-    return bool(abs(sympy.N(x.subs(at), 40)) < 1e-30)
-
-
 INSIDE = ("1/(1 + ({})*h)", "exp(({})*h)", "1/(1 + ({})*h**2*q**2)", "cos(({})*h)", "exp(({})*h*q)")
 
 
@@ -259,18 +262,18 @@ def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     assert proof.convergence_order == order_of_flow(plain(text), series, 4)
     delta_j = determinant(step)
     found = [delta_j.diff(H, n).subs(H, 0) / math.factorial(n) for n in range(5)]
-    first = next((n for n, c in enumerate(found) if not zero(c)), None)
+    first = next((n for n, c in enumerate(found) if not zero_there(c)), None)
     if first is not None:
         assert proof.order == first
-        assert zero(proof.leading - found[first])
+        assert zero_there(proof.leading - found[first])
     expansion = Expansion(part.ring, part.p_next)
     assert expansion.length == MOST_ORDERS + 1
     for n in (3, 0, 1, 5):
         ring, x = expansion.coefficient(n)
         true = step[0].diff(H, n).subs(H, 0) / math.factorial(n)
-        assert zero(ring.expression(x) - true)
+        assert zero_there(ring.expression(x) - true)
     assert step_map.delta_j_text is not None
-    assert zero(parse(step_map.delta_j_text, ("p", "q", "h")) - delta_j)
+    assert zero_there(parse(step_map.delta_j_text, ("p", "q", "h")) - delta_j)
 
 
 @settings(deadline=None, max_examples=3)
