@@ -97,6 +97,24 @@ def test_a_pendulum_swings_or_goes_round_in_the_time_of_an_elliptic_integral(
         assert orbit.shift[0] == 0
 
 
+@few
+@given(st.integers(1, 9), st.integers(1, 3), st.booleans(), st.integers(8, 20))
+def test_an_orbit_near_a_separatrix_has_its_period_to_all_digits(
+    near: int, rate: int, over: bool, digits: int
+) -> None:
+    """p²/2 − cos(r q) from q = 0 with p² = 4 (1 ± 10^−k): near the saddle k digits are lost."""
+    p = 2 + Fraction(1 if over else -1, 10**near)
+    hamiltonian = Hamiltonian.parse(f"p**2/2 - cos({rate}*q)")
+    orbit = closed_orbit(hamiltonian, (p, Fraction(0)), digits, 2)
+    assert orbit.kind == ("rotation" if over else "libration")
+    with mpmath.workdps(60):
+        k2 = mpf(p) ** 2 / 4
+        whole = mpmath.ellipk(1 / k2) / mpmath.sqrt(k2) / 2 if over else mpmath.ellipk(k2)
+        assert abs(mpf(orbit.period) * rate / (4 * whole) - 1) < mpmath.mpf(10) ** (2 - digits)
+        far = max(abs(float(x) - y) for z in orbit.points for x, y in zip(z, (p, 0), strict=True))
+        assert far < 20
+
+
 PERIODIC = [
     ("cos(2*q) + p**2", {"q": "1"}), ("sin(q/3) + p**2", {"q": "6"}),
     ("cos(2*q/3)*sin(q/2) + p", {"q": "12"}), ("cos(p)*cos(q)", {"p": "2", "q": "2"}),
@@ -205,6 +223,41 @@ def test_a_flow_that_ends_says_about_when(text: str, p: str, q: str, time: str, 
     flow = Flow(field, 12)
     with pytest.raises(NoFlowError, match=said):
         flow.follow((flow.number(Fraction(p)), flow.number(Fraction(q))), Fraction(time))
+
+
+@pytest.mark.parametrize(
+    ("text", "p", "q", "time"),
+    [("p**2/2 - q**4/4", "1", "1", "9"), ("p**2/2 + log(q)", "0", "1", "7"), ("p**2/2 - q**4/4", "-1", "1", "-9")],
+)  # fmt: skip
+def test_a_flow_is_not_advanced_beyond_its_end(text: str, p: str, q: str, time: str) -> None:
+    flow = Flow(Hamiltonian.parse(text).field()[0], 8)
+    start = flow.number(Fraction(p)), flow.number(Fraction(q))
+    with pytest.raises(NoFlowError):
+        flow.advance(start, flow.number(Fraction(time)), 7)
+
+
+@few
+@given(rates, numbers, numbers, st.integers(10, 30), st.sampled_from([-1, 1]))
+def test_a_flow_is_followed_in_steps_as_long_as_its_accuracy_allows(
+    b: int, p: Fraction, q: Fraction, digits: int, sign: int
+) -> None:
+    """By the longest that one step can be: most are a third of it at least, and few too long."""
+    assume(p or q)
+    flow = Flow(oscillator(1, b, Fraction(0)).field()[0], digits)
+    z = flow.number(p), flow.number(q)
+    longest = next(Fraction(n, 64) for n in range(1, 640) if flow.step(z, flow.number(Fraction(n, 64))) is None)  # fmt: skip
+    tried: list[bool] = []
+    one = flow.step
+
+    def counted(*given: Any) -> Any:
+        tried.append(one(*given) is not None)
+        return one(*given)
+
+    flow.step = counted  # type: ignore[method-assign]
+    flow.follow(z, sign * 40 * longest)
+    assert 40 <= tried.count(True) + 2
+    assert tried.count(True) <= 75
+    assert tried.count(False) <= tried.count(True) / 3 + 3
 
 
 @few
