@@ -253,7 +253,7 @@ def accepted(data: Data) -> bool:
     return True
 
 
-@settings(deadline=None, max_examples=16)
+@settings(deadline=None, max_examples=9)
 @given(certificates, st.data())
 def test_a_certificate_is_accepted_and_a_forgery_only_where_it_says_the_truth(
     data: Data, drawn: st.DataObject
@@ -340,7 +340,7 @@ def shown(x: dict[tuple[str, ...], Fraction]) -> list[list[str]]:
     return [[str(c), *monomial] for monomial, c in x.items()]
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=8)
 @given(of_drawn(), st.sampled_from("pq"))
 def test_the_checkers_derivatives_values_and_relations_are_those_of_its_functions(
     data: Data, by: str
@@ -366,7 +366,7 @@ def test_the_checkers_derivatives_values_and_relations_are_those_of_its_function
 # -- its file -------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=6)
 @given(certificates, st.data())
 def test_a_file_says_what_was_certified_and_not_what_is_malformed(
     data: Data, drawn: st.DataObject

@@ -22,7 +22,7 @@ from verify.proof.telescoping import potential_of_lie, telescopes, telescopes_of
 
 ORDER = 3
 T = sympy.Symbol("t")
-quick = settings(deadline=None, max_examples=15)
+quick = settings(deadline=None, max_examples=10)
 Poly = Any
 
 

@@ -34,8 +34,8 @@ from verify.step_map import StepMap, grouped
 from verify.substep import h_inside
 from verify.verdict import Verdict
 
-quick = settings(deadline=None, max_examples=25)
-few = settings(deadline=None, max_examples=12)
+quick = settings(deadline=None, max_examples=14)
+few = settings(deadline=None, max_examples=8)
 
 
 @st.composite
@@ -238,7 +238,7 @@ def test_two_substeps_that_change_area_are_composed_in_their_order(
 INSIDE = ("1/(1 + ({})*h)", "exp(({})*h)", "1/(1 + ({})*h**2*q**2)", "cos(({})*h)", "exp(({})*h*q)")
 
 
-@settings(deadline=None, max_examples=7)
+@settings(deadline=None, max_examples=5)
 @given(st.sampled_from(INSIDE), rationals(3), st.integers(0, 3), polynomials("pq", 2, 1))
 def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     inside: str, size: Fraction, power: int, factor: str
