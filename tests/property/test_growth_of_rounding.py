@@ -1,20 +1,13 @@
-"""The growth of rounding, crossovers, and what a chain says of its parts, on drawn values."""
+"""The growth of rounding, and where it overtakes truncation, on drawn values."""
 
 import math
 from fractions import Fraction
-from itertools import accumulate, pairwise
+from itertools import accumulate
 
-import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from verify.errors import InputError
-from verify.exact import magnitude
-from verify.hamiltonian import Hamiltonian
-from verify.separation import as_grid, grid, separate
-from verify.separation_chain import PARTS, QUANTITIES, Chain, Kind
 from verify.separation_growth import crossover, envelope, growth, log, log_spaced
-from verify.separation_working import Link, marks_of
 
 quick = settings(deadline=None, max_examples=40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))
@@ -35,7 +28,10 @@ def test_a_logarithm_is_that_of_numbers_beyond_float64_too(n: int, d: int, k: in
 
 
 @quick
-@given(st.lists(st.integers(1, 10**6), unique=True, min_size=1, max_size=80).map(sorted), st.integers(2, 20))  # fmt: skip
+@given(
+    st.lists(st.integers(1, 10**6), unique=True, min_size=1, max_size=80).map(sorted),
+    st.integers(2, 20),
+)
 def test_log_spaced_marks_hold_the_ends_and_the_first_beyond_each_goal(
     at: list[int], most: int
 ) -> None:
@@ -48,7 +44,10 @@ def test_log_spaced_marks_hold_the_ends_and_the_first_beyond_each_goal(
     assert len(chosen) <= most
     assert (chosen[0], chosen[-1]) == (indices[0], indices[-1])
     goals = [math.log(at[0]) + math.log(at[-1] / at[0]) * k / (most - 1) for k in range(most)]
-    wanted = {next((i for i, x in zip(indices, at, strict=True) if math.log(x) >= g - 1e-9), indices[-1]) for g in goals}  # fmt: skip
+    wanted = {
+        next((i for i, x in zip(indices, at, strict=True) if math.log(x) >= g - 1e-9), indices[-1])
+        for g in goals
+    }
     assert set(chosen) == wanted
 
 
@@ -97,7 +96,9 @@ def test_what_is_within_ten_times_the_noise_is_left_out(noise: int, spread: int)
     above = [n for k, n in enumerate(MARKS) if k >= 7 and 7 * n > 10 * noise]
     assert (found.first, found.last) == ((above[0], above[-1]) if above else (0, 0))
     jumps = [Fraction((7 * k) % spread) ** 3 for k in range(len(MARKS))]
-    scattered = growth(MARKS, [n + 3000 * x for n, x in zip(MARKS, jumps, strict=True)], Fraction(0))
+    scattered = growth(
+        MARKS, [n + 3000 * x for n, x in zip(MARKS, jumps, strict=True)], Fraction(0)
+    )
     assert scattered.standard_error is not None
     assert scattered.standard_error >= 1.65 * math.log(MARKS[-1] / MARKS[7]) ** -1.5 * (1 - 1e-9)
 
@@ -169,155 +170,3 @@ def test_a_part_that_is_exactly_0_gives_a_bracket_and_no_number(
     found = crossover([large, small])
     assert (found.step_size, found.bracket) == (None, (h, 2 * h))
     assert "exactly 0" in found.reason
-
-
-# -- chains ---------------------------------------------------------------------------------------
-
-kinds: st.SearchStrategy[Kind] = st.sampled_from(["enclosed", "enclosed", "estimated"])
-
-
-@st.composite
-def chains(draw: st.DrawFn) -> Chain:
-    count = draw(st.integers(1, 4))
-    made = [
-        Link(
-            tuple(draw(st.lists(values, min_size=count, max_size=count))),
-            draw(st.one_of(st.just(Fraction(0)), sizes.map(lambda x: x / 10**6))),
-            draw(kinds),
-            draw(st.sampled_from(["a", "b", "c"])),
-        )
-        for _ in range(5)
-    ]
-    for k in range(1, 5):
-        if draw(st.integers(0, 3)) == 0:
-            made[k] = made[k - 1]
-    return Chain(tuple(range(1, count + 1)), (made[0], made[1], made[2], made[3], made[4]))
-
-
-ENDS = {"truncation": (None, 0), "total": (0, 4), "lambda_working": (None, 4)}
-ENDS |= {name: (k, k + 1) for k, name in enumerate(PARTS)}
-
-
-@quick
-@given(chains(), st.integers(1, 20))
-def test_a_chains_quantities_are_differences_of_its_links_and_lack_digits_where_bounds_are_wide(
-    chain: Chain, digits: int
-) -> None:
-    assert set(QUANTITIES) == set(ENDS)
-    needed = [0] * 5
-    for name, (before, after) in ENDS.items():
-        last = chain.links[after]
-        first = None if before is None else chain.links[before]
-        trail, bound = chain.trail(name)
-        assert len(trail) == len(chain.marks)
-        if first is last:
-            assert (set(trail), bound) == ({0}, 0)
-        else:
-            low = first.trail if first else [0] * len(trail)
-            assert list(trail) == [b - a for a, b in zip(low, last.trail, strict=True)]
-            assert bound == last.bound + (first.bound if first else 0)
-        assert chain.final(name) == (trail[-1], bound)
-        if trail[-1] and bound:
-            allowed = abs(trail[-1]) / (4 * 10**digits)
-            for k in (before, after):
-                if k is not None and chain.links[k].bound > allowed:
-                    more = magnitude(chain.links[k].bound / allowed) + 1
-                    assert more >= 1
-                    assert chain.links[k].bound <= allowed * 10**more
-                    needed[k] = max(needed[k], more)
-    assert chain.lacking(digits) == needed
-    whole = sum(chain.final(n)[0] for n in ("truncation", *PARTS))
-    assert whole == chain.final("lambda_working")[0]
-    assert chain.kind == ("enclosed" if {x.kind for x in chain.links} == {"enclosed"} else "estimated")  # fmt: skip
-    assert set(chain.methods) == {x.method for x in chain.links[:4]}
-    assert len(set(chain.methods)) == len(chain.methods)
-
-
-@quick
-@given(st.one_of(st.integers(1, 10**5), st.integers(1, 9)))
-def test_checkpoints_are_equidistant_and_end_with_the_run(steps: int) -> None:
-    marks = marks_of(steps)
-    assert marks[-1] == steps
-    assert len(marks) <= 2048
-    assert len(marks) > 1024 or len(marks) == steps
-    apart = [b - a for a, b in pairwise((0, *marks))]
-    assert set(apart[:-1]) <= {apart[0]}
-    assert 0 < apart[-1] <= apart[0]
-
-
-# -- grids ----------------------------------------------------------------------------------------
-
-steps_of = st.fractions(min_value="1/9", max_value=1, max_denominator=9)
-
-
-@quick
-@given(st.lists(steps_of, min_size=1, max_size=4), st.integers(1, 20), st.booleans())
-def test_a_grid_gives_each_step_size_its_number_of_steps(
-    given_: list[Fraction], size: int, by_time: bool
-) -> None:
-    if len(set(given_)) < len(given_):
-        with pytest.raises(InputError, match="twice"):
-            grid(given_, size, None)
-        return
-    if by_time:
-        assert grid(given_, None, size) == [(h, math.floor(size / h)) for h in given_]
-        with pytest.raises(InputError, match="shorter"):
-            grid(given_, None, max(given_) * Fraction(9, 10))
-        assert grid(given_, None, max(given_))[given_.index(max(given_))][1] == 1
-    else:
-        assert grid(given_, size, None) == [(h, size) for h in given_]
-    for steps, time in ((None, None), (size, size)):
-        with pytest.raises(InputError, match="one of the two"):
-            grid(given_, steps, time)
-    with pytest.raises(InputError):
-        grid([], size, None)
-
-
-@settings(deadline=None, max_examples=6)
-@given(st.lists(st.sampled_from(["1/4", "1/10", "1e-3", "1e-5", "1e-7"]), min_size=1, max_size=3, unique=True), st.sampled_from(["lie1", "lie2", "symplectic-euler"]), st.integers(1, 40))  # fmt: skip
-def test_what_is_printed_of_a_separation_is_its_chain(
-    given_: list[str], scheme: str, steps: int
-) -> None:
-    hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/7")
-    at = {"q": "6/5", "p": "1/3", "steps": steps, "digits": 12, "arithmetic": "mpfr"}
-    found = as_grid(
-        [separate(hamiltonian, scheme, step_size=h, **at) for h in given_]  # type: ignore[arg-type]
-    )
-    assert [Fraction(p.step_size) for p in found.points] == list(map(Fraction, given_))
-    for point in found.points:
-        assert (point.status, point.failed_step, point.reason) == ("finished", None, "")
-        assert (point.digits, point.steps, point.arithmetic) == (12, steps, "mpfr")
-        assert Fraction(point.q) == Fraction(6, 5)
-        for one in (point.plain, point.closed_form):
-            assert one is not None
-            parts = {n: Fraction(getattr(one.parts, n).value) for n in QUANTITIES}
-            slack = sum(Fraction(getattr(one.parts, n).bound) for n in QUANTITIES)
-            whole = sum(parts[n] for n in ("truncation", *PARTS))
-            assert abs(whole - parts["lambda_working"]) <= slack
-            assert set(one.growth) == {"total", *PARTS}
-            assert [x.steps for x in one.series][-1] == steps
-            assert len(one.series) == min(32, steps) or steps > 32
-            for n in ("truncation", "total"):
-                tops = [abs(Fraction(getattr(x, n))) for x in one.series]
-                assert Fraction(one.largest[n]) >= max(tops) * (1 - Fraction(1, 10**5))
-                if steps <= 32:
-                    assert Fraction(one.largest[n]) <= max(tops) * (1 + Fraction(1, 10**5))
-    for name in ("plain", "closed_form"):
-        at_ = getattr(found, name)
-        tops_ = [
-            (Fraction(p.step_size), *(Fraction(getattr(p, name).largest[n]) for n in ("truncation", "total")))
-            for p in found.points
-        ]  # fmt: skip
-        true = crossover(tops_)  # type: ignore[arg-type]
-        assert at_.reason == true.reason
-        assert (at_.step_size is None) == (true.step_size is None)
-        if true.step_size is not None:
-            assert math.isclose(float(at_.step_size), true.step_size, rel_tol=1e-3)
-
-
-@quick
-@given(st.sampled_from(["float64", "float32", "auto ", ""]))
-def test_what_is_examined_is_no_reference(name: str) -> None:
-    with pytest.raises(InputError, match="examined" if name == "float64" else "unknown"):
-        separate(Hamiltonian.parse("p**2/2"), "lie1", q=1, p=1, step_size=1, steps=1, arithmetic=name)
-    assume(name)

@@ -117,7 +117,9 @@ def test_a_derivative_at_a_moved_point_is_taylors(separable: bool, data: st.Data
     found = jets.shifted(i, j, dp, dq)
     h = plain(data.draw(drawn[separable]))
     u, v = (sum(put_in(jets, z, h) * T**n for n, z in enumerate(d)) for d in (dp, dq))
-    true = sympy.Poly(sympy.expand(h.diff(P, i, Q, j).subs({P: P + u, Q: Q + v}, simultaneous=True)), T)  # fmt: skip
+    true = sympy.Poly(
+        sympy.expand(h.diff(P, i, Q, j).subs({P: P + u, Q: Q + v}, simultaneous=True)), T
+    )
     assert len(found) == most
     for n, z in enumerate(found):
         assert same(put_in(jets, z, h), true.coeff_monomial(T**n))
@@ -180,7 +182,11 @@ def products(jets: Jets, factors: int, by_p: int, by_q: int, below: int) -> list
 def rank(columns: Sequence[Poly]) -> int:
     monomials = sorted({m for x in columns for m in x.to_dict()})
     entries = [[str(x.to_dict().get(m, 0)) for m in monomials] for x in columns]
-    return int(sympy.Matrix([[sympy.Rational(e) for e in row] for row in entries]).rank()) if monomials else 0  # fmt: skip
+    return (
+        int(sympy.Matrix([[sympy.Rational(e) for e in row] for row in entries]).rank())
+        if monomials
+        else 0
+    )
 
 
 @quick
@@ -234,7 +240,12 @@ RING = Jets(1)
 
 
 @quick
-@given(st.lists(in_jets(RING), max_size=4), in_jets(RING), st.lists(rationals(), min_size=4, max_size=4), st.booleans())  # fmt: skip
+@given(
+    st.lists(in_jets(RING), max_size=4),
+    in_jets(RING),
+    st.lists(rationals(), min_size=4, max_size=4),
+    st.booleans(),
+)
 def test_a_combination_is_found_where_there_is_one(
     columns: list[Poly], other: Poly, weights: list[Fraction], inside: bool
 ) -> None:

@@ -39,7 +39,9 @@ numbers = st.builds(
 
 @quick
 @given(systems, numbers, numbers.filter(bool))
-def test_numbers_and_operations_are_rounded_once(made: Arithmetic, x: Fraction, y: Fraction) -> None:
+def test_numbers_and_operations_are_rounded_once(
+    made: Arithmetic, x: Fraction, y: Fraction
+) -> None:
     conformance.check_number(made, conformance.fitting(made, x))
     if not made.absolute:  # it is compiled for each operation; tests/unit has it
         conformance.check_operations(made, x, y)
@@ -123,10 +125,17 @@ def test_a_system_without_an_end_of_its_own_stops_where_it_should(
 ENDS = (0.0, -0.0, 1.0, -1.0, 1e308, -1e308, 5e-324, 711.0, -711.0, math.inf, -math.inf, math.nan)
 floats = st.one_of(st.sampled_from(ENDS), st.floats(-3, 3))
 SOURCES = {
-    "x / y": None, "(x + 1.0) / (y - 1.0)": None, "exp(x)": "exp", "cosh(x)": "cosh",
-    "sinh(x)": "sinh", "log(x)": "log", "sqrt(x)": "sqrt", "sin(x)": "sin", "cos(x)": "cos",
+    "x / y": None,
+    "(x + 1.0) / (y - 1.0)": None,
+    "exp(x)": "exp",
+    "cosh(x)": "cosh",
+    "sinh(x)": "sinh",
+    "log(x)": "log",
+    "sqrt(x)": "sqrt",
+    "sin(x)": "sin",
+    "cos(x)": "cos",
     "x * y - x": None,
-}  # fmt: skip
+}
 
 
 def bits(x: float) -> bytes:
@@ -201,7 +210,7 @@ def of_ieee(name: str, x: float) -> float:
     if name == "sqrt" and x <= 0:
         return math.nan if x < 0 else x
     value: Any = getattr(mpmath, name)(mpmath.mpf(x))
-    if value and name in ("sinh", "sin") or name not in ("sinh", "sin"):
+    if (value and name in ("sinh", "sin")) or name not in ("sinh", "sin"):
         return float(value)
     return x
 
@@ -219,7 +228,11 @@ def test_a_rational_beyond_float64_is_an_infinity_of_its_sign(x: Fraction) -> No
 @settings(deadline=None, max_examples=3)
 @given(st.integers(1, 3))
 def test_a_kernel_is_compiled_once_it_repays_and_says_the_same(part: int) -> None:
-    lines = ["def kernel(steps, x):", "    for k in range(steps):", "        x = x * 0.75 + 1.0 / 3"]
+    lines = [
+        "def kernel(steps, x):",
+        "    for k in range(steps):",
+        "        x = x * 0.75 + 1.0 / 3",
+    ]
     source = "\n".join([*lines, "    return x"])
     kernel = float64.make(17).compile(source, "kernel", float64.make(17).functions)
     total, each = 1.0, 90_000
@@ -239,8 +252,16 @@ def test_an_orbit_that_escapes_is_told_from_one_that_does_not(
 ) -> None:
     """q' = 8 q³ from 1: the exponents treble at each step."""
     free = Hamiltonian.parse("p**2/2")
-    found = run(free, "p_next = p; q_next = 8*q**3", q=start, p=0, step_size=1, steps=steps,
-                arithmetic=name, digits=20)  # fmt: skip
+    found = run(
+        free,
+        "p_next = p; q_next = 8*q**3",
+        q=start,
+        p=0,
+        step_size=1,
+        steps=steps,
+        arithmetic=name,
+        digits=20,
+    )
     limit = 1024 if name == "float64" else ESCAPE_BITS
     size, last = math.log2(start), 0
     while last < steps and size < limit + (64 if name != "float64" else 0):

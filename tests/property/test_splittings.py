@@ -4,7 +4,6 @@ A series is {word: coefficient}. Numbers of the form a + b √2 are pairs, so th
 coefficients have an oracle, too.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from itertools import product
 from math import factorial
@@ -241,8 +240,10 @@ def test_a_users_splitting_has_the_parts_the_order_and_the_symmetry_that_were_wr
     assert scheme.generic == splitting_of(parts)
     assert scheme.order == (order or 1)
     assert (scheme.symmetric, scheme.explicit, scheme.area_preserving) == (
-        parts == parts[::-1], True, True,
-    )  # fmt: skip
+        parts == parts[::-1],
+        True,
+        True,
+    )
     assert own_splitting.make("lie2") is own_splitting.make(" ; ") is None
     bad = ["order 0", f"order {MOST_ORDER + 1}", "order -1", "order two", "push 1", "kick", "drift"]
     for word in bad:
