@@ -120,7 +120,7 @@ def test_stages_are_symmetric_where_the_undoing_ones_in_reverse_are_the_same(
 def test_the_first_power_of_h_that_a_step_back_leaves_is_found(
     force: str, size: Fraction, power: int, most: int
 ) -> None:
-    """p' = p + c hⁿ F(q), q' = q: the step of −h takes it away for odd n, for even it doubles it."""
+    """p' = p + c hⁿ F(q), q' = q: the step of −h takes it away for odd n, doubles it for even."""
     formulas = f"p + ({size})*h**{power}*({force})", "q + h*p**0*0"
     hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2")
     step_map = StepMap.from_formulas(hamiltonian, *formulas)

@@ -18,6 +18,7 @@ from tests.mutants.mutate import (
     mutated_source,
     path_of,
 )
+from tests.mutants.run import ordered
 from tests.mutants.summary import found_in, share
 from tests.mutants.targets import modules, sample, shares
 
@@ -236,13 +237,13 @@ def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) 
     path.write_text(CHECK)
     ruth = "verify.schemes.ruth3"
     wrong = [one(ruth, "minus-dropped -2"), one(ruth, "Rational(7, 24) → Rational(24, 7)")]
-    broken, unseen = one(ruth, "constant 0 → 1"), one(ruth, "truth False → True")
+    broken, unseen = one(ruth, "alternating(_SIZES"), one(ruth, "truth False → True")
     text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, broken, unseen)])
     sound, *killed, lives = json.loads(in_a_process(text).splitlines()[-1])
     assert sound["by"] is None
     assert len(sound["entered"][ruth]) == 2, "the module's own code, and make"
     assert {k["by"] for k in killed} == {"test_mine.py::test_ruth3_has_order_three"}
-    assert "IndexError" in killed[-1]["why"]
+    assert "KeyError" in killed[-1]["why"]
     assert lives["by"] is None
 
 
@@ -254,6 +255,19 @@ def test_the_killers_are_all_files_of_properties_and_the_battery_where_it_is() -
     assert "tests/unit/test_step_map.py" in {
         k.name for k in killers.unit_killers("verify.step_map")
     }
+
+
+def test_what_is_near_and_cheap_is_asked_first() -> None:
+    """The battery looks at all modules, and a file at those that it imports, or their package."""
+    folder = ROOT / "tests" / "property"
+    files = ("test_flow.py", "test_splittings.py", "test_trees.py")
+    made = [killers.of_file(folder / name, 2) for name in files]
+    made.append(killers.Killer(killers.BATTERY, 1, lambda _: {}))
+    far, near, other, battery_ = (k.name for k in made)
+    seconds = {far: 1, near: 9, other: 2, battery_: 5}
+    sound = [{"killer": name, "seconds": s} for name, s in seconds.items()]
+    mutant = mutants("verify.proof.splitting_conditions")[0]
+    assert [k.name for k in ordered(mutant, sound, made)] == [battery_, near, far, other]
 
 
 # -- what is told -----------------------------------------------------------------------------
