@@ -3,6 +3,7 @@
 import math
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from hypothesis import assume, given, settings
@@ -11,9 +12,9 @@ from hypothesis import strategies as st
 from verify.errors import InputError
 from verify.exact import magnitude
 from verify.hamiltonian import Hamiltonian
-from verify.separation import as_grid, grid, separate
+from verify.separation import as_grid, grid, separate, separate_grid
 from verify.separation_chain import PARTS, QUANTITIES, Chain, Kind
-from verify.separation_growth import crossover
+from verify.separation_growth import crossover, log_spaced
 from verify.separation_working import Link, marks_of
 
 quick = settings(deadline=None, max_examples=40)
@@ -85,6 +86,17 @@ def test_a_chains_quantities_are_differences_of_its_links_and_lack_digits_where_
 
 
 @quick
+@given(sizes, st.integers(1, 20), st.booleans())
+def test_a_bound_that_just_suffices_lacks_nothing(size: Fraction, digits: int, more: bool) -> None:
+    none = Link((Fraction(0),), Fraction(0), "enclosed", "")
+    bound = size / (4 * 10**digits) * (1 + more * Fraction(1, 10**6))
+    last = Link((size,), bound, "enclosed", "")
+    found = Chain((1,), (none, none, none, none, last)).lacking(digits)
+    assert found == [0, 0, 0, 0, 1 if more else 0] or (more and found[4] in (1, 2))
+    assert found[:4] == [0] * 4
+
+
+@quick
 @given(st.one_of(st.integers(1, 10**5), st.integers(1, 9)))
 def test_checkpoints_are_equidistant_and_end_with_the_run(steps: int) -> None:
     marks = marks_of(steps)
@@ -133,20 +145,22 @@ def test_a_grid_gives_each_step_size_its_number_of_steps(
         unique=True,
     ),
     st.sampled_from(["lie1", "lie2", "symplectic-euler"]),
-    st.integers(1, 40),
+    st.integers(1, 40) | st.sampled_from([32, 33, 80]),
 )
 def test_what_is_printed_of_a_separation_is_its_chain(
     given_: list[str], scheme: str, steps: int
 ) -> None:
     hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/7")
-    at = {"q": "6/5", "p": "1/3", "steps": steps, "digits": 12, "arithmetic": "mpfr"}
-    found = as_grid(
-        [separate(hamiltonian, scheme, step_size=h, **at) for h in given_]  # type: ignore[arg-type]
-    )
+    at: dict[str, Any] = {"q": "6/5", "p": "1/3", "steps": steps, "arithmetic": "mpfr"}
+    found = separate_grid(hamiltonian, scheme, step_sizes=given_, **at)
+    alone = separate(hamiltonian, scheme, step_size=given_[0], **at)
+    unlike = {"seconds"}
+    assert found.points[0].model_dump(exclude=unlike) == alone.model_dump(exclude=unlike)
+    assert found == as_grid(found.points)
     assert [Fraction(p.step_size) for p in found.points] == list(map(Fraction, given_))
     for point in found.points:
         assert (point.status, point.failed_step, point.reason) == ("finished", None, "")
-        assert (point.digits, point.steps, point.arithmetic) == (12, steps, "mpfr")
+        assert (point.digits, point.steps, point.arithmetic) == (17, steps, "mpfr")
         assert Fraction(point.q) == Fraction(6, 5)
         for one in (point.plain, point.closed_form):
             assert one is not None
@@ -156,7 +170,8 @@ def test_what_is_printed_of_a_separation_is_its_chain(
             assert abs(whole - parts["lambda_working"]) <= slack
             assert set(one.growth) == {"total", *PARTS}
             assert [x.steps for x in one.series][-1] == steps
-            assert len(one.series) == min(32, steps) or steps > 32
+            shown = log_spaced(range(steps), range(1, steps + 1), 32)
+            assert [x.steps for x in one.series] == [k + 1 for k in shown]
             for n in ("truncation", "total"):
                 tops = [abs(Fraction(getattr(x, n))) for x in one.series]
                 assert Fraction(one.largest[n]) >= max(tops) * (1 - Fraction(1, 10**5))
