@@ -37,6 +37,7 @@ few = settings(deadline=None, max_examples=8)
 
 # -- maps that are no polynomials in h ------------------------------------------------------------
 
+FREE = Hamiltonian.parse("p**2/2")
 INSIDE = ("1/(1 + ({})*h)", "exp(({})*h)", "1/(1 + ({})*h**2*q**2)", "cos(({})*h)", "exp(({})*h*q)")
 
 
@@ -86,6 +87,12 @@ def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: in
     assert (proof.order, proof.area_preserving) == (None, False)
     assert "is not the zero function" in proof.reason
     assert proof.verdict is Verdict.PROVED
+    kicked = StepMap.from_formulas(FREE, "p - h**2*p", "q")
+    moved = StepMap.from_formulas(FREE, "p", f"q + h*p + h**{power}*q")
+    parts = moved.substeps + moved.substeps
+    both = prove(StepMap(FREE, parts))
+    assert (both.order, both.area_preserving) == (None, False), "of a composition as well"
+    assert prove(StepMap(FREE, parts + kicked.substeps)).order == 2
 
 
 @few
