@@ -91,6 +91,9 @@ def test_each_operator_makes_what_it_says(operator: str, source: str, wanted: li
         "x = isinstance(a, A | B)",
         "x = zip(*a, strict=True)",
         "_MOST = 5000",
+        "_GUARD = 12",
+        "_HALVINGS, _NEWTON = 6, 8",
+        "x = f(pipelined=True, chunk=1)",
     ],
 )
 def test_what_computes_nothing_is_not_changed(source: str) -> None:
@@ -106,6 +109,13 @@ def test_the_rules_of_what_is_left_alone_are_narrow() -> None:
     assert made("SIZES = a[b] | c", "arithmetic")
     assert made("def f():\n    return 5000")
     assert made("_MOST = 50")
+    assert made("_GUARD = f(12)")
+    assert made("_GUARD, _MOST = 1, 2")
+    assert made("def f():\n    _GUARD = 12")
+    kept = "if x not in a:\n    a[x] = b"
+    assert made(kept, "condition") == ["if False:\n    a[x] = b"]
+    assert len(made(kept.replace("a[x]", "c[x]"), "condition")) == 2
+    assert len(made(kept.replace("not in", "in"), "condition")) == 2
     assert made("x = f(a, large=True)") == ["x = f(a, large=False)"]
 
 
