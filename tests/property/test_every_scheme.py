@@ -61,7 +61,11 @@ def test_a_schemes_symmetry_and_explicitness_are_those_of_its_steps(name: str) -
     wanted = Verdict.PROVED if scheme.symmetric else Verdict.REFUTED
     assert found.verdict is wanted, found.reason
     bent = SEPARABLE if scheme.needs_separable else f"{MIXED} + p**3*q"
-    assert scheme.step_map(Hamiltonian.parse(bent)).solved == (not scheme.explicit)
+    step_map = scheme.step_map(Hamiltonian.parse(bent))
+    assert step_map.solved == (not scheme.explicit)
+    if step_map.solved:
+        assert (step_map.closed, step_map.whole) == (None, step_map.substeps[0])
+        assert step_map.whole is step_map.substeps[0]
     if scheme.needs_separable:
         with pytest.raises(InputError, match=r"T\(p\) \+ V\(q\)"):
             scheme.step_map(Hamiltonian.parse(MIXED))
