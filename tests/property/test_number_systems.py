@@ -259,6 +259,24 @@ def test_a_kernel_is_compiled_once_it_repays_and_says_the_same(part: int) -> Non
     assert bits(total) == bits(once(part * each, 1.0))
 
 
+@quick
+@given(st.lists(st.integers(1, 60_000), min_size=1, max_size=9), st.booleans())
+def test_a_kernel_is_compiled_where_its_steps_would_pass_what_repays(
+    parts: list[int], solving: bool
+) -> None:
+    """200 000 steps, or 50 000 of a kernel with a loop in its loop."""
+    inner = "for j in range(1): pass" if solving else "pass"
+    source = f"def kernel(steps, x):\n    for k in (1,):\n        {inner}\n    return steps"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(float64, "_compiled", lambda *_: lambda steps, _: -steps)
+        kernel = float64.make(17).compile(source, "kernel", {})
+        done, most, compiled = 0, 50_000 if solving else 200_000, False
+        for steps in parts:
+            compiled = compiled or done + steps > most
+            done += steps
+            assert kernel(steps, 1.0) == (-steps if compiled else steps)
+
+
 # -- what runs make of them -----------------------------------------------------------------------
 
 

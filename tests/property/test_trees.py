@@ -142,6 +142,7 @@ def test_a_trees_condition_is_by_its_definition_and_its_name_says_which(
             assert ring.expression(x) == sympy.Rational(true.numerator, true.denominator)
             assert read(written(tree), rows, weights) - Fraction(1, density(tree)) == true
     own = TreeConditions(tableau)
+    assert own.order_conditions(4)[0].name == "b·1 = 1"
     for condition in own.order_conditions(4):
         if condition.name.startswith("b·"):
             left, right = condition.name.split(" = ")
