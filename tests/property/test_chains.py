@@ -201,3 +201,15 @@ def test_what_is_examined_is_no_reference(name: str) -> None:
             Hamiltonian.parse("p**2/2"), "lie1", q=1, p=1, step_size=1, steps=1, arithmetic=name
         )
     assume(name)
+
+
+@quick
+@given(st.integers(-3, 0), st.integers(-3, 0))
+def test_no_step_and_no_digit_is_refused_before_anything_runs(steps: int, digits: int) -> None:
+    hamiltonian = Hamiltonian.parse("p**2/2")
+    at: dict[str, Any] = {"q": 1, "p": 1, "step_size": 1}
+    for wrong in ({"steps": steps}, {"steps": 1, "digits": digits}):
+        with pytest.raises(InputError):
+            separate(hamiltonian, "lie1", **at | wrong)
+    with pytest.raises(InputError):
+        separate(Hamiltonian.parse("p**2/2 + a*q"), "lie1", steps=1, **at)
