@@ -166,6 +166,12 @@ def _apply(node: sympy.Expr, arguments: list[Any]) -> Any:
     return getattr(mpmath, node.func.__name__)(*arguments)
 
 
+def zero_there(x: sympy.Expr) -> bool:
+    """Whether an expression in p, q and h is 0 at one point, to 30 digits."""
+    at = {P: sympy.Rational(3, 7), Q: sympy.Rational(-5, 11), H: sympy.Rational(2, 9)}
+    return bool(abs(sympy.N(x.subs(at), 40)) < 1e-30)
+
+
 def is_real(value: Any) -> bool:
     """A finite real number, and neither so large nor so small that nothing can be compared."""
     return isinstance(value, mpmath.mpf) and bool(
