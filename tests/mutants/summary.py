@@ -60,10 +60,19 @@ def found_in(records: list[Record], wanted: set[str] | None = None) -> Found:
 
 def explanations(path: Path = SURVIVORS) -> dict[str, str]:
     """Why a survivor lives, by its key, as written by hand."""
+    return {entry["key"]: entry["why"] for entry in _entries(path)}
+
+
+def no_errors(path: Path = SURVIVORS) -> set[str]:
+    """The keys of those that are explained as no error: no value or verdict depends on them."""
+    return {entry["key"] for entry in _entries(path) if entry.get("no_error", False)}
+
+
+def _entries(path: Path) -> list[Record]:
     if not path.exists():
-        return {}
-    entries = tomllib.loads(path.read_text(encoding="utf-8")).get("survivor", [])
-    return {entry["key"]: entry["why"] for entry in entries}
+        return []
+    entries: list[Record] = tomllib.loads(path.read_text(encoding="utf-8")).get("survivor", [])
+    return entries
 
 
 def share(killed: int, total: int) -> str:

@@ -4,11 +4,12 @@ python -m tests.mutants.table
 """
 
 import argparse
+from collections.abc import Set
 from pathlib import Path
 
 from tests.mutants import records
 from tests.mutants.run import RESULTS
-from tests.mutants.summary import SURVIVORS, Found, explanations, found_in, share
+from tests.mutants.summary import SURVIVORS, Found, explanations, found_in, no_errors, share
 
 PAGE = Path(__file__).parent / "README.md"
 _INTRODUCTION = """\
@@ -28,10 +29,10 @@ one, a condition. A property that holds for the code and is violated by a mutant
 """
 
 
-def page(found: list[records.Record], why: dict[str, str]) -> str:
-    """The whole page."""
+def page(found: list[records.Record], why: dict[str, str], same: Set[str] = frozenset()) -> str:
+    """The whole page; `same`: the survivors that are no errors."""
     results = found_in(found)
-    parts = [_INTRODUCTION, _what_was_run(found), _totals(results)]
+    parts = [_INTRODUCTION, _what_was_run(found), _totals(results, same)]
     parts += [_table_of(results, "module"), _table_of(results, "operator")]
     parts += [_properties(results, found), _survivors(results, why)]
     return "\n".join(parts)
@@ -53,10 +54,16 @@ def _what_was_run(found: list[records.Record]) -> str:
     return "\n".join([*lines, ""])
 
 
-def _totals(results: Found) -> str:
+def _totals(results: Found, same: Set[str]) -> str:
     ways = ", ".join(f"{n} {how}" for how, n in sorted(results.ways().items()))
     killed = share(results.killed, len(results.mutants))
-    return f"## Totals\n\nKilled: **{killed}**. How: {ways or 'none'}.\n"
+    lines = ["## Totals", "", f"Killed: **{killed}**. How: {ways or 'none'}.", ""]
+    count = sum(record["key"] in same for record in results.survivors)
+    if count:
+        others = share(results.killed, len(results.mutants) - count)
+        lines += [f"{count} of the survivors are explained below as no errors: no value and no verdict",
+                  f"depends on what was changed. Of the others, **{others}** are killed.", ""]  # fmt: skip
+    return "\n".join(lines)
 
 
 def _table_of(results: Found, what: str) -> str:
@@ -114,7 +121,7 @@ def main() -> None:
     found = records.read(asked.results)
     if not records.of_kind(found, "mutant"):
         raise SystemExit(f"{asked.results} holds no results; run tests.mutants.run first")
-    asked.into.write_text(page(found, explanations()), encoding="utf-8")
+    asked.into.write_text(page(found, explanations(), no_errors()), encoding="utf-8")
     print(f"wrote {asked.into}")
 
 

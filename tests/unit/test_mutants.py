@@ -302,6 +302,10 @@ def test_the_page_shows_each_property_with_a_mutant_and_each_survivor_with_its_r
     results += [record("b:2", "battery", "timeout")] * 2
     page = table.page(results, {"a:2": "It is the same.", "c:9": "Gone."})
     assert "Killed: **2 of 4 (50.0 %)**" in page
+    assert "no errors" not in page
+    with_one = table.page(results, {"a:2": "It is the same."}, {"a:2", "b:2", "c:9"})
+    assert "1 of the survivors" in with_one
+    assert "**2 of 3 (66.6 %)** are killed" in with_one, "one that is killed is an error"
     assert "| test_x | 1 | `a:1 x \\| y → x & y` |" in page
     assert "| `a:2` | It is the same. | – |" in page
     assert "| `b:1` | **not explained** | – |" in page
