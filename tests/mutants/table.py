@@ -61,8 +61,10 @@ def _totals(results: Found, same: Set[str]) -> str:
     count = sum(record["key"] in same for record in results.survivors)
     if count:
         others = share(results.killed, len(results.mutants) - count)
-        lines += [f"{count} of the survivors are explained below as no errors: no value and no verdict",
-                  f"depends on what was changed. Of the others, **{others}** are killed.", ""]  # fmt: skip
+        lines.append(
+            f"{count} of the survivors are explained below as no errors: no value and no verdict "
+            f"depends on what was changed. Of the others, **{others}** are killed.\n"
+        )
     return "\n".join(lines)
 
 
