@@ -50,12 +50,18 @@ def in_reach(x: Ball) -> bool:
 
 
 def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
-    """The ball's middle and radius as exact rationals; it must be in reach."""
-    middle, radius = (
-        Fraction(int(m)) * Fraction(2) ** int(e)
-        for m, e in (x.mid().man_exp(), flint.arb(x.rad()).man_exp())
-    )
+    """The ball's middle and radius as exact rationals; it must be in reach.
+
+    Raises OverflowError for one that is not: as a rational it would fill all memory.
+    """
+    middle, radius = (_rational(*part.man_exp()) for part in (x.mid(), flint.arb(x.rad())))
     return middle, radius
+
+
+def _rational(mantissa: Any, exponent: Any) -> Fraction:
+    if abs(int(exponent)) > _MOST_EXPONENT:
+        raise OverflowError("a ball is too large, or too small, for a rational")
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 def bounds(x: Ball) -> tuple[Fraction, Fraction]:

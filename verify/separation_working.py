@@ -24,7 +24,7 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.balls import bounds as ends
-from verify.balls import rational_ball
+from verify.balls import in_reach, rational_ball
 from verify.keeping import fraction_of, fraction_text
 from verify.number_system import Arithmetic, UnsupportedError
 from verify.reach import limits
@@ -224,7 +224,8 @@ class WorkingRun:
                 inputs[n] = Rounded(low.union(high), cut)
             live, rounding = lowering.live([root]), rounding_of(arithmetic)
             found = analyse(lowering.program, live, inputs, rounding)
-            return None if found is None else ends(found[root].error)[1]
+            error = None if found is None else found[root].error
+            return None if error is None or not in_reach(error) else ends(error)[1]
 
 
 def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Any:

@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 from tests.unit.test_runs_range import duffing_steps
 from verify import arithmetic, ball_bounds
 from verify.arithmetic import ball
+from verify.balls import middle_and_radius
 from verify.hamiltonian import Hamiltonian
 from verify.kernel import kernel_for
 from verify.results import RunResult
@@ -228,3 +229,11 @@ def test_the_radius_is_what_flint_says_and_not_less() -> None:
     assert abs(made.exact(third) - Fraction(1, 3)) <= made.radius(third)
     assert made.radius(third) <= Fraction(1, 2**made.bits)
     assert math.isclose(float(made.radius(third)), float(third.rad()), rel_tol=1e-9)
+
+
+def test_a_ball_beyond_reach_is_refused_and_no_rational() -> None:
+    for exponent in (2**40, -(2**40)):
+        far = flint.arb(2) ** exponent
+        with pytest.raises(OverflowError, match="too"):
+            middle_and_radius(far)
+    assert middle_and_radius(flint.arb(2) ** -1000) == (Fraction(1, 2**1000), 0)

@@ -199,3 +199,11 @@ def test_what_twelve_digits_do_not_show_is_told() -> None:
     planted = tiny(1, 2, 3, size=40)(example_of("lie2"), None)  # type: ignore[arg-type]
     with pytest.raises(Violation, match=r"too large by 9\.90e-48"):
         properties.get("exchange-of-p-and-q").holds(planted)
+
+
+def test_a_field_that_wants_many_steps_in_a_short_time_is_left_out() -> None:
+    """At such a place no flow is followed for minutes; a gentler one of the same kind is."""
+    steep = "2*q**6/7 + 6*cosh(3*p + 3*q)/7 + 9*exp(2*p - 2*q)"
+    example = replace(example_of("lie1", steep), p=Fraction(-4, 3), q=Fraction(-61, 50))
+    assert not properties.get("exact-flows").holds(replace(example, p=Fraction(-40, 3)))
+    assert properties.get("exact-flows").holds(replace(example, p=Fraction(0), q=Fraction(0)))

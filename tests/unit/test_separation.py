@@ -228,3 +228,14 @@ def test_truncation_is_the_lambda_of_the_vectors(case: dict[str, Any]) -> None:
     assert len(truncation.value.partition("e")[0].strip("-")) == 31, "30 digits and a point"
     plain, closed = (abs(Fraction(x.parts.total.value)) for x in (found.plain, found.closed_form))
     assert closed < plain / 10**2, "the closed form buys two digits at least"
+
+
+def test_a_bound_of_astronomical_size_is_none_and_is_not_written_out() -> None:
+    """Over the region visited exp(p) goes beyond what a rational may hold: 4 GB, and no end."""
+    escaping = Hamiltonian.parse("a*q**2 + 5*exp(p - 3*q)/2", {"a": "1/2"})
+    found = separate(
+        escaping, "explicit-midpoint", q="-13/20", p="67/50", step_size="1/16", steps=11, digits=8
+    )
+    assert found.status == "finished"
+    assert found.plain is not None
+    assert found.plain.error_kind == "estimated"
