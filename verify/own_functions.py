@@ -1,0 +1,158 @@
+"""A copy of a user's function in which `math` and numpy know our numbers, too.
+
+The copy has globals of its own: modules like `math` and functions like `sin` are replaced, and so
+are the helper functions of the user's module, in closures and defaults as well. The user's module
+is not changed. What is hidden deeper, as in an object's attributes, is called as it is.
+"""
+
+import cmath
+import functools
+import math
+import operator
+import types
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+from typing import Any
+
+from verify.carried_number import FUNCTIONS, Carried, Kind, constant
+
+_MODULES = ("math", "cmath", "numpy")
+_PLAIN = int | float | Fraction
+
+
+def copied(function: Any, kind: Kind) -> Any:
+    """The function with replaced globals; itself where it is not written in Python."""
+    return _Copier(kind).value(function)
+
+
+class _Copier:
+    """Copies what a function reaches, each thing once."""
+
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        self.copies: dict[int, Any] = {}
+        self.kept: list[Any] = []  # so that no id is used again
+        own = [(math, name) for name in (*FUNCTIONS, *_OTHERS) if hasattr(math, name)]
+        self.known = {id(getattr(module, name)): name for module, name in own}
+
+    def value(self, x: Any) -> Any:
+        if id(x) in self.copies:
+            return self.copies[id(x)]
+        if isinstance(x, types.ModuleType):
+            return _Module(x, self) if x.__name__ in _MODULES else x
+        if isinstance(x, functools.partial):
+            bound = {name: self.value(v) for name, v in x.keywords.items()}
+            return functools.partial(self.value(x.func), *map(self.value, x.args), **bound)
+        if isinstance(x, types.MethodType):
+            return types.MethodType(self.value(x.__func__), x.__self__)
+        inner = getattr(x, "py_func", None)  # numba's
+        if isinstance(inner, types.FunctionType):
+            return self.value(inner)
+        if isinstance(x, types.FunctionType):
+            return self.function(x)
+        return self.replacement(x)
+
+    def replacement(self, x: Any) -> Any:
+        """For a function that was imported by its name; else the thing itself."""
+        name = self.known.get(id(x))
+        if name is None and type(x).__module__ == "numpy" and type(x).__name__ == "ufunc":
+            name = x.__name__
+        return self.named(name, x) if name is not None else x
+
+    def named(self, name: str, x: Any) -> Any:
+        if name in FUNCTIONS:
+            return _applied(self.kind, FUNCTIONS[name], x)
+        if name in _OTHERS and isinstance(x, types.BuiltinFunctionType | type):
+            return _guarded(_OTHERS[name], x)
+        return x
+
+    def function(self, x: types.FunctionType) -> types.FunctionType:
+        code, scope = x.__code__, dict(x.__globals__)
+        made = types.FunctionType(code, scope, x.__name__)
+        self.copies[id(x)] = made  # before what it calls: it may call itself
+        self.kept.append(x)
+        for name in _names(code):
+            if name in scope:
+                scope[name] = self.value(scope[name])
+        scope.setdefault("float", _guarded(lambda number: number, float))
+        cells = tuple(types.CellType(self.value(cell.cell_contents)) for cell in x.__closure__ or ())
+        full = types.FunctionType(code, scope, x.__name__, None, cells or None)
+        full.__defaults__ = tuple(map(self.value, x.__defaults__)) if x.__defaults__ else None
+        full.__kwdefaults__ = (
+            {name: self.value(v) for name, v in x.__kwdefaults__.items()}
+            if x.__kwdefaults__
+            else None
+        )  # type: ignore[assignment]
+        if not cells:
+            made.__defaults__, made.__kwdefaults__ = full.__defaults__, full.__kwdefaults__
+            return made
+        self.copies[id(x)] = full
+        return full
+
+
+def _names(code: types.CodeType) -> Iterable[str]:
+    """The names that the code, and what is defined in it, may look up."""
+    yield from code.co_names
+    for inner in code.co_consts:
+        if isinstance(inner, types.CodeType):
+            yield from _names(inner)
+
+
+class _Module:
+    """`math` or numpy, with functions that know our numbers, and all else as it is."""
+
+    def __init__(self, module: types.ModuleType, copier: _Copier) -> None:
+        self._module, self._copier = module, copier
+
+    def __getattr__(self, name: str) -> Any:
+        kind = self._copier.kind
+        if name in ("pi", "e", "tau") and self._module is not cmath:
+            pi = kind.pi()
+            return {"pi": pi, "tau": 2 * pi, "e": kind.rational(Fraction(1)).applied("exp")}[name]
+        found = getattr(self._module, name)
+        if self._module is cmath:
+            return found
+        if name == "float64":
+            return _guarded(lambda number: number, found)
+        return self._copier.named(name, found)
+
+
+def _applied(kind: Kind, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
+    """The function of ours for our numbers and for plain ones, whose value stays exact."""
+
+    def call(x: Any, *others: Any, **options: Any) -> Any:
+        if not others and not options and isinstance(x, Carried | _PLAIN):
+            lifted = constant(kind, x)
+            if lifted is not None:
+                return lifted.applied(name)
+        return original(x, *others, **options)
+
+    return call
+
+
+def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[..., Any]:
+    """`own` where one of our numbers is given, else the original."""
+
+    def call(*given: Any, **options: Any) -> Any:
+        if not options and any(isinstance(x, Carried) for x in given):
+            return own(*given)
+        if not options and len(given) == 1 and isinstance(given[0], list | tuple) and any(
+            isinstance(x, Carried) for x in given[0]
+        ):
+            return own(*given)
+        return original(*given, **options)
+
+    return call
+
+
+_OTHERS: dict[str, Callable[..., Any]] = {
+    "pow": operator.pow,
+    "fabs": operator.abs,
+    "expm1": lambda x: x.applied("exp") - 1,
+    "log1p": lambda x: (x + 1).applied("log"),
+    "isnan": lambda x: not x.isfinite(),
+    "isinf": lambda x: not x.isfinite(),
+    "isfinite": lambda x: x.isfinite(),
+    "fsum": sum,
+    "hypot": lambda *given: sum(x * x for x in given) ** Fraction(1, 2),
+}
