@@ -1,0 +1,211 @@
+"""A user's step measured: its Jacobian and its distance from the exact flow, for a ladder of steps.
+
+With dual numbers of 200 bits where its code lets them through; else with floats, the Jacobian by
+central differences of the sixth order, whose error is estimated by a second width.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from verify.arithmetic import mpfr
+from verify.dual import BITS, Duals
+from verify.fitted_order import Fitted, fitted
+from verify.hamiltonian import Hamiltonian
+from verify.integrator import Step, StepError
+from verify.own_functions import copied
+from verify.proof.exact_flow import Flow, NoFlowError
+
+Point = tuple[Fraction, Fraction]  # p, q
+_DIGITS = {"duals": 50, "floats": 20}
+_DUAL_NOISE = 2.0 ** -(BITS - 30)
+_EPSILON = 2.0**-52
+_STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
+_WIDTH = 2.0**-7
+LADDERS = {
+    "duals": [Fraction(1, 2**k) for k in range(2, 18)],
+    "floats": [Fraction(x, 2**k) for k in range(2, 11) for x in (4, 3)],
+}
+_ENOUGH = 6  # rows, with which what is slow may end
+
+
+@dataclass(frozen=True)
+class Reading:
+    """At one point with one step: ΔJ, and the distance from the exact flow, with their noise."""
+
+    delta_j: float
+    delta_noise: float
+    error: float
+    error_noise: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """The largest readings of one step size: ΔJ and the distance, each with its point."""
+
+    h: Fraction
+    delta_j: float
+    delta_noise: float
+    delta_at: Point
+    error: float
+    error_noise: float
+    error_at: Point
+
+
+@dataclass(frozen=True)
+class Measured:
+    """`how`: "duals" or "floats". `rows` by falling h. `lost`: what kept points or steps out."""
+
+    how: str
+    rows: tuple[Row, ...]
+    lost: str = ""
+
+    @property
+    def area(self) -> Fitted:
+        return fitted([(float(r.h), abs(r.delta_j), r.delta_noise) for r in self.rows])
+
+    @property
+    def distance(self) -> Fitted:
+        return fitted([(float(r.h), r.error, r.error_noise) for r in self.rows])
+
+    @property
+    def largest(self) -> Row:
+        """The row of the largest |ΔJ|."""
+        return max(self.rows, key=lambda row: abs(row.delta_j))
+
+    @property
+    def noise(self) -> float:
+        """The largest noise of ΔJ: the probe's own error."""
+        return max(row.delta_noise for row in self.rows)
+
+
+def measured(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point], how: str) -> Measured:
+    """All readings. Raises StepError, or what the user's code raises, where none can be had."""
+    flow = Flow(hamiltonian.field()[0], _DIGITS[how])
+    probe = _Duals(step) if how == "duals" else _Floats(step)
+    rows, lost = [], ""
+
+    def at(point: Point, h: Fraction) -> Reading | None:
+        nonlocal lost
+        try:
+            return _reading(probe, flow, point, h)
+        except Exception as error:  # the user's code may raise anything
+            lost = f"{error}, at p = {point[0]}, q = {point[1]}, h = {h}"
+            return None
+
+    # A point at which no step can be made is left out, and so is a step that is too large for one.
+    alive = [point for point in points if at(point, LADDERS[how][-1]) is not None]
+    for h in LADDERS[how] if alive else ():
+        found = {point: at(point, h) for point in alive}
+        readings = {point: reading for point, reading in found.items() if reading is not None}
+        if step.left <= 0:
+            break
+        if len(readings) == len(alive):
+            rows.append(_row(h, readings))
+    if len(rows) < _ENOUGH:
+        raise StepError(lost or "it fails for most steps")
+    return Measured(how, tuple(rows), lost)
+
+
+def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
+    area = max(readings, key=lambda point: abs(readings[point].delta_j))
+    error = max(readings, key=lambda point: readings[point].error)
+    return Row(
+        h,
+        readings[area].delta_j,
+        max(r.delta_noise for r in readings.values()),
+        area,
+        readings[error].error,
+        max(r.error_noise for r in readings.values()),
+        error,
+    )
+
+
+def _reading(probe: "_Duals | _Floats", flow: Flow, point: Point, h: Fraction) -> Reading:
+    (p, q), delta, delta_noise, noise = probe.at(point, h)
+    start = flow.number(point[0]), flow.number(point[1])
+    try:
+        end = flow.advance(start, flow.number(h))
+    except NoFlowError as error:
+        raise StepError(str(error)) from None
+    with flow.arithmetic.context():
+        error = max(abs(float(p - end[0])), abs(float(q - end[1])))
+    return Reading(delta, delta_noise, error, noise)
+
+
+class _Duals:
+    """The step at dual numbers."""
+
+    def __init__(self, step: Step) -> None:
+        self.step, self.kind = step, Duals()
+        with self.kind.running():
+            self.function = copied(step.function, self.kind)
+
+    def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
+        with self.kind.running():
+            p, q = self.kind.state(*point)
+            x, y = carried_step(self.step, self.function, p, q, self.kind.rational(h))
+            delta = x.by_p * y.by_q - x.by_q * y.by_p - 1
+            size = abs(x.by_p * y.by_q) + abs(x.by_q * y.by_p) + 1
+            reach = 1 + abs(x.value) + abs(y.value)
+            return (
+                (x.value, y.value),
+                float(delta),
+                _DUAL_NOISE * float(size),
+                _DUAL_NOISE * float(reach),
+            )
+
+
+def carried_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
+    """p' and q' of a copied function at numbers of ours."""
+    with step.timed():
+        if step.arrays:
+            import numpy as np
+
+            boxes = [np.empty(1, dtype=object) for _ in range(2)]
+            boxes[0][0], boxes[1][0] = p, q
+            result = step.raw(function, *boxes, h)
+        else:
+            result = step.raw(function, p, q, h)
+    pair = step.pair(result)
+    lifted = [p * 0 + x for x in pair]
+    if any(type(x) is not type(p) for x in lifted):
+        raise StepError("it returns what is no number")
+    return lifted
+
+
+class _Floats:
+    """The step at floats."""
+
+    def __init__(self, step: Step) -> None:
+        self.step = step
+
+    def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
+        z, size = (float(point[0]), float(point[1])), float(h)
+        here = self.step.at(*z, size)
+        width = _WIDTH * (1 + max(map(abs, z)))
+        one, two = (self._determinant(z, size, w) for w in (width, width / 2))
+        # The wider stencil's error is 2⁶ times the narrower's, whose rounding is twice as large.
+        reach = 1 + max(map(abs, (*here, *z)))
+        noise = abs(one - two) + 8 * _EPSILON * reach / width
+        number = mpfr.make(_DIGITS["floats"]).number
+        state = number(Fraction(here[0])), number(Fraction(here[1]))
+        return state, two, noise, 4 * _EPSILON * reach
+
+    def _determinant(self, z: tuple[float, float], h: float, width: float) -> float:
+        """ΔJ by central differences of the increments."""
+        columns = []
+        for i in (0, 1):
+            total = [0.0, 0.0]
+            for k, weight in _STENCIL:
+                ahead, behind = list(z), list(z)
+                ahead[i], behind[i] = z[i] + k * width, z[i] - k * width
+                f, b = self.step.at(ahead[0], ahead[1], h), self.step.at(behind[0], behind[1], h)
+                for j in (0, 1):
+                    total[j] += weight * ((f[j] - ahead[j]) - (b[j] - behind[j]))
+            columns.append([x / (60 * width) for x in total])
+        (u_p, v_p), (u_q, v_q) = columns
+        return u_p + v_q + u_p * v_q - u_q * v_p
+
+

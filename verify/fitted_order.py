@@ -1,0 +1,60 @@
+"""By which whole power of h an error shrinks, read off above the noise; or that it is not seen."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+_WITHIN = 0.2  # of a whole power
+_FEWEST = 3  # neighbouring slopes that must agree
+_ABOVE = 10  # times its noise an error must be
+_SMALL, _PART = 1e-9, 1e-2
+_ROUNDING = 2.0**-43  # what rounded coefficients leave, in parts of the step
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """`power`: None where no power is seen. `first`, `last`: between which step sizes it is."""
+
+    power: int | None
+    first: float = 0.0
+    last: float = 0.0
+
+
+def fitted(rows: Sequence[tuple[float, float, float]], rounding: float = 1.0) -> Fitted:
+    """From rows (h, error, its noise), h falling.
+
+    A lower power at smaller steps counts too, and is what holds for h → 0; but not where it is what
+    the rounding of coefficients leaves: an error below 2⁻⁴³ · `rounding`, at steps of size 1.
+    """
+    largest = max((error for _, error, _ in rows), default=0.0)
+    least = min(_SMALL, _PART * largest)  # below it a power is seen in what a tolerance leaves
+    runs = [run for run in _runs(rows) if rows[run[1]][1] >= least]
+    if not runs:
+        return Fitted(None)
+    chosen = runs[0]
+    for run in runs[1:]:
+        h, error = rows[run[1]][:2]
+        if error > _ROUNDING * rounding * h or run[0] > chosen[0]:
+            chosen = run
+    power, begin, end = chosen
+    return Fitted(power, rows[begin][0], rows[end][0])
+
+
+def _runs(rows: Sequence[tuple[float, float, float]]) -> list[tuple[int, int, int]]:
+    """(power, first row, last row) of the longest stretches on which one power is seen."""
+    found: list[tuple[int, int, int]] = []
+    power, begin = None, 0
+    for k in range(len(rows)):
+        slope = _slope(rows[k], rows[k + 1]) if k + 1 < len(rows) else None
+        whole = None if slope is None or abs(slope - round(slope)) >= _WITHIN else round(slope)
+        if whole != power:
+            if power is not None and k - begin >= _FEWEST:
+                found.append((power, begin, k))
+            power, begin = whole, k
+    return found
+
+
+def _slope(one: tuple[float, float, float], two: tuple[float, float, float]) -> float | None:
+    if any(error <= _ABOVE * noise or error <= 0 for _, error, noise in (one, two)):
+        return None
+    return math.log(one[1] / two[1]) / math.log(one[0] / two[0])
