@@ -207,5 +207,3 @@ class _Floats:
             columns.append([x / (60 * width) for x in total])
         (u_p, v_p), (u_q, v_q) = columns
         return u_p + v_q + u_p * v_q - u_q * v_p
-
-

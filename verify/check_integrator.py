@@ -65,7 +65,9 @@ def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fin
             return _of_measured(measured(step, hamiltonian, points, how)).noting(*notes)
         except Exception as error:  # as above
             notes.append(f"not measured with {how}: {_why(error)}")
-    return Finding(Verdict.UNDECIDED, "it can be neither traced nor measured", "calls").noting(*notes)
+    return Finding(Verdict.UNDECIDED, "it can be neither traced nor measured", "calls").noting(
+        *notes
+    )
 
 
 def _why(error: Exception) -> str:
@@ -231,7 +233,9 @@ def _must_agree(step: Step, points: Sequence[Point], made: Any, how: str) -> Non
                 theirs = [x.value for x in at(*kind.state(*point), kind.rational(h))]
                 compared += 1
                 reach = 1 + max(map(abs, mine))
-                if any(abs(x - y) > _AGREES[how] * reach for x, y in zip(mine, theirs, strict=True)):
+                if any(
+                    abs(x - y) > _AGREES[how] * reach for x, y in zip(mine, theirs, strict=True)
+                ):
                     where = f"p = {point[0]}, q = {point[1]}, h = {h}"
                     raise UntraceableError(f"with floats it does something else, at {where}")
     if not compared:
@@ -244,7 +248,9 @@ def _must_agree(step: Step, points: Sequence[Point], made: Any, how: str) -> Non
 def _of_measured(found: Measured) -> Finding:
     area, distance = found.area, found.distance
     largest, noise = abs(found.largest.delta_j), found.noise
-    none = area.power is None and largest <= max(_NO_AREA if found.how == "duals" else 0, 10 * noise)
+    none = area.power is None and largest <= max(
+        _NO_AREA if found.how == "duals" else 0, 10 * noise
+    )
     exact = all(row.error <= 10 * row.error_noise for row in found.rows)
     order = None if distance.power is None else distance.power - 1
     shown = plain(Fraction(largest), 2) if largest >= 1e-3 else f"{largest:.1e}"

@@ -136,5 +136,3 @@ class Dual(Carried):
 
     def isfinite(self) -> bool:
         return bool(gmpy2.is_finite(self.value))
-
-

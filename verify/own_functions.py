@@ -75,7 +75,9 @@ class _Copier:
             if name in scope:
                 scope[name] = self.value(scope[name])
         scope.setdefault("float", _guarded(lambda number: number, float))
-        cells = tuple(types.CellType(self.value(cell.cell_contents)) for cell in x.__closure__ or ())
+        cells = tuple(
+            types.CellType(self.value(cell.cell_contents)) for cell in x.__closure__ or ()
+        )
         full = types.FunctionType(code, scope, x.__name__, None, cells or None)
         full.__defaults__ = tuple(map(self.value, x.__defaults__)) if x.__defaults__ else None
         full.__kwdefaults__ = (
@@ -136,8 +138,11 @@ def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[
     def call(*given: Any, **options: Any) -> Any:
         if not options and any(isinstance(x, Carried) for x in given):
             return own(*given)
-        if not options and len(given) == 1 and isinstance(given[0], list | tuple) and any(
-            isinstance(x, Carried) for x in given[0]
+        if (
+            not options
+            and len(given) == 1
+            and isinstance(given[0], list | tuple)
+            and any(isinstance(x, Carried) for x in given[0])
         ):
             return own(*given)
         return original(*given, **options)

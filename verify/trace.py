@@ -3,7 +3,7 @@
 `Tape` makes the symbols p, q, h and holds the nodes; numbers are folded as they come, exactly.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -131,9 +131,16 @@ def in_order(*roots: Node) -> list[Node]:
     return [seen[number] for number in sorted(seen)]
 
 
-def expressions(nodes: list[Node], put: Mapping[str, sympy.Expr]) -> dict[int, sympy.Expr]:
-    """Each node as an expression, by its number, with symbols replaced by what is put for them."""
-    made: dict[int, sympy.Expr] = {}
+def expressions(
+    nodes: Sequence[Node],
+    put: Mapping[str, sympy.Expr],
+    known: Mapping[int, sympy.Expr] | None = None,
+) -> dict[int, sympy.Expr]:
+    """Each node as an expression, by its number, with symbols replaced by what is put for them.
+
+    `known`: expressions of other nodes, of which these are made.
+    """
+    made: dict[int, sympy.Expr] = dict(known or {})
     for node in nodes:
         made[node.number] = _expression(node, [made[x.number] for x in node.inputs], put)
     return made
