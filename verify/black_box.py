@@ -24,9 +24,11 @@ _EPSILON = 2.0**-52
 _STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
 _WIDTH = 2.0**-7
 LADDERS = {
-    "duals": [Fraction(1, 2**k) for k in range(2, 18)],
+    "duals": [Fraction(1, 2**k) for k in range(2, 25)],
     "floats": [Fraction(x, 2**k) for k in range(2, 11) for x in (4, 3)],
 }
+# To show where an order is missed: what is small beside the rest shows at small steps.
+FINER = {"duals": [Fraction(1, 2**k) for k in range(3, 31)], "floats": LADDERS["floats"]}
 _ENOUGH = 6  # rows, with which what is slow may end
 
 
@@ -80,8 +82,18 @@ class Measured:
         return max(row.delta_noise for row in self.rows)
 
 
-def measured(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point], how: str) -> Measured:
-    """All readings. Raises StepError, or what the user's code raises, where none can be had."""
+def measured(
+    step: Step,
+    hamiltonian: Hamiltonian,
+    points: Sequence[Point],
+    how: str,
+    ladder: Sequence[Fraction] = (),
+) -> Measured:
+    """All readings, with the steps of `ladder`, falling, or those of `LADDERS[how]`.
+
+    Raises StepError, or what the user's code raises, where there are too few.
+    """
+    ladder = ladder or LADDERS[how]
     flow = Flow(hamiltonian.field()[0], _DIGITS[how])
     probe = _Duals(step) if how == "duals" else _Floats(step)
     rows, lost = [], ""
@@ -95,8 +107,8 @@ def measured(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point], how:
             return None
 
     # A point at which no step can be made is left out, and so is a step that is too large for one.
-    alive = [point for point in points if at(point, LADDERS[how][-1]) is not None]
-    for h in LADDERS[how] if alive else ():
+    alive = [point for point in points if at(point, ladder[-1]) is not None]
+    for h in ladder if alive else ():
         found = {point: at(point, h) for point in alive}
         readings = {point: reading for point, reading in found.items() if reading is not None}
         if step.left <= 0:

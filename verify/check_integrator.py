@@ -3,16 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
-from verify.black_box import Measured, Point, carried_step, measured
+from verify.black_box import FINER, Measured, Point, Row, carried_step, measured
 from verify.carried_number import UntraceableError
 from verify.dual import Dual, Duals
 from verify.errors import InputError
 from verify.exact import decimal, plain, text
 from verify.hamiltonian import Hamiltonian
-from verify.integrator import Step, StepError, examined, last_line
-from verify.integrator_results import Claims, Counterexample, Finding, broken
+from verify.integrator import Step, StepError, examined, last_line, within
+from verify.integrator_results import NOTHING, Claims, Counterexample, Finding, broken
 from verify.own_functions import copied
 from verify.proof.order import prove
 from verify.rounded_order import Rounded, rounded_orders
@@ -28,11 +29,14 @@ POINTS: tuple[Point, ...] = (
 )
 _SIZES = Fraction(1, 8), Fraction(1, 64)
 _AGREES = {"proof": 1e-10, "duals": 1e-6}  # a loop's tolerance may end it elsewhere with duals
-_NO_AREA = 1e-8  # a ΔJ above it, of no power of h, leaves it undecided
+_PROOF_SECONDS = 30.0
+_TOO_SLOW = 1.3  # times what a power allows: a step's other terms make less of it
+_PLAINLY = 0.95
+_NO_AREA = 1e-8  # a ΔJ above it, of no power of h, or a probe's error, leaves it undecided
 
 
 def check_integrator(
-    step: Step, hamiltonian: Hamiltonian, claims: Claims = Claims(), start: Point | None = None
+    step: Step, hamiltonian: Hamiltonian, claims: Claims = NOTHING, start: Point | None = None
 ) -> Finding:
     """Runs the user's code. `start`: an initial value to look at beside those of `POINTS`.
 
@@ -55,7 +59,8 @@ def check_integrator(
 def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
     notes: list[str] = []
     try:
-        return _proved(step, hamiltonian, points)
+        with within(_PROOF_SECONDS, "its proof takes too long"):
+            return _proved(step, hamiltonian, points)
     except Exception as error:  # the user's code may raise anything
         notes.append(f"no proof: {_why(error)}")
     for how in ("duals", "floats"):
@@ -106,7 +111,7 @@ def _readings(tape: Tape) -> list[str]:
     notes = []
     if tape.readings:
         shown = ", ".join(f"{x!r} as {text(v)}" for x, v in sorted(tape.readings.items()))
-        notes.append(f"floats are read as the simple numbers nearest to them: {shown}")
+        notes.append(f"floats are read as the exact numbers that they are written for: {shown}")
     if tape.rounded:
         shown = ", ".join(map(repr, sorted(tape.rounded)))
         notes.append(f"floats taken by their exact binary values: {shown}")
@@ -154,8 +159,8 @@ def _rounded_reason(found: Finding, better: Rounded, most: int) -> str:
     exactly = f"; taken exactly, they make the order {strictly}" if strictly is not None else ""
     residue = decimal(better.residue, 2)
     return (
-        f"{order} and {area}, but for the rounding of its coefficients, which leaves residues of up "
-        f"to {residue}{exactly}"
+        f"{order} and {area}, but for the rounding of its coefficients, which leaves residues of "
+        f"up to {residue}{exactly}"
     )
 
 
@@ -247,38 +252,44 @@ def _must_agree(step: Step, points: Sequence[Point], made: Any, how: str) -> Non
 
 def _of_measured(found: Measured) -> Finding:
     area, distance = found.area, found.distance
-    largest, noise = abs(found.largest.delta_j), found.noise
-    none = area.power is None and largest <= max(
-        _NO_AREA if found.how == "duals" else 0, 10 * noise
-    )
     exact = all(row.error <= 10 * row.error_noise for row in found.rows)
     order = None if distance.power is None else distance.power - 1
-    shown = plain(Fraction(largest), 2) if largest >= 1e-3 else f"{largest:.1e}"
-    if area.power is not None:
-        said = f"ΔJ shrinks as h^{area.power}"
-    elif none:
-        said = f"|ΔJ| ≤ {shown} at every point and step"
+    vanishes, said = _area_said(found)
+    if exact:
+        told = "the map is the exact flow to its last digits"
     else:
-        said = f"|ΔJ| up to {shown} follows no power of h"
-    told = "the map is the exact flow to its last digits" if exact else (
-        f"the map's order is {order}" if order is not None else "its error follows no power of h"
-    )  # fmt: skip
+        known = order is not None
+        told = f"the map's order is {order}" if known else "its error follows no power of h"
     verdict = Verdict.MEASURED
     if order is not None and order < 1:
         verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"
-    elif (area.power is None and not none) or (order is None and not exact):
+    elif (area.power is None and not vanishes) or (order is None and not exact):
         verdict = Verdict.UNDECIDED
     return Finding(
         verdict,
         f"{told}; {said}",
         found.how,
         order=area.power,
-        area_preserving=True if none else False if area.power is not None else None,
+        area_preserving=True if vanishes else False if area.power is not None else None,
         convergence_order=order,
         order_known=order is not None or exact,
-        largest=largest,
-        probe_error=noise,
+        largest=abs(found.largest.delta_j),
+        probe_error=found.noise,
     )
+
+
+def _area_said(found: Measured) -> tuple[bool, str]:
+    """Whether ΔJ is 0 as far as can be seen, and what is seen of it."""
+    if found.area.power is not None:
+        return False, f"ΔJ shrinks as h^{found.area.power}"
+    largest, noise = abs(found.largest.delta_j), found.noise
+    most = max(largest, noise)  # a ΔJ of 0 is not known better than its noise
+    shown = plain(Fraction(most), 2) if most >= 1e-3 else f"{most:.1e}"
+    if noise > _NO_AREA:
+        return False, f"ΔJ is hidden by the probe's own error, {noise:.1e}"
+    if largest <= (_NO_AREA if found.how == "duals" else 10 * noise):
+        return True, f"|ΔJ| ≤ {shown} at every point and step"
+    return False, f"|ΔJ| up to {shown} follows no power of h"
 
 
 # -- claims ---------------------------------------------------------------------------------------
@@ -312,34 +323,43 @@ def _counterexample(
 ) -> Counterexample | None:
     for how in ("duals", "floats"):
         try:
-            all_of_them = measured(step, hamiltonian, points, how)
-            row = all_of_them.largest
+            whole = measured(step, hamiltonian, points, how)
+            row = whole.largest
             if name == "det J ≡ 1":
                 value = f"{row.delta_j:.6e} ± {row.delta_noise:.1e}"
                 return Counterexample(*row.delta_at, row.h, "det J − 1", value, "0")
             area = name.startswith("ΔJ")
             power = (claims.area_order or 1) if area else (claims.order or 1) + 1
-            at = row.delta_at if area else all_of_them.rows[0].error_at
-            return _slope(measured(step, hamiltonian, [at], how), at, power, area)
+            at = whole.rows[-1].delta_at if area else whole.rows[-1].error_at
+            return _too_slow(measured(step, hamiltonian, [at], how, FINER[how]), at, power, area)
         except Exception:  # noqa: S112 - the user's code may raise anything
             continue
     return None
 
 
-def _slope(found: Measured, at: Point, power: int, area: bool) -> Counterexample | None:
-    """Two step sizes between which a quantity shrinks by less than its power says."""
-    fit = found.area if area else found.distance
-    rows = [row for row in found.rows if fit.last <= float(row.h) <= fit.first]
-    if fit.power is None or len(rows) < 2:
+def _too_slow(found: Measured, at: Point, power: int, area: bool) -> Counterexample | None:
+    """Two step sizes between which a quantity shrinks by less than its power says.
+
+    The largest of those at which that shows as plainly as it does anywhere.
+    """
+    pairs: list[tuple[float, Row, float, float, Row]] = []
+    for large, small in pairwise(found.rows):
+        (one, first), (two, second) = (_value(row, area) for row in (large, small))
+        if one > 100 * first and two > 100 * second:
+            allowed = one * float(small.h / large.h) ** power
+            pairs.append((two / allowed, small, two, allowed, large))
+    most = max((ratio for ratio, *_ in pairs), default=0.0)
+    if most < _TOO_SLOW:
         return None
-    large, small = rows[len(rows) // 2 - 1], rows[len(rows) // 2]
-    one, two = (abs(r.delta_j) if area else r.error for r in (large, small))
-    quantity = f"{'|det J − 1|' if area else 'the distance from the exact flow after one step'}"
-    most = one * float(small.h / large.h) ** power
+    _, row, value, allowed, before = next(pair for pair in pairs if pair[0] >= _PLAINLY * most)
     return Counterexample(
         *at,
-        small.h,
-        quantity,
-        f"{two:.6e}",
-        f"about {most:.1e} for h^{power}, as it is {one:.6e} at h = {large.h}",
+        row.h,
+        "|det J − 1|" if area else "the distance from the exact flow after one step",
+        f"{value:.6e}",
+        f"about {allowed:.2e} for O(h^{power}), by that at h = {before.h}",
     )
+
+
+def _value(row: Row, area: bool) -> tuple[float, float]:
+    return (abs(row.delta_j), row.delta_noise) if area else (row.error, row.error_noise)

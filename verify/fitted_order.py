@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 _WITHIN = 0.2  # of a whole power
 _FEWEST = 3  # neighbouring slopes that must agree
+_FEWEST_IN_TAIL = 5  # where a lower power takes over: what a tolerance leaves may seem one
 _ABOVE = 10  # times its noise an error must be
 _SMALL, _PART = 1e-9, 1e-2
 _ROUNDING = 2.0**-43  # what rounded coefficients leave, in parts of the step
@@ -28,13 +29,16 @@ def fitted(rows: Sequence[tuple[float, float, float]], rounding: float = 1.0) ->
     """
     largest = max((error for _, error, _ in rows), default=0.0)
     least = min(_SMALL, _PART * largest)  # below it a power is seen in what a tolerance leaves
-    runs = [run for run in _runs(rows) if rows[run[1]][1] >= least]
+    runs = _runs(rows)
+    while runs and rows[runs[0][1]][1] < least:
+        runs.pop(0)
     if not runs:
         return Fitted(None)
     chosen = runs[0]
     for run in runs[1:]:
         h, error = rows[run[1]][:2]
-        if error > _ROUNDING * rounding * h or run[0] > chosen[0]:
+        long = run[2] - run[1] >= _FEWEST_IN_TAIL
+        if long and error > _ROUNDING * rounding * h:
             chosen = run
     power, begin, end = chosen
     return Fitted(power, rows[begin][0], rows[end][0])

@@ -152,10 +152,8 @@ class Step:
             raise StepError("its calls took all the time that there is")
         begun = time.perf_counter()
         try:
-            with _quiet(), _limited(self.left):
+            with _quiet(), within(self.left, f"a call of it does not end within {self.left:.3g} s"):
                 yield
-        except _OverTimeError:
-            raise StepError(f"a call of it does not end within {self.left:.3g} s") from None
         except SystemExit:
             raise StepError("it calls sys.exit") from None
         finally:
@@ -163,21 +161,36 @@ class Step:
 
 
 @contextlib.contextmanager
-def _limited(seconds: float) -> Iterator[None]:
+def within(seconds: float, problem: str) -> Iterator[None]:
+    """StepError with this problem where what is done here does not end in time.
+
+    It may stand in another one, whose time goes on. In other threads than the main one, and on
+    systems without alarms, there is no limit.
+    """
+    error = _OverTimeError(problem)
+
     def late(*_: object) -> None:
-        raise _OverTimeError
+        raise error
 
     try:
         before = signal.signal(signal.SIGALRM, late)
-    except (ValueError, AttributeError):  # not the main thread, or a system without alarms
+    except (ValueError, AttributeError):
         yield
         return
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    outer, _ = signal.setitimer(signal.ITIMER_REAL, seconds)
+    begun = time.perf_counter()
     try:
         yield
+    except _OverTimeError as raised:
+        if raised is not error:
+            raise
+        raise StepError(problem) from None
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+        if outer:
+            spent = time.perf_counter() - begun
+            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3))
 
 
 def _at(p: float, q: float, h: float) -> str:
@@ -250,12 +263,12 @@ def made_step(
         raise InputError("integrator", shown, "wanted: step(p, q, h), which returns p', q'")
     notes = []
     if order is None:
-        found = tuple(_NAMES.get(x.name.lower().strip("_"), "") for x in places[:3])
+        named_so = tuple(_NAMES.get(x.name.lower().strip("_"), "") for x in places[:3])
         order = ("p", "q", "h")
-        if set(found) == set(order):
-            order = found
+        if sorted(named_so) == ["h", "p", "q"]:
+            order = named_so[0], named_so[1], named_so[2]
         first = ", ".join(x.name for x in places[:3])
-        if order != ("p", "q", "h") or set(found) != set(order):
+        if order != ("p", "q", "h") or sorted(named_so) != ["h", "p", "q"]:
             notes.append(f"its arguments ({first}) are taken as ({', '.join(order)})")
     return Step(function, order, given, left=time_limit), notes
 
@@ -288,7 +301,8 @@ def examined(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fa
     Finds out whether it wants arrays, and sets `step.arrays`.
     """
     states = [(float(p), float(q)) for p, q in points]
-    first, failures = {}, {}
+    first: dict[State, State] = {}
+    failures: dict[State, Exception] = {}
     for index, state in enumerate(states):
         try:
             first[state] = _first(step, *state, _STEPS[0], not first and index == 0)
@@ -326,7 +340,7 @@ def _failure(state: State, error: Exception) -> Fault:
 
 
 def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
-    """Whether it is one map of (p, q, h): not another one at the second call, and one that moves."""
+    """Whether it is one map of (p, q, h), the same at every call, and one that moves."""
     second = {state: step.at(*state, _STEPS[1]) for state in first}
     for state, before in first.items():
         after = step.at(*state, _STEPS[0])

@@ -22,6 +22,9 @@ class Claims:
     area_preserving: bool = False
 
 
+NOTHING = Claims()
+
+
 @dataclass(frozen=True)
 class Counterexample:
     """At (p, q) with step h: what `quantity` is there, and what it would have to be."""

@@ -6,6 +6,7 @@ is not changed. What is hidden deeper, as in an object's attributes, is called a
 """
 
 import cmath
+import contextlib
 import functools
 import math
 import operator
@@ -68,28 +69,22 @@ class _Copier:
 
     def function(self, x: types.FunctionType) -> types.FunctionType:
         code, scope = x.__code__, dict(x.__globals__)
-        made = types.FunctionType(code, scope, x.__name__)
+        cells = tuple(types.CellType() for _ in x.__closure__ or ())
+        made = types.FunctionType(code, scope, x.__name__, None, cells or None)
         self.copies[id(x)] = made  # before what it calls: it may call itself
         self.kept.append(x)
         for name in _names(code):
             if name in scope:
                 scope[name] = self.value(scope[name])
         scope.setdefault("float", _guarded(lambda number: number, float))
-        cells = tuple(
-            types.CellType(self.value(cell.cell_contents)) for cell in x.__closure__ or ()
-        )
-        full = types.FunctionType(code, scope, x.__name__, None, cells or None)
-        full.__defaults__ = tuple(map(self.value, x.__defaults__)) if x.__defaults__ else None
-        full.__kwdefaults__ = (
-            {name: self.value(v) for name, v in x.__kwdefaults__.items()}
-            if x.__kwdefaults__
-            else None
-        )  # type: ignore[assignment]
-        if not cells:
-            made.__defaults__, made.__kwdefaults__ = full.__defaults__, full.__kwdefaults__
-            return made
-        self.copies[id(x)] = full
-        return full
+        for cell, own in zip(cells, x.__closure__ or (), strict=True):
+            with contextlib.suppress(ValueError):  # a name that has no value yet
+                cell.cell_contents = self.value(own.cell_contents)
+        if x.__defaults__:
+            made.__defaults__ = tuple(map(self.value, x.__defaults__))
+        if x.__kwdefaults__:
+            made.__kwdefaults__ = {name: self.value(v) for name, v in x.__kwdefaults__.items()}
+        return made
 
 
 def _names(code: types.CodeType) -> Iterable[str]:

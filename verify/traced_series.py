@@ -20,6 +20,7 @@ from verify.trace import Node, expressions, in_order
 
 _PAIRED = {"sin": ("sin", "cos", -1), "cos": ("sin", "cos", -1),
            "sinh": ("sinh", "cosh", 1), "cosh": ("sinh", "cosh", 1)}  # fmt: skip
+_REACHES = (7, 9, 13)  # who asks for one more order asks for further ones
 
 
 class TracedSeries:
@@ -27,6 +28,7 @@ class TracedSeries:
 
     def __init__(self, hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> None:
         self.roots = p_next, q_next
+        self._made: dict[int, tuple[Series, Series]] = {}
         self.nodes = in_order(p_next, q_next)
         at_zero = expressions(self.nodes, {"h": sympy.S.Zero})
         wanted: dict[tuple[int, str], sympy.Expr] = {}
@@ -41,12 +43,19 @@ class TracedSeries:
 
     def __call__(self, most: int) -> tuple[VectorField, Series, Series]:
         """The vector field, and p' and q' up to h^most."""
+        reach = next((n for n in _REACHES if n >= most), most)
+        if reach not in self._made:
+            self._made[reach] = self._up_to(reach)
+        p, q = (Series.of(self.field.ring, x.coefficients, most) for x in self._made[reach])
+        return self.field, p, q
+
+    def _up_to(self, most: int) -> tuple[Series, Series]:
         maker = _Maker(self.field.ring, most, self.known)
         made: dict[int, Series] = {}
         for node in self.nodes:
             made[node.number] = maker.series(node, [made[x.number] for x in node.inputs])
         p, q = (made[root.number] for root in self.roots)
-        return self.field, p, q
+        return p, q
 
 
 def _beginnings(node: Node, at_zero: dict[int, Any]) -> list[tuple[str, sympy.Expr]]:
