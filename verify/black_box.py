@@ -13,8 +13,8 @@ from verify.arithmetic import mpfr
 from verify.dual import BITS, Duals
 from verify.fitted_order import Fitted, fitted
 from verify.hamiltonian import Hamiltonian
-from verify.integrator import Step, StepError
 from verify.own_functions import copied
+from verify.own_step import Step, StepError
 from verify.proof.exact_flow import Flow, NoFlowError
 
 Point = tuple[Fraction, Fraction]  # p, q

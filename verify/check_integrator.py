@@ -3,21 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
-from typing import Any
 
-from verify.black_box import FINER, Measured, Point, Row, carried_step, measured
+from verify.black_box import Measured, Point, carried_step, measured
 from verify.carried_number import UntraceableError
-from verify.dual import Dual, Duals
 from verify.errors import InputError
 from verify.exact import decimal, plain, text
 from verify.hamiltonian import Hamiltonian
-from verify.integrator import Step, StepError, examined, last_line, within
-from verify.integrator_results import NOTHING, Claims, Counterexample, Finding, broken
+from verify.integrator_agreement import by_duals, by_graph, must_agree
+from verify.integrator_claims import with_claims
+from verify.integrator_faults import examined
+from verify.integrator_results import NOTHING, Claims, Finding
 from verify.own_functions import copied
+from verify.own_step import Step, StepError, last_line, within
 from verify.proof.order import prove
 from verify.rounded_order import Rounded, rounded_orders
-from verify.trace import Node, Tape, in_order
+from verify.trace import Tape
 from verify.traced_map import TracedMap, traced_map
 from verify.verdict import Verdict
 
@@ -27,11 +27,7 @@ POINTS: tuple[Point, ...] = (
     (Fraction(1, 7), Fraction(6, 5)),
     (Fraction(3, 4), Fraction(-2, 5)),
 )
-_SIZES = Fraction(1, 8), Fraction(1, 64)
-_AGREES = {"proof": 1e-10, "duals": 1e-6}  # a loop's tolerance may end it elsewhere with duals
 _PROOF_SECONDS = 30.0
-_TOO_SLOW = 1.3  # times what a power allows: a step's other terms make less of it
-_PLAINLY = 0.95
 _NO_AREA = 1e-8  # a ΔJ above it, of no power of h, or a probe's error, leaves it undecided
 
 
@@ -53,7 +49,7 @@ def check_integrator(
     found = _found(step, hamiltonian, points)
     found = replace(found, faults=tuple(fault.name for fault in faults))
     found = found.noting(*(fault.text for fault in faults))
-    return _with_claims(found, claims, step, hamiltonian, points)
+    return with_claims(found, claims, step, hamiltonian, points)
 
 
 def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
@@ -66,7 +62,7 @@ def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fin
     for how in ("duals", "floats"):
         try:
             if how == "duals":
-                _must_agree(step, points, _by_duals(step), how)
+                must_agree(step, points, by_duals(step), how)
             return _of_measured(measured(step, hamiltonian, points, how)).noting(*notes)
         except Exception as error:  # as above
             notes.append(f"not measured with {how}: {_why(error)}")
@@ -88,7 +84,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
     symbols = [tape.symbol(name) for name in "pqh"]
     roots = carried_step(step, copied(step.function, tape), *symbols)
     p_next, q_next = (x.node for x in roots)
-    _must_agree(step, points, lambda kind: _by_graph(kind, p_next, q_next), "proof")
+    must_agree(step, points, lambda kind: by_graph(kind, p_next, q_next), "proof")
     traced = traced_map(hamiltonian, p_next, q_next)
     proof = prove(traced.step_map)
     found = Finding(
@@ -102,7 +98,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
         proof=proof,
-    ).noting(f"traced with symbols; the map is known by {traced.how}", *_readings(tape))
+    ).noting(f"traced with symbols; the map {traced.how}", *_readings(tape))
     found = _but_for_rounding(found, traced, tape)
     return _measured_area(found, step, hamiltonian, points)
 
@@ -186,67 +182,6 @@ def _measured_area(
     )
 
 
-# -- agreement ------------------------------------------------------------------------------------
-
-
-def _by_graph(kind: Duals, p_next: Node, q_next: Node) -> Any:
-    def at(p: Dual, q: Dual, h: Dual) -> tuple[Any, Any]:
-        made: dict[int, Any] = {}
-        start = {"p": p, "q": q, "h": h}
-        for node in in_order(p_next, q_next):
-            x = [made[one.number] for one in node.inputs]
-            match node.operation:
-                case "symbol":
-                    made[node.number] = start[node.value]
-                case "number":
-                    made[node.number] = kind.rational(node.value)
-                case "pi":
-                    made[node.number] = kind.pi()
-                case "power":
-                    made[node.number] = x[0].raised(node.value)
-                case "add" | "subtract" | "multiply" | "divide" as name:
-                    made[node.number] = x[0].combined(name, x[1])
-                case name:
-                    made[node.number] = x[0].applied(name)
-        return made[p_next.number], made[q_next.number]
-
-    return at
-
-
-def _by_duals(step: Step) -> Any:
-    def made(kind: Duals) -> Any:
-        function = copied(step.function, kind)
-        return lambda p, q, h: carried_step(step, function, p, q, h)
-
-    return made
-
-
-def _must_agree(step: Step, points: Sequence[Point], made: Any, how: str) -> None:
-    """UntraceableError where our numbers and the user's floats part at a point.
-
-    So it is where the code keeps a state, or takes another branch with floats.
-    """
-    kind, compared = Duals(), 0
-    with kind.running():
-        at = made(kind)
-        for point in points:
-            for h in _SIZES:
-                try:
-                    mine = step.at(float(point[0]), float(point[1]), float(h))
-                except Exception:  # noqa: S112 - it fails there; other points may do
-                    continue
-                theirs = [x.value for x in at(*kind.state(*point), kind.rational(h))]
-                compared += 1
-                reach = 1 + max(map(abs, mine))
-                if any(
-                    abs(x - y) > _AGREES[how] * reach for x, y in zip(mine, theirs, strict=True)
-                ):
-                    where = f"p = {point[0]}, q = {point[1]}, h = {h}"
-                    raise UntraceableError(f"with floats it does something else, at {where}")
-    if not compared:
-        raise UntraceableError("it fails at every point that is tried")
-
-
 # -- measured -------------------------------------------------------------------------------------
 
 
@@ -290,76 +225,3 @@ def _area_said(found: Measured) -> tuple[bool, str]:
     if largest <= (_NO_AREA if found.how == "duals" else 10 * noise):
         return True, f"|ΔJ| ≤ {shown} at every point and step"
     return False, f"|ΔJ| up to {shown} follows no power of h"
-
-
-# -- claims ---------------------------------------------------------------------------------------
-
-
-def _with_claims(
-    found: Finding, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Finding:
-    """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided."""
-    failed = broken(claims, found)
-    false = [claim for claim in failed if claim[1] is False]
-    if not failed and found.verdict is not Verdict.REFUTED:
-        return found
-    if not false and found.verdict is not Verdict.REFUTED:
-        return replace(
-            found,
-            verdict=Verdict.UNDECIDED,
-            reason=f"{failed[0][0]} is claimed and not decided: {found.reason}",
-        )
-    if false:
-        name, _, known = false[0]
-        reason = f"{name} is claimed; {known} ({found.reason})"
-        found = replace(found, verdict=Verdict.REFUTED, reason=reason)
-    else:
-        name = "order 1"
-    return replace(found, counterexample=_counterexample(name, claims, step, hamiltonian, points))
-
-
-def _counterexample(
-    name: str, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Counterexample | None:
-    for how in ("duals", "floats"):
-        try:
-            whole = measured(step, hamiltonian, points, how)
-            row = whole.largest
-            if name == "det J ≡ 1":
-                value = f"{row.delta_j:.6e} ± {row.delta_noise:.1e}"
-                return Counterexample(*row.delta_at, row.h, "det J − 1", value, "0")
-            area = name.startswith("ΔJ")
-            power = (claims.area_order or 1) if area else (claims.order or 1) + 1
-            at = whole.rows[-1].delta_at if area else whole.rows[-1].error_at
-            return _too_slow(measured(step, hamiltonian, [at], how, FINER[how]), at, power, area)
-        except Exception:  # noqa: S112 - the user's code may raise anything
-            continue
-    return None
-
-
-def _too_slow(found: Measured, at: Point, power: int, area: bool) -> Counterexample | None:
-    """Two step sizes between which a quantity shrinks by less than its power says.
-
-    The largest of those at which that shows as plainly as it does anywhere.
-    """
-    pairs: list[tuple[float, Row, float, float, Row]] = []
-    for large, small in pairwise(found.rows):
-        (one, first), (two, second) = (_value(row, area) for row in (large, small))
-        if one > 100 * first and two > 100 * second:
-            allowed = one * float(small.h / large.h) ** power
-            pairs.append((two / allowed, small, two, allowed, large))
-    most = max((ratio for ratio, *_ in pairs), default=0.0)
-    if most < _TOO_SLOW:
-        return None
-    _, row, value, allowed, before = next(pair for pair in pairs if pair[0] >= _PLAINLY * most)
-    return Counterexample(
-        *at,
-        row.h,
-        "|det J − 1|" if area else "the distance from the exact flow after one step",
-        f"{value:.6e}",
-        f"about {allowed:.2e} for O(h^{power}), by that at h = {before.h}",
-    )
-
-
-def _value(row: Row, area: bool) -> tuple[float, float]:
-    return (abs(row.delta_j), row.delta_noise) if area else (row.error, row.error_noise)

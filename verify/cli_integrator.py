@@ -143,7 +143,7 @@ def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
         click.echo(f"  H        {exact.formula}")
         for name, value in exact.written["parameters"].items():
             click.echo(f"  {name:8} {value}")
-        click.echo(f"  step     {target}")
+        click.echo(f"  scheme   {target}")
         if found.leading is not None and found.order is not None:
             click.echo(f"  ΔJ       ({show.cut(found.leading)})·h^{found.order} + …")
         if found.probe_error is not None:

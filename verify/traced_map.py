@@ -21,7 +21,7 @@ _MOST_TERMS, _MOST_OF_DELTA_J = 800, 20_000
 class TracedMap:
     """The step map of a trace, for one H whose parameters have values.
 
-    `how`: as which it is known, in words. `series`: None where the map has no Taylor series that
+    `how`: as what it is known, a clause. `series`: None where the map has no Taylor series that
     can be made, and so nothing but its closed form.
     """
 
@@ -46,17 +46,19 @@ def traced_map(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> TracedMa
     shears = shears_of(hamiltonian, p_next, q_next)
     if shears is not None:
         return TracedMap(
-            StepMap(hamiltonian, shears, series), f"{len(shears)} shears in turn", series
+            StepMap(hamiltonian, shears, series), f"is {len(shears)} shears in turn", series
         )
     closed = _closed(hamiltonian, p_next, q_next)
     if closed is not None:
         polynomial = closed.terms is not None
         made = StepMap(hamiltonian, (closed,), None if polynomial else series)
-        return TracedMap(made, "its closed form", series)
+        return TracedMap(made, "has a short closed form", series)
     if series is None:
         raise InputError("step", "its operations", "have no series in h and no short closed form")
     return TracedMap(
-        StepMap(hamiltonian, (_unwritten(hamiltonian),), series), "its Taylor series in h", series
+        StepMap(hamiltonian, (_unwritten(hamiltonian),), series),
+        "is known by its Taylor series in h",
+        series,
     )
 
 
