@@ -25,7 +25,10 @@ _STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
 _WIDTH = 2.0**-7
 LADDERS = {
     "duals": [Fraction(1, 2**k) for k in range(2, 25)],
-    "floats": [Fraction(x, 2**k) for k in range(2, 11) for x in (4, 3)],
+    "floats": [
+        *(Fraction(x, 2**k) for k in range(2, 11) for x in (4, 3)),
+        *(Fraction(1, 2**k) for k in range(9, 23)),  # where an order is low
+    ],
 }
 # To show where an order is missed: what is small beside the rest shows at small steps.
 FINER = {"duals": [Fraction(1, 2**k) for k in range(3, 31)], "floats": LADDERS["floats"]}

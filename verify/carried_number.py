@@ -75,10 +75,10 @@ class Kind(Protocol):
 
 def constant(kind: Kind, value: Any) -> "Carried | None":
     """A user's number as one of ours; None for what is no number. Raises UntraceableError."""
-    if isinstance(value, Carried):
-        return value
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()  # one of numpy's scalars
+    if isinstance(value, Carried):
+        return value
     if isinstance(value, int | Fraction | Decimal):
         return kind.rational(Fraction(value))
     if isinstance(value, complex):

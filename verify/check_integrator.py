@@ -194,7 +194,9 @@ def _of_measured(found: Measured) -> Finding:
         told = "the map is the exact flow to its last digits"
     else:
         known = order is not None
-        told = f"the map's order is {order}" if known else "its error follows no power of h"
+        seen = f"{Fraction(distance.first)} … {distance.last:.1e}"
+        told = f"the map's order is {order}, as seen for h = {seen}"
+        told = told if known else "its error follows no power of h"
     verdict = Verdict.MEASURED
     if order is not None and order < 1:
         verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"

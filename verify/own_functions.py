@@ -10,6 +10,7 @@ import contextlib
 import functools
 import math
 import operator
+import sys
 import types
 from collections.abc import Callable, Iterable
 from fractions import Fraction
@@ -18,12 +19,23 @@ from typing import Any
 from verify.carried_number import FUNCTIONS, Carried, Kind, constant
 
 _MODULES = ("math", "cmath", "numpy")
+_FOREIGN = ("numpy", "scipy", "numba")
 _PLAIN = int | float | Fraction
+_FILLED = ("zeros", "ones", "empty", "full", "zeros_like", "ones_like", "empty_like", "full_like")
 
 
 def copied(function: Any, kind: Kind) -> Any:
     """The function with replaced globals; itself where it is not written in Python."""
+    call = getattr(type(function), "__call__", None)
+    if isinstance(call, types.FunctionType):
+        function = types.MethodType(call, function)  # an object that is called
     return _Copier(kind).value(function)
+
+
+def _own(x: types.FunctionType) -> bool:
+    """Whether it is the user's: not of Python's library, nor of one that is full of floats."""
+    home = (x.__module__ or "").partition(".")[0]
+    return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
 
 
 class _Copier:
@@ -44,13 +56,14 @@ class _Copier:
         if isinstance(x, functools.partial):
             bound = {name: self.value(v) for name, v in x.keywords.items()}
             return functools.partial(self.value(x.func), *map(self.value, x.args), **bound)
-        if isinstance(x, types.MethodType):
-            return types.MethodType(self.value(x.__func__), x.__self__)
-        inner = getattr(x, "py_func", None)  # numba's
-        if isinstance(inner, types.FunctionType):
+        if isinstance(x, types.MethodType) and isinstance(x.__func__, types.FunctionType):
+            return types.MethodType(self.value(x.__func__), _Self(x.__self__, self))
+        # numba's functions, and those with a cache, hold the plain one.
+        inner = getattr(x, "py_func", None) or getattr(x, "__wrapped__", None)
+        if isinstance(inner, types.FunctionType) and not isinstance(x, types.FunctionType):
             return self.value(inner)
         if isinstance(x, types.FunctionType):
-            return self.function(x)
+            return self.function(x) if _own(x) else x
         return self.replacement(x)
 
     def replacement(self, x: Any) -> Any:
@@ -76,7 +89,7 @@ class _Copier:
         for name in _names(code):
             if name in scope:
                 scope[name] = self.value(scope[name])
-        scope.setdefault("float", _guarded(lambda number: number, float))
+        scope.setdefault("float", _Float)
         for cell, own in zip(cells, x.__closure__ or (), strict=True):
             with contextlib.suppress(ValueError):  # a name that has no value yet
                 cell.cell_contents = self.value(own.cell_contents)
@@ -109,9 +122,51 @@ class _Module:
         found = getattr(self._module, name)
         if self._module is cmath:
             return found
-        if name == "float64":
-            return _guarded(lambda number: number, found)
+        if name in ("float64", "float_", "double"):
+            return _Float
+        if name in _FILLED:
+            return _of_objects(found)
         return self._copier.named(name, found)
+
+
+class _Self:
+    """An object of the user's class, whose methods are copied; the object itself is the user's."""
+
+    def __init__(self, own: Any, copier: _Copier) -> None:
+        object.__setattr__(self, "_own", own)
+        object.__setattr__(self, "_copier", copier)
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._own, name)
+        if isinstance(found, types.MethodType) and found.__self__ is self._own:
+            return types.MethodType(self._copier.value(found.__func__), self)
+        return self._copier.value(found)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        setattr(self._own, name, value)
+
+
+class _FloatType(type):
+    def __instancecheck__(cls, x: object) -> bool:
+        return isinstance(x, float | Carried)
+
+
+class _Float(float, metaclass=_FloatType):
+    """`float` that lets our numbers through; as an array's type it is that of objects."""
+
+    def __new__(cls, x: Any = 0.0) -> Any:
+        return x if isinstance(x, Carried) else float(x)
+
+
+def _of_objects(original: Callable[..., Any]) -> Callable[..., Any]:
+    """What makes an array of floats makes one of objects, which our numbers can be put into."""
+
+    def call(*given: Any, **options: Any) -> Any:
+        if options.get("dtype") in (None, float, _Float):
+            options["dtype"] = object
+        return original(*given, **options)
+
+    return call
 
 
 def _applied(kind: Kind, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
@@ -131,8 +186,8 @@ def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[
     """`own` where one of our numbers is given, else the original."""
 
     def call(*given: Any, **options: Any) -> Any:
-        if not options and any(isinstance(x, Carried) for x in given):
-            return own(*given)
+        if any(isinstance(x, Carried) for x in given):
+            return own(*given, **options)
         if (
             not options
             and len(given) == 1
@@ -145,7 +200,12 @@ def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[
     return call
 
 
+def _isclose(x: Any, y: Any, *, rel_tol: float = 1e-9, abs_tol: float = 0.0) -> bool:
+    return bool(abs(x - y) <= max(rel_tol * max(abs(x), abs(y)), abs_tol))
+
+
 _OTHERS: dict[str, Callable[..., Any]] = {
+    "isclose": _isclose,
     "pow": operator.pow,
     "fabs": operator.abs,
     "expm1": lambda x: x.applied("exp") - 1,

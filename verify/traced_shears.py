@@ -34,7 +34,10 @@ def shears_of(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> tuple[Sub
     nodes = in_order(p_next, q_next)
     if len(nodes) > _MOST_NODES:
         return None
-    found = _Peeler(nodes).shears(p_next, q_next)
+    try:
+        found = _Peeler(nodes).shears(p_next, q_next)
+    except RecursionError:  # a sum of very many terms
+        return None
     if not found:
         return None
     try:

@@ -52,7 +52,7 @@ def test_the_text_is_that_of_the_readme(folder: Path, capsys: pytest.CaptureFixt
 def test_json_of_a_refuted_claim_has_the_counterexample(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    given = "check-integrator mine.py:step --system pendulum --order 3 --json".split()
+    given = ["check-integrator", "mine.py:step", "--system", "pendulum", "--order", "3", "--json"]
     status, out, err = here(capsys, *given)
     found = json_of(out)
     assert (status, err, found["verdict"]) == (1, "", "REFUTED")
