@@ -60,24 +60,30 @@ class Row:
 
 @dataclass(frozen=True)
 class Measured:
-    """`how`: "duals" or "floats". `rows` by falling h. `lost`: what kept points or steps out."""
+    """`how`: "duals" or "floats". `rows` by falling h. `opaque`: whether it may solve equations up
+    to a tolerance, since values were compared or floats hide what it does.
+    """
 
     how: str
     rows: tuple[Row, ...]
-    lost: str = ""
+    opaque: bool
 
     @property
     def area(self) -> Fitted:
-        return fitted([(float(r.h), abs(r.delta_j), r.delta_noise) for r in self.rows])
+        rows = [(float(r.h), abs(r.delta_j), r.delta_noise) for r in self.rows]
+        # Two steps of the same tolerance may differ by a power, by chance; five hardly do.
+        return fitted(rows, self.opaque, 5 if self.how == "floats" else 3)
 
     @property
     def distance(self) -> Fitted:
-        return fitted([(float(r.h), r.error, r.error_noise) for r in self.rows])
+        rows = [(float(r.h), r.error, r.error_noise) for r in self.rows]
+        return fitted(rows, self.opaque)
 
     @property
     def largest(self) -> Row:
-        """The row of the largest |ΔJ|."""
-        return max(self.rows, key=lambda row: abs(row.delta_j))
+        """The row of the largest |ΔJ|, of those that are ten times their noise where there are."""
+        told = [row for row in self.rows if abs(row.delta_j) > 10 * row.delta_noise]
+        return max(told or self.rows, key=lambda row: abs(row.delta_j))
 
     @property
     def noise(self) -> float:
@@ -120,7 +126,7 @@ def measured(
             rows.append(_row(h, readings))
     if len(rows) < _ENOUGH:
         raise StepError(lost or "it fails for most steps")
-    return Measured(how, tuple(rows), lost)
+    return Measured(how, tuple(rows), probe.opaque)
 
 
 def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
@@ -157,6 +163,10 @@ class _Duals:
         with self.kind.running():
             self.function = copied(step.function, self.kind)
 
+    @property
+    def opaque(self) -> bool:
+        return self.kind.compared
+
     def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
         with self.kind.running():
             p, q = self.kind.state(*point)
@@ -192,6 +202,8 @@ def carried_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: An
 
 class _Floats:
     """The step at floats."""
+
+    opaque = True
 
     def __init__(self, step: Step) -> None:
         self.step = step

@@ -23,6 +23,7 @@ class Duals:
     def __init__(self) -> None:
         self.readings: dict[float, Fraction] = {}
         self.rounded: set[float] = set()
+        self.compared = False  # whether values were: there may be branches, or a tolerance
 
     @contextmanager
     def running(self) -> Iterator[None]:
@@ -68,6 +69,7 @@ class Dual(Carried):
         return near if self.kind.rational(near).value == self.value else None
 
     def compared(self, other: "Dual") -> int:
+        self.kind.compared = True
         if gmpy2.is_nan(self.value) or gmpy2.is_nan(other.value):
             return 2 if gmpy2.is_nan(self.value) else -2
         return (self.value > other.value) - (self.value < other.value)

@@ -26,7 +26,7 @@ _FILLED = ("zeros", "ones", "empty", "full", "zeros_like", "ones_like", "empty_l
 
 def copied(function: Any, kind: Kind) -> Any:
     """The function with replaced globals; itself where it is not written in Python."""
-    call = getattr(type(function), "__call__", None)
+    call = vars(type(function)).get("__call__")
     if isinstance(call, types.FunctionType):
         function = types.MethodType(call, function)  # an object that is called
     return _Copier(kind).value(function)

@@ -64,6 +64,28 @@ def midpoint_until(p: Any, q: Any, h: Any) -> Any:
     return x, y
 
 
+def midpoint_loosely(p: Any, q: Any, h: Any) -> Any:
+    x, y = p, q
+    for _ in range(200):
+        before = x, y
+        x, y = p + h * force((q + y) / 2), q + h * (p + x) / 2
+        if max(abs(x - before[0]), abs(y - before[1])) < 1e-10:
+            break
+    return x, y
+
+
+def midpoint_by_newton(p: Any, q: Any, h: Any) -> Any:
+    """It stops before the last correction is made, so that derivatives lag behind."""
+    y = q + h * p
+    for _ in range(50):
+        gap = y - q - h * p + h * h / 2 * math.sin((q + y) / 2)
+        new = y - gap / (1 + h * h / 4 * math.cos((q + y) / 2))
+        if math.isclose(new, y, rel_tol=1e-15, abs_tol=1e-15):
+            break
+        y = new
+    return p + h * force((q + y) / 2), y
+
+
 def yoshida(p: Any, q: Any, h: Any) -> Any:
     for w in YOSHIDA:
         p = p + w * h / 2 * force(q)

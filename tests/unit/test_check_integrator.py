@@ -33,6 +33,8 @@ RIGHT = [
     (own_steps.yoshida, "proof", "MEASURED", 4, None),
     (own_steps.vectorised, "proof", "PROVED", 1, None),
     (own_steps.midpoint_until, "duals", "MEASURED", 2, None),
+    (own_steps.midpoint_loosely, "duals", "MEASURED", 2, None),
+    (own_steps.midpoint_by_newton, "duals", "MEASURED", 2, None),
     (own_steps.branching, "duals", "MEASURED", 1, None),
     (own_steps.only_floats, "floats", "MEASURED", 1, None),
 ]

@@ -123,7 +123,7 @@ def test_closures_defaults_and_helpers_are_replaced_too() -> None:
     [
         lambda p, q, h: (p if q > 0 else q, q),
         lambda p, q, h: (math.floor(p), q),
-        lambda p, q, h: (np.array([p, q], dtype=float)[0], q),
+        lambda p, q, h: (np.array([p, q], dtype=np.float32)[0], q),
         lambda p, q, h: (p * 1j, q),
         lambda p, q, h: (abs(p), q),
     ],
