@@ -48,6 +48,8 @@ def check_integrator(
         names = tuple(fault.name for fault in faults)
         return Finding(Verdict.REFUTED, fatal[0].text, "calls", faults=names)
     found = _found(step, hamiltonian, points)
+    if found.verdict is Verdict.REFUTED:
+        found = found.noting(*_exchanged(step, hamiltonian, points))
     found = replace(found, faults=tuple(fault.name for fault in faults))
     found = found.noting(*(fault.text for fault in faults))
     return with_claims(found, claims, step, hamiltonian, points)
@@ -73,6 +75,16 @@ def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fin
     return Finding(Verdict.UNDECIDED, "it can be neither traced nor measured", "calls").noting(
         *notes
     )
+
+
+def _exchanged(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> list[str]:
+    """Whether it is a scheme when p and q stand in each other's place."""
+    exchange = {"p": "q", "q": "p", "h": "h"}
+    a, b, c = (exchange[name] for name in step.order)
+    other = replace(step, order=(a, b, c))
+    if not _found(other, hamiltonian, points).verdict.holds:
+        return []
+    return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
 
 
 def _why(error: Exception) -> str:

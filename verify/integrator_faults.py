@@ -37,10 +37,7 @@ def examined(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fa
                 break
     if not first:
         return [_failure(states[0], failures[states[0]])]
-    try:
-        return [*_as_a_map(step, first), *_with_arrays(step, first)]
-    except StepError as error:
-        return [Fault("fails", f"{error}; elsewhere it does not")]
+    return [*_as_a_map(step, first), *_with_arrays(step, first)]
 
 
 def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
@@ -66,9 +63,14 @@ def _failure(state: State, error: Exception) -> Fault:
 
 def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
     """Whether it is one map of (p, q, h), the same at every call, and one that moves."""
-    second = {state: step.at(*state, _STEPS[1]) for state in first}
+    second: dict[State, State] = {}
     for state, before in first.items():
-        after = step.at(*state, _STEPS[0])
+        try:
+            second[state] = step.at(*state, _STEPS[1])
+            after = step.at(*state, _STEPS[0])
+        except Exception as error:  # the user's code may raise anything
+            said = str(error) if isinstance(error, StepError) else f"it raises {last_line(error)}"
+            return [Fault("fails", f"{said}, at a later call", fatal=step.left <= 0)]
         if after != before:
             found = f"{before} and then {after}{where(*state, _STEPS[0])}"
             return [Fault("not a function", f"it is not deterministic: it returns {found}")]

@@ -4,14 +4,19 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.unit import own_steps
+from verify import systems
 from verify.check_integrator import check_integrator
 from verify.errors import InputError
+from verify.formula import parse
 from verify.hamiltonian import Hamiltonian
 from verify.integrator import made_step
 from verify.integrator_results import NOTHING, Claims, Finding
+from verify.proof.order import prove
+from verify.schemes import get
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 Function = Callable[..., Any]
@@ -174,3 +179,43 @@ def test_a_branch_that_hides_from_symbols_is_seen() -> None:
     found = found_of(step, Claims(order=1))
     assert (found.verdict, found.how) == ("MEASURED", "duals")
     assert "with floats it does something else" in found.notes[0]
+
+
+def test_exchanged_arguments_are_told() -> None:
+    def step(x: Any, y: Any, z: Any) -> Any:
+        return own_steps.euler_b(x, y, z)
+
+    found = found_of(step)
+    assert found.verdict == "REFUTED"
+    assert "with arguments in the order q,p,h it is a scheme for this H" in found.notes
+    assert not any("in the order" in note for note in found_of(own_steps.flipped).notes)
+
+
+@pytest.mark.parametrize("name", ["duffing", "pendulum", "morse", "toda", "lennard-jones", "twist"])
+@pytest.mark.parametrize("scheme", ["euler", "rk4", "explicit-midpoint"])
+def test_a_traced_scheme_is_proved_as_the_scheme_itself_is(name: str, scheme: str) -> None:
+    system = systems.get(name)
+    hamiltonian = system.hamiltonian(dict.fromkeys(system.parameters, "3/2"))
+    gradient = hamiltonian.gradient()
+
+    def slope(z: Any) -> Any:
+        h_p, h_q = gradient(*z)
+        return np.array([-h_q, h_p])
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        z = np.array([p, q])
+        a = slope(z)
+        b = slope(z + h / 2 * a)
+        if scheme == "euler":
+            return z + h * a
+        if scheme == "explicit-midpoint":
+            return z + h * b
+        c = slope(z + h / 2 * b)
+        return z + h / 6 * (a + 2 * b + 2 * c + slope(z + h * c))
+
+    made, _ = made_step(step)
+    found = check_integrator(made, hamiltonian)
+    known = prove(get(scheme).step_map(hamiltonian))
+    assert (found.how, found.verdict) == ("proof", known.verdict), found.notes
+    assert (found.order, found.convergence_order) == (known.order, known.convergence_order)
+    assert parse(found.leading or "") == parse(known.first.text)
