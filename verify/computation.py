@@ -65,9 +65,8 @@ class _Itself:
         return isinstance(other, _Itself) and self.step_map is other.step_map
 
 
-@lru_cache(maxsize=64)
 def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
-    """The scheme's map of a Hamiltonian, made once, so that what is made of it is found again."""
+    """The scheme's map of a Hamiltonian; the same one for the next that asks."""
     return get(scheme).step_map(hamiltonian)
 
 

@@ -41,8 +41,8 @@ class Scheme:
         return _made(self.build, hamiltonian)
 
 
-# A scene asks for the same map when it is read, when it is proved and when it is run. Few, since a
-# map keeps what was derived of it.
-@lru_cache(maxsize=8)
+# A scene asks for the same map when it is read, when it is proved and when it is run, and what is
+# made of a map is found again by the map. Few, since a map keeps what was derived of it.
+@lru_cache(maxsize=32)
 def _made(build: Callable[[Hamiltonian], StepMap], hamiltonian: Hamiltonian) -> StepMap:
     return build(hamiltonian)

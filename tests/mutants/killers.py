@@ -8,7 +8,7 @@ import ast
 import cProfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from types import CodeType
 from typing import Any
@@ -50,6 +50,7 @@ def _files(folder: str) -> list[Path]:
     return sorted((ROOT / "tests" / folder).glob("test_*.py"))
 
 
+@cache
 def concerns(path: Path, module: str) -> bool:
     """Whether the file imports the module itself."""
     above, _, last = module.rpartition(".")

@@ -3,7 +3,10 @@
 What is not changed, as no computation depends on it: texts (f-strings too), annotations and type
 aliases, imports, `assert` and what is raised, `__repr__` and its kin, decorators, patterns, what
 stands under `if TYPE_CHECKING`, a `zip`'s `strict`, and at module level the numbers of 100 and
-more, which bound an effort: a bound that is off by one is no error that could be seen.
+more, which bound an effort: a bound that is off by one is no error that could be seen. Nor, by
+their names, those smaller ones that say how often something is tried and how many digits more than
+are needed it is tried with. Nor the order of two arguments that commute, what speed alone depends
+on, and that what is known is not made again.
 """
 
 import ast
@@ -17,7 +20,12 @@ from tests.mutants.operators import Change, called, changes_of, is_text
 
 ROOT = Path(__file__).parents[2]
 _QUIET = {"__repr__", "__str__", "_repr_html_", "_repr_latex_"}
-_KEYWORDS = {"strict", "repr"}
+_KEYWORDS = {"strict", "repr", "pipelined", "chunk"}  # of an arithmetic the last two, for speed
+_EFFORTS = {
+    "_ATTEMPTS", "_BISECTIONS", "_CANCELLED", "_CHECK", "_DOUBLINGS", "_FIRST_ORDERS", "_GUARD",
+    "_HALVINGS", "_LOST", "_MORE_DIGITS", "_NEWTON", "_PATIENCE", "_POINTS", "_ROUGH", "_SETTLED",
+    "_SHORTEST",
+}  # fmt: skip
 _LARGE = 100
 _SHOWN = 60  # characters of each side of a change
 
@@ -101,23 +109,38 @@ def mutated_source(source: str, index: int) -> ast.Module:
 def _changes(tree: ast.Module) -> Iterator[tuple[Change, int]]:
     """Every change that is made, once, with the first line of the function that it stands in."""
     seen: set[tuple[int, str]] = set()
-    large = {id(n) for n in _large_bounds(tree)}
+    efforts = {id(n) for n in _bounds_of_effort(tree)}
     for node, function in _reached(tree, 0):
         for word, old, new in changes_of(node):
             written = ast.dump(new)
-            if id(old) in large or (id(old), written) in seen or written == ast.dump(old):
+            if id(old) in efforts or (id(old), written) in seen or written == ast.dump(old):
+                continue
+            if _made_again(node, old, new):
                 continue
             seen.add((id(old), written))
             yield (word, old, new), function
 
 
-def _large_bounds(tree: ast.Module) -> Iterator[ast.AST]:
+def _bounds_of_effort(tree: ast.Module) -> Iterator[ast.AST]:
     for statement in tree.body:
         if isinstance(statement, ast.Assign | ast.AnnAssign):
+            named = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name)}
             for node in ast.walk(statement):
                 match node:
-                    case ast.Constant(int() | float() as value) if abs(value) >= _LARGE:
-                        yield node
+                    case ast.Constant(int() | float() as value):
+                        if abs(value) >= _LARGE or named <= _EFFORTS:
+                            yield node
+
+
+def _made_again(node: ast.AST, old: ast.AST, new: ast.AST) -> bool:
+    """Whether the change is that in `if x not in known: known[x] = …` it is made each time."""
+    match node:
+        case ast.If(ast.Compare(ops=[ast.NotIn()], comparators=[known]) as test, body):
+            kept = [t.value for s in body if isinstance(s, ast.Assign) for t in s.targets
+                    if isinstance(t, ast.Subscript)]  # fmt: skip
+            again = isinstance(new, ast.Constant) and new.value is True
+            return old is test and again and ast.dump(known) in {ast.dump(x) for x in kept}
+    return False
 
 
 def _reached(node: ast.AST, function: int) -> Iterator[tuple[ast.AST, int]]:

@@ -16,7 +16,7 @@ _COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In,
 }  # fmt: skip
 _NAMES = {"min": "max", "max": "min", "any": "all", "all": "any"}
-_COMMUTE = {"min", "max", "gcd", "lcm", "hypot"}
+_COMMUTE = {"min", "max", "gcd", "lcm", "hypot", "multiply", "multiplied", "mul", "times"}
 _ABOUT_TYPES = {"isinstance", "issubclass", "hasattr", "getattr", "setattr", "cast", "TypeVar"}
 
 

@@ -36,13 +36,22 @@ _TRIED = 100  # mutants at most for one property
 _SOUND = 1800.0  # seconds for a killer on the sound code
 
 
-def attempt(mutant: Mutant, sound: list[Record], order: list[Killer], timeout: float) -> Record:
-    """The first killer that kills it, of those that enter the function it stands in."""
-    spent = 0.0
+def attempt(
+    mutant: Mutant, sound: list[Record], order: list[Killer], timeout: float, most: float
+) -> Record:
+    """The first killer that kills it, of those that enter the function it stands in.
+
+    Once `most` seconds of the processor are spent no other is asked, and it is said to live; so
+    that what is far and dear can only make the share of the killed smaller.
+    """
+    spent, tried = 0.0, 0
     seen = {r["killer"]: r for r in sound}
     found: Record = {"killed": False, "by": None}
     entering = [k for k in order if _enters(seen[k.name], mutant)]
     for killer in entering:
+        if spent > most:
+            break
+        tried += 1
         limit = max(timeout, _SLOWER * seen[killer.name]["seconds"])
         work = partial(on_mutant, killer, mutant.module, mutant.index, seen[killer.name])
         ended = forked.forked(work, limit)
@@ -57,7 +66,8 @@ def attempt(mutant: Mutant, sound: list[Record], order: list[Killer], timeout: f
         "module": mutant.module,
         "operator": mutant.operator,
         **found,
-        "tried": len(entering),
+        "tried": tried,
+        "entering": len(entering),
         "seconds": round(spent, 1),
     }
 
@@ -92,12 +102,17 @@ def _passed(killer: Killer, work: Callable[[], Record]) -> forked.Ended:
 
 
 def ordered(mutant: Mutant, sound: list[Record], all_killers: list[Killer]) -> list[Killer]:
-    """The battery, then the files that import the module, each by what they cost."""
-    seconds = {r["killer"]: r["seconds"] for r in sound}
+    """The battery and the files that import the module or its package, then the other files.
 
-    def cost(killer: Killer) -> tuple[int, bool, float]:
-        near = killer.stage > 1 and concerns(ROOT / killer.name, mutant.module)
-        return killer.stage, not near, seconds[killer.name]
+    Each by what it costs: what is near and cheap kills most, and a survivor is seen by all.
+    """
+    seconds = {r["killer"]: r["seconds"] for r in sound}
+    package = mutant.module.rpartition(".")[0]
+
+    def cost(killer: Killer) -> tuple[bool, float]:
+        path = ROOT / killer.name
+        near = killer.stage == 1 or any(concerns(path, n) for n in (mutant.module, package))
+        return not near, seconds[killer.name]
 
     return sorted(all_killers, key=cost)
 
@@ -121,7 +136,8 @@ def main() -> None:
         done = {r["key"] for r in mine if r["killed"] or r["last"] >= asked.stage}
         waiting = [m for m in wanted if m.key not in done]
         work = [
-            pool.submit(attempt, m, sound, ordered(m, sound, order), asked.timeout) for m in waiting
+            pool.submit(attempt, m, sound, ordered(m, sound, order), asked.timeout, asked.most)
+            for m in waiting
         ]
         for n, future in enumerate(as_completed(work), 1):
             record = future.result() | {"last": asked.stage}
@@ -129,7 +145,7 @@ def main() -> None:
             said = record["by"] if record["killed"] else "LIVES"
             print(f"{n}/{len(waiting)} {record['seconds']:6.1f} s {record['key']}: {said}")
         if asked.explain:
-            _explain(pool, wanted, asked.into, asked.timeout)
+            _explain(pool, wanted, asked)
         if asked.show:
             _show(pool, wanted, sound, asked)
     print(summary(records.read(asked.into), {m.key for m in wanted}))
@@ -149,8 +165,9 @@ def _sound(
     return found
 
 
-def _explain(pool: ProcessPoolExecutor, wanted: list[Mutant], path: Path, timeout: float) -> None:
+def _explain(pool: ProcessPoolExecutor, wanted: list[Mutant], asked: argparse.Namespace) -> None:
     """Stage 3: what the unit tests of their modules say of the mutants that live."""
+    path, limits = asked.into, (asked.timeout, asked.most)
     known = records.read(path)
     living = {r["key"] for r in records.of_kind(known, "mutant") if not r["killed"]}
     done = {r["key"] for r in records.of_kind(known, "unit")}
@@ -158,7 +175,7 @@ def _explain(pool: ProcessPoolExecutor, wanted: list[Mutant], path: Path, timeou
     needed = {k.name: k for m in waiting for k in unit_killers(m.module)}
     sound = _sound(pool, list(needed.values()), known, path)
     work = [
-        pool.submit(attempt, m, sound, ordered(m, sound, list(unit_killers(m.module))), timeout)
+        pool.submit(attempt, m, sound, ordered(m, sound, list(unit_killers(m.module))), *limits)
         for m in waiting
     ]
     for future in as_completed(work):
@@ -221,6 +238,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--module", action="append", default=[])
     parser.add_argument("--timeout", type=float, default=60, help="least limit, in processor time")
+    parser.add_argument("--most", type=float, default=60, help="seconds without a kill: it lives")
     parser.add_argument("--examples", type=int, default=60, help="scenes of the battery")
     parser.add_argument("--stage", type=int, default=2, choices=(1, 2), help="the last to be run")
     parser.add_argument("--explain", action="store_true", help="survivors against unit tests")

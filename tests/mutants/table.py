@@ -22,6 +22,7 @@ one, a condition. A property that holds for the code and is violated by a mutant
   the work hangs: it takes five times the processor time that the sound code takes, a minute at
   least. A check that the sound code does not pass ends the run.
 - Killers that never enter the function in which a mutant stands are not run on it; it then lives.
+- Once a minute of the processor is spent on a mutant, no other killer is asked, and it lives.
 - `mutate.py` says what is not changed: texts, types, imports, what is raised, bounds of effort.
 - Unit tests kill nothing here; they only help to explain who lives.
 """

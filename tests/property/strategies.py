@@ -9,6 +9,7 @@ import multiprocessing
 import resource
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -97,10 +98,18 @@ def plain(text: str) -> sympy.Expr:
 
 
 def lie_step(hamiltonian: sympy.Expr, eta: int) -> tuple[sympy.Expr, sympy.Expr]:
-    """Eq. 2–5 of the paper to the letter: two operators, each applied to the one before.
+    """Eq. 2–5 of the paper to the letter: two operators, each applied to the one before."""
+    p_next, q_next = P, Q
+    for n in range(1, eta + 1):
+        l_p, l_q = _lie_terms(hamiltonian, n)
+        p_next += H**n / math.factorial(n) * l_p
+        q_next += H**n / math.factorial(n) * l_q
+    return p_next, q_next
 
-    Every derivative is expanded, for sympy's would else grow beyond what it can evaluate.
-    """
+
+@lru_cache(maxsize=64)  # a test may want one order more too, or the same of many mutants
+def _lie_terms(hamiltonian: sympy.Expr, n: int) -> tuple[sympy.Expr, sympy.Expr]:
+    """Every derivative is expanded, for sympy's would else grow beyond what it can evaluate."""
     h_p, minus_h_q = hamiltonian.diff(P), -hamiltonian.diff(Q)
 
     def l_hp(y: sympy.Expr) -> sympy.Expr:
@@ -109,14 +118,10 @@ def lie_step(hamiltonian: sympy.Expr, eta: int) -> tuple[sympy.Expr, sympy.Expr]
     def l_hq(y: sympy.Expr) -> sympy.Expr:
         return minus_h_q * y.diff(P)
 
-    l_p, l_q = minus_h_q, h_p  # Eq. 3
-    p_next, q_next = P, Q
-    for n in range(1, eta + 1):
-        p_next += H**n / math.factorial(n) * l_p
-        q_next += H**n / math.factorial(n) * l_q
-        l_p = sympy.expand(l_hq(l_p) + l_hp(l_p))  # Eq. 4
-        l_q = sympy.expand(l_hp(l_q) + l_hq(l_q))
-    return p_next, q_next
+    if n == 1:
+        return minus_h_q, h_p  # Eq. 3
+    l_p, l_q = _lie_terms(hamiltonian, n - 1)
+    return sympy.expand(l_hq(l_p) + l_hp(l_p)), sympy.expand(l_hp(l_q) + l_hq(l_q))  # Eq. 4
 
 
 def plain_delta_j(p_next: sympy.Expr, q_next: sympy.Expr) -> sympy.Expr:
@@ -159,6 +164,12 @@ def _apply(node: sympy.Expr, arguments: list[Any]) -> Any:
     if not node.is_Function:
         return mpmath.nan
     return getattr(mpmath, node.func.__name__)(*arguments)
+
+
+def zero_there(x: sympy.Expr) -> bool:
+    """Whether an expression in p, q and h is 0 at one point, to 30 digits."""
+    at = {P: sympy.Rational(3, 7), Q: sympy.Rational(-5, 11), H: sympy.Rational(2, 9)}
+    return bool(abs(sympy.N(x.subs(at), 40)) < 1e-30)
 
 
 def is_real(value: Any) -> bool:

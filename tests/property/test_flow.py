@@ -30,7 +30,7 @@ def outlines(draw: st.DrawFn) -> tuple[Outline, tuple[float, float]]:
     return polygon(corners).outlines[0], (float(q), float(p))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=16, deadline=None)
 @given(polynomials(degree=4, most_terms=3), schemes, outlines(), st.integers(1, 6))
 def test_the_change_of_area_is_the_mean_of_lambda(
     formula: str, scheme: str, drawn: tuple[Outline, tuple[float, float]], steps: int

@@ -3,7 +3,6 @@
 import ast
 import copy
 from collections.abc import Iterator
-from typing import Any
 
 SWAPS = {"p": ["q"], "q": ["p"], "p_next": ["p", "q"], "delta": ["h"], "h": ["q"],
          "sin": ["cos"], "cos": ["sin"]}  # fmt: skip
@@ -36,28 +35,39 @@ def changes_of(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
             yield from (("name", ast.Name(other)) for other in SWAPS.get(name, ()))
 
 
-class Replace(ast.NodeTransformer):
-    def __init__(self, old: ast.AST, new: ast.AST) -> None:
-        self.old, self.new = old, new
+def put(above: ast.AST, place: tuple[str, int | None], new: ast.AST) -> None:
+    """Sets a node's field, or one thing in a field that is a list."""
+    field, index = place
+    if index is None:
+        setattr(above, field, new)
+    else:
+        getattr(above, field)[index] = new
 
-    def visit(self, node: ast.AST) -> Any:
-        return self.new if node is self.old else self.generic_visit(node)
+
+def below(above: ast.AST) -> Iterator[tuple[tuple[str, int | None], ast.AST]]:
+    """The nodes right below one, each with its place."""
+    for field, value in ast.iter_fields(above):
+        if isinstance(value, ast.AST):
+            yield (field, None), value
+        elif isinstance(value, list):
+            yield from (((field, k), x) for k, x in enumerate(value) if isinstance(x, ast.AST))
 
 
 def mutants(formula: str) -> list[str]:
     """The formula with one thing in it changed, in every way."""
-    found: list[str] = []
-    count = len(list(ast.walk(ast.parse(formula, mode="eval"))))
-    for index in range(count):
-        tree = ast.parse(formula, mode="eval")
-        node = list(ast.walk(tree))[index]
-        in_call = {id(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
+    found: dict[str, None] = {}
+    tree = ast.parse(formula, mode="eval")
+    nodes = list(ast.walk(tree))
+    # A node that is shared, as x's ast.Load is, has no changes.
+    above = {id(node): (each, place) for each in nodes for place, node in below(each)}
+    in_call = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+    for node in nodes:
         for word, new in changes_of(node):
             if id(node) in in_call and word == "power":
                 continue
-            copied = ast.parse(formula, mode="eval")
-            target = list(ast.walk(copied))[index]
-            text = ast.unparse(ast.fix_missing_locations(Replace(target, new).visit(copied)))
-            if "/ 0" not in text and text not in found:
-                found.append(text)
-    return found
+            put(*above[id(node)], new)
+            text = ast.unparse(tree)
+            put(*above[id(node)], node)
+            if "/ 0" not in text:
+                found[text] = None
+    return list(found)

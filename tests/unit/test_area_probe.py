@@ -30,6 +30,7 @@ from verify.schemes import get
 
 WIDE_GOAL = Goal(change=Fraction(0), area=Fraction(1, 10**27))
 CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
+ROUNDED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 4))  # where float64's digits are used up
 CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
 TRIANGLE = ((0, 0), (3, 1), (Fraction(1, 3), 2))
 ZIGZAG = ((0, 0), (2, 0), (2, 2), (1, Fraction(1, 2)), (0, 2))
@@ -168,16 +169,21 @@ STEPPED = [
 ]  # fmt: skip
 
 
+TINY = (1, 1, "1/100000")
+PLACES = [
+    (DUFFING, (1, 0, "1/2"), CHANGED),
+    (PENDULUM, (1, "1/2", "3/4"), CHANGED),
+    (PENDULUM, TINY, ROUNDED),
+]
+
+
 @pytest.mark.parametrize(("scheme", "h", "steps"), STEPPED)
-@pytest.mark.parametrize(
-    ("hamiltonian", "where"),
-    [(DUFFING, (1, 0, "1/2")), (PENDULUM, (1, "1/2", "3/4")), (PENDULUM, (1, 1, "1/100000"))],
-)
+@pytest.mark.parametrize(("hamiltonian", "where", "asked"), PLACES)
 def test_float64_lies_within_its_bound_of_33_digits(
-    hamiltonian: Hamiltonian, where: Any, scheme: str, h: str, steps: int
+    hamiltonian: Hamiltonian, where: Any, asked: Goal, scheme: str, h: str, steps: int
 ) -> None:
     outline = placed(CIRCLE, *where)
-    found = measured(outline, floats(scheme, Fraction(h), steps, hamiltonian), CHANGED)
+    found = measured(outline, floats(scheme, Fraction(h), steps, hamiltonian), asked)
     preserves = get(scheme).step_map(hamiltonian).preserves_area
     goal = Goal(Fraction(0), Fraction(1, 10**20)) if preserves else CHANGED
     true = measured(outline, wide(scheme, Fraction(h), steps, hamiltonian), goal)
@@ -185,6 +191,14 @@ def test_float64_lies_within_its_bound_of_33_digits(
         assert abs(true.change) <= true.error
     assert abs(found.change - true.change) <= found.error + true.error
     assert true.rounded < found.rounded / 10**9
+
+
+def test_what_rounding_leaves_is_within_its_bound_after_every_cut_too() -> None:
+    """No cut makes a difference smaller that is rounding's: it is cut until the nodes are used."""
+    outline, given = placed(CIRCLE, *TINY), ("lie3", Fraction(1, 10), 60, PENDULUM)
+    found, true = (measured(outline, plane(*given), CHANGED) for plane in (floats, wide))
+    assert found.nodes > 100 * true.nodes
+    assert abs(found.change - true.change) <= found.error + true.error
 
 
 # -- corners and shear ----------------------------------------------------------------------------

@@ -155,7 +155,7 @@ def test_all_precisions_and_number_systems_share_a_program_and_leave_it_as_it_is
 def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
     """A map is known by itself: one with a planted error is another one."""
     asked = Asked(pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False)
-    one, two = (get("lie2").step_map(MIXED) for _ in range(2))
+    one, two = (get("lie2").build(MIXED) for _ in range(2))
     assert computed(one, asked) is computed(one, asked)
     assert computed(one, asked) is not computed(two, asked)
     assert step_map_of(MIXED, "lie2") is step_map_of(MIXED, "lie2")

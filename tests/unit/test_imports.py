@@ -3,7 +3,8 @@
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Set
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -37,7 +38,8 @@ def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
         waiting += ast.iter_child_nodes(node)
 
 
-def imported(path: Path, everywhere: bool = False) -> set[str]:
+@cache
+def imported(path: Path, everywhere: bool = False) -> frozenset[str]:
     """The modules that a file imports: at module level, or everywhere in it."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     found: set[str] = set()
@@ -51,10 +53,10 @@ def imported(path: Path, everywhere: bool = False) -> set[str]:
             modules = inner & set(NAMES)
             # `from verify import x` imports the module x where there is one, else the package.
             found |= modules or {node.module}
-    return found
+    return frozenset(found)
 
 
-def roots(names: set[str]) -> set[str]:
+def roots(names: Set[str]) -> set[str]:
     return {name.partition(".")[0] for name in names}
 
 
@@ -133,12 +135,12 @@ def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
     assert {name for name in slow if not name.startswith("verify.strategies")} == EXPLORING
 
 
-def of_arrays(edges: dict[str, set[str]]) -> set[str]:
+def of_arrays(edges: Mapping[str, Set[str]]) -> set[str]:
     """The modules that import numpy when they are imported themselves."""
     return {name for name, names in edges.items() if "numpy" in roots(names)}
 
 
-def bring_arrays(edges: dict[str, set[str]]) -> set[tuple[str, str]]:
+def bring_arrays(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
     """(module, array module) where the first imports the second, and is none itself."""
     arrays = of_arrays(edges)
     return {(name, other) for name in set(edges) - arrays for other in edges[name] & arrays}
@@ -170,9 +172,9 @@ system = "duffing"
 parameters = { delta = 1 }
 schemes = ["lie2"]
 [[flow]]
-shape = "cat"
+shape = "circle"
 step_size = 0.01
-steps = [50]
+steps = [5]
 """
 
 

@@ -18,6 +18,7 @@ from tests.mutants.mutate import (
     mutated_source,
     path_of,
 )
+from tests.mutants.run import ordered
 from tests.mutants.summary import found_in, share
 from tests.mutants.targets import modules, sample, shares
 
@@ -90,6 +91,9 @@ def test_each_operator_makes_what_it_says(operator: str, source: str, wanted: li
         "x = isinstance(a, A | B)",
         "x = zip(*a, strict=True)",
         "_MOST = 5000",
+        "_GUARD = 12",
+        "_HALVINGS, _NEWTON = 6, 8",
+        "x = f(pipelined=True, chunk=1)",
     ],
 )
 def test_what_computes_nothing_is_not_changed(source: str) -> None:
@@ -105,6 +109,13 @@ def test_the_rules_of_what_is_left_alone_are_narrow() -> None:
     assert made("SIZES = a[b] | c", "arithmetic")
     assert made("def f():\n    return 5000")
     assert made("_MOST = 50")
+    assert made("_GUARD = f(12)")
+    assert made("_GUARD, _MOST = 1, 2")
+    assert made("def f():\n    _GUARD = 12")
+    kept = "if x not in a:\n    a[x] = b"
+    assert made(kept, "condition") == ["if False:\n    a[x] = b"]
+    assert len(made(kept.replace("a[x]", "c[x]"), "condition")) == 2
+    assert len(made(kept.replace("not in", "in"), "condition")) == 2
     assert made("x = f(a, large=True)") == ["x = f(a, large=False)"]
 
 
@@ -163,7 +174,7 @@ def in_a_process(source: str) -> str:
 
 
 def test_one_module_is_planted_and_nothing_on_disk_is_changed() -> None:
-    mutant = one(COMBINATION, "rank - 1 → rank + 1")
+    mutant = one(COMBINATION, "last in pivots → True")
     before = {p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "proof").rglob("combination*")}
     source = records.source()
     changed = in_a_process(PLANTED.format(module=COMBINATION, index=mutant.index)).split(";")
@@ -236,13 +247,13 @@ def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) 
     path.write_text(CHECK)
     ruth = "verify.schemes.ruth3"
     wrong = [one(ruth, "minus-dropped -2"), one(ruth, "Rational(7, 24) → Rational(24, 7)")]
-    broken, unseen = one(ruth, "constant 0 → 1"), one(ruth, "truth False → True")
+    broken, unseen = one(ruth, "alternating(_SIZES"), one(ruth, "truth False → True")
     text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, broken, unseen)])
     sound, *killed, lives = json.loads(in_a_process(text).splitlines()[-1])
     assert sound["by"] is None
     assert len(sound["entered"][ruth]) == 2, "the module's own code, and make"
     assert {k["by"] for k in killed} == {"test_mine.py::test_ruth3_has_order_three"}
-    assert "IndexError" in killed[-1]["why"]
+    assert "KeyError" in killed[-1]["why"]
     assert lives["by"] is None
 
 
@@ -254,6 +265,19 @@ def test_the_killers_are_all_files_of_properties_and_the_battery_where_it_is() -
     assert "tests/unit/test_step_map.py" in {
         k.name for k in killers.unit_killers("verify.step_map")
     }
+
+
+def test_what_is_near_and_cheap_is_asked_first() -> None:
+    """The battery looks at all modules, and a file at those that it imports, or their package."""
+    folder = ROOT / "tests" / "property"
+    files = ("test_flow.py", "test_splittings.py", "test_trees.py")
+    made = [killers.of_file(folder / name, 2) for name in files]
+    made.append(killers.Killer(killers.BATTERY, 1, lambda _: {}))
+    far, near, other, battery_ = (k.name for k in made)
+    seconds = {far: 1, near: 9, other: 2, battery_: 5}
+    sound = [{"killer": name, "seconds": s} for name, s in seconds.items()]
+    mutant = mutants("verify.proof.splitting_conditions")[0]
+    assert [k.name for k in ordered(mutant, sound, made)] == [battery_, near, far, other]
 
 
 # -- what is told -----------------------------------------------------------------------------

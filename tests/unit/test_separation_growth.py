@@ -31,10 +31,10 @@ def test_random_walks_are_recognised_and_hardly_ever_called_a_drift() -> None:
 def test_the_standard_error_is_the_scatter_of_walks_and_not_of_one_regression() -> None:
     for points in (256, POINTS):
         marks = MARKS[:points]
-        found = [growth(marks, walk(seed, points=points), Fraction(0)) for seed in range(300)]
+        found = [growth(marks, walk(seed, points=points), Fraction(0)) for seed in range(150)]
         slopes = [each.exponent for each in found if each.exponent is not None]
         errors = [each.standard_error for each in found if each.standard_error is not None]
-        assert len(slopes) == len(errors) == 300
+        assert len(slopes) == len(errors) == 150
         assert abs(mean(slopes) - 0.5) < 0.08
         assert 0.75 < mean(errors) / stdev(slopes) < 1.35, points
 

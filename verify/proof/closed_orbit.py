@@ -5,9 +5,9 @@ period of H in p or q (a rotation, as the pendulum's). Nothing else is taken for
 a separatrix or one that leaves is a NoFlowError that says what was seen.
 
 The flow is followed with few digits until it crosses, in the direction of f(z₀), the line through
-z₀ normal to f(z₀), and comes back to z₀ there. Newton's method then gives the period with all its
-digits, and it is seen whether the orbit closes to as many: one on a separatrix does not, as the
-digits decide how near it comes to the saddle.
+z₀ normal to f(z₀), and comes back to z₀ there. Newton's method then gives the period, and it is
+seen whether the orbit closes to all digits: one on a separatrix does not, as the digits decide how
+near it comes to the saddle. The period of one close beside it has fewer digits than were asked for.
 """
 
 import math

@@ -8,7 +8,7 @@ import flint
 from verify.generator import terms_of
 from verify.ring import Poly
 
-_PRIME = 2**61 - 1
+_PRIME = 2_305_843_009_213_693_951  # 2⁶¹ − 1
 
 
 def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, Any] | None, int]:

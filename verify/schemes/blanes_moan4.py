@@ -47,7 +47,7 @@ _HALF = (
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

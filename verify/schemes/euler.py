@@ -8,7 +8,7 @@ EXAMPLES = ("euler",)
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return Scheme(
         name=name,

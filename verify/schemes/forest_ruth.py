@@ -16,7 +16,7 @@ _HALF = (_THETA / 2, _THETA, (1 - _THETA) / 2, 1 - 2 * _THETA)
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

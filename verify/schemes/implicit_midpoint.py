@@ -18,7 +18,7 @@ _ONE = Fraction(1)
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return Scheme(
         name=name,

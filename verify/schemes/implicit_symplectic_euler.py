@@ -26,7 +26,7 @@ _EQUATIONS = StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE),))
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return Scheme(
         name=name,

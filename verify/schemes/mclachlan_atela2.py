@@ -15,7 +15,7 @@ _SIZES = (1 - _A, _A, _A, 1 - _A)
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

@@ -12,7 +12,7 @@ _SIZES = (
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

@@ -16,7 +16,7 @@ STEPS = (_S, _S, 1 - 4 * _S, _S, _S)
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

@@ -14,7 +14,7 @@ PARTS = alternating("kick", (sympy.S.One, sympy.S.One))
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

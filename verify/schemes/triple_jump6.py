@@ -18,7 +18,7 @@ _STEPS = tuple(outer * inner for outer in (_THETA, 1 - 2 * _THETA, _THETA) for i
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,

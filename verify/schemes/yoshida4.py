@@ -17,7 +17,7 @@ STEPS = (_OUTER, 1 - 2 * _OUTER, _OUTER)
 
 
 def make(name: str) -> Scheme | None:
-    if name != EXAMPLES[0]:
+    if name not in EXAMPLES:
         return None
     return splitting(
         name,
