@@ -131,15 +131,15 @@ def measured(
 
 def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
     area = max(readings, key=lambda point: abs(readings[point].delta_j))
-    error = max(readings, key=lambda point: readings[point].error)
+    distance = max(readings, key=lambda point: readings[point].error)
     return Row(
         h,
         readings[area].delta_j,
         max(r.delta_noise for r in readings.values()),
         area,
-        readings[error].error,
+        readings[distance].error,
         max(r.error_noise for r in readings.values()),
-        error,
+        distance,
     )
 
 
@@ -151,8 +151,8 @@ def _reading(probe: "_Duals | _Floats", flow: Flow, point: Point, h: Fraction) -
     except NoFlowError as error:
         raise StepError(str(error)) from None
     with flow.arithmetic.context():
-        error = max(abs(float(p - end[0])), abs(float(q - end[1])))
-    return Reading(delta, delta_noise, error, noise)
+        distance = max(abs(float(p - end[0])), abs(float(q - end[1])))
+    return Reading(delta, delta_noise, distance, noise)
 
 
 class _Duals:
@@ -190,7 +190,7 @@ def carried_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: An
 
             boxes = [np.empty(1, dtype=object) for _ in range(2)]
             boxes[0][0], boxes[1][0] = p, q
-            result = step.raw(function, *boxes, h)
+            result = step.raw(function, boxes[0], boxes[1], h)
         else:
             result = step.raw(function, p, q, h)
     pair = step.pair(result)

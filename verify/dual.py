@@ -49,8 +49,9 @@ class Dual(Carried):
     """`value`, and `by_p` and `by_q`, its partial derivatives."""
 
     __slots__ = ("by_p", "by_q", "value")
+    kind: Duals
 
-    def __init__(self, kind: Any, value: Number, by_p: Number, by_q: Number) -> None:
+    def __init__(self, kind: Duals, value: Number, by_p: Number, by_q: Number) -> None:
         super().__init__(kind)
         self.value, self.by_p, self.by_q = value, by_p, by_q
 
@@ -72,7 +73,7 @@ class Dual(Carried):
         self.kind.compared = True
         if gmpy2.is_nan(self.value) or gmpy2.is_nan(other.value):
             return 2 if gmpy2.is_nan(self.value) else -2
-        return (self.value > other.value) - (self.value < other.value)
+        return int(self.value > other.value) - int(self.value < other.value)
 
     def combined(self, name: str, other: Any) -> "Dual":
         x, y = self.value, other.value
@@ -126,7 +127,7 @@ class Dual(Carried):
         if exponent.denominator == 1:
             n = int(exponent)
             if n == 0:
-                return self.kind.rational(Fraction(1))  # type: ignore[no-any-return]
+                return self.kind.rational(Fraction(1))
             if x == 0 and n < 0:
                 raise ZeroDivisionError("0 cannot be raised to a negative power")
             return self._chained(x**n, n * x ** (n - 1))

@@ -91,7 +91,7 @@ class Scalars:
 
     def parts(self, node: Node) -> list[tuple[Scalar, Node]]:
         """A sum's or a multiple's parts; none of another node."""
-        minus = {(): Fraction(-1)}
+        minus: Scalar = {(): Fraction(-1)}
         match node.operation:
             case "add" | "subtract":
                 sign = self.one if node.operation == "add" else minus

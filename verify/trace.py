@@ -81,7 +81,7 @@ class Traced(Carried):
         if y == (0 if name in ("add", "subtract") else 1):
             return self
         if name == "multiply" and x is not None and y is None:
-            return other if x == 1 else other._times(x)
+            return other if x == 1 else other._times(x)  # type: ignore[no-any-return]
         if name == "multiply" and y is not None:
             return self._times(y)
         if name == "add" and x == 0:
