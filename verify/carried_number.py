@@ -11,7 +11,7 @@ import operator
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import Any, NoReturn, Protocol
 
 _SIMPLE = 10_000  # the largest denominator that is read into a float: the chance is 10⁻⁸ a float
 _DECIMALS = 12  # significant digits of a decimal that is read into a float
@@ -71,6 +71,7 @@ class Kind(Protocol):
 
     readings: dict[float, Fraction]  # floats that were read as another number than their value
     rounded: set[float]  # floats that were taken by their binary value, and are no integers
+    refused: list[str]  # what was asked of its numbers and cannot be had: code may catch the error
 
 
 def constant(kind: Kind, value: Any) -> "Carried | None":
@@ -125,7 +126,11 @@ class Carried:
 
     def compared(self, other: Any) -> int:
         """−1, 0 or 1."""
-        raise UntraceableError("it compares numbers")
+        self.refuse("it compares numbers")
+
+    def refuse(self, problem: str) -> NoReturn:
+        self.kind.refused.append(problem)
+        raise UntraceableError(problem)
 
     # -- arithmetic ---------------------------------------------------------------------------
 
@@ -190,7 +195,7 @@ class Carried:
     def _order(self, other: Any) -> int:
         lifted = constant(self.kind, other)
         if lifted is None:
-            raise UntraceableError("it compares a number with what is none")
+            self.refuse("it compares a number with what is none")
         mine, others = self.known(), lifted.known()
         if mine is not None and others is not None:
             return (mine > others) - (mine < others)
@@ -223,8 +228,14 @@ class Carried:
     def _number(self) -> Fraction:
         known = self.known()
         if known is None:
-            raise UntraceableError("it turns numbers into floats or integers")
+            self.refuse("it turns numbers into floats or integers")
         return known
+
+    def _round(self, *_: Any) -> NoReturn:
+        self.refuse("it rounds numbers, or takes remainders")
+
+    __round__ = __floor__ = __ceil__ = __trunc__ = _round
+    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __rdivmod__ = _round
 
     def __float__(self) -> float:
         return float(self._number())
@@ -233,7 +244,7 @@ class Carried:
         return int(self._number())
 
     def __complex__(self) -> complex:
-        raise UntraceableError("it computes with complex numbers")
+        self.refuse("it computes with complex numbers")
 
     def isfinite(self) -> bool:
         self._order(0)
@@ -251,17 +262,17 @@ class Carried:
         import numpy as np
 
         if method != "__call__" or any(value is not None for value in options.values()):
-            raise UntraceableError(f"it writes into arrays of floats by numpy's {ufunc.__name__}")
+            self.refuse(f"it writes into arrays of floats by numpy's {ufunc.__name__}")
         if any(isinstance(x, np.ndarray) and x.ndim for x in inputs):
             return ufunc(*map(_objects, inputs))
         lifted = [constant(self.kind, x) for x in inputs]
         if None in [x if x is None else 0 for x in lifted]:
-            raise UntraceableError(f"it gives numpy's {ufunc.__name__} what is no number")
+            self.refuse(f"it gives numpy's {ufunc.__name__} what is no number")
         if ufunc.__name__ in FUNCTIONS:
             return self.applied(FUNCTIONS[ufunc.__name__])
         if ufunc.__name__ in _OPERATORS:
             return _OPERATORS[ufunc.__name__](*lifted)
-        raise UntraceableError(f"it calls numpy's {ufunc.__name__}")
+        self.refuse(f"it calls numpy's {ufunc.__name__}")
 
 
 def _objects(x: Any) -> Any:

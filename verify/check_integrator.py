@@ -99,6 +99,8 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
     tape = Tape()
     symbols = [tape.symbol(name) for name in "pqh"]
     roots = carried_step(step, copied(step.function, tape), *symbols)
+    if tape.refused:  # what is traced is then what it does where that fails
+        raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
     p_next, q_next = (x.node for x in roots)
     must_agree(step, points, lambda kind: by_graph(kind, p_next, q_next), "proof")
     traced = traced_map(hamiltonian, p_next, q_next)
@@ -110,7 +112,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
         order=proof.order,
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
-        order_known=not (proof.verdict is Verdict.UNDECIDED and "whether further" in proof.reason),
+        order_known=proof.convergence_decided,
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
         proof=proof,
@@ -120,7 +122,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
 
 
 def _readings(tape: Tape) -> list[str]:
-    notes = []
+    notes = ["h > 0 is taken for granted"] if tape.positive else []
     if tape.readings:
         shown = ", ".join(f"{x!r} as {text(v)}" for x, v in sorted(tape.readings.items()))
         notes.append(f"floats are read as the exact numbers that they are written for: {shown}")

@@ -23,6 +23,7 @@ class Duals:
     def __init__(self) -> None:
         self.readings: dict[float, Fraction] = {}
         self.rounded: set[float] = set()
+        self.refused: list[str] = []
         self.compared = False  # whether values were: there may be branches, or a tolerance
 
     @contextmanager

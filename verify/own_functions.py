@@ -1,8 +1,8 @@
 """A copy of a user's function in which `math` and numpy know our numbers, too.
 
 The copy has globals of its own: modules like `math` and functions like `sin` are replaced, and so
-are the helper functions of the user's module, in closures and defaults as well. The user's module
-is not changed. What is hidden deeper, as in an object's attributes, is called as it is.
+are the helper functions of the user's modules, in closures and defaults as well. These modules are
+not changed. What is hidden deeper, as in an object's attributes, is called as it is.
 """
 
 import cmath
@@ -14,6 +14,7 @@ import sys
 import types
 from collections.abc import Callable, Iterable
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from verify.carried_number import FUNCTIONS, Carried, Kind, constant
@@ -38,6 +39,13 @@ def _own(x: types.FunctionType) -> bool:
     return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
 
 
+def _own_module(x: types.ModuleType) -> bool:
+    """Whether it is the user's: neither of Python's library nor installed."""
+    folders = Path(getattr(x, "__file__", None) or "site-packages").parts
+    standard = x.__name__.partition(".")[0] in sys.stdlib_module_names
+    return not standard and not {"site-packages", "dist-packages"} & set(folders)
+
+
 class _Copier:
     """Copies what a function reaches, each thing once."""
 
@@ -52,7 +60,9 @@ class _Copier:
         if id(x) in self.copies:
             return self.copies[id(x)]
         if isinstance(x, types.ModuleType):
-            return _Module(x, self) if x.__name__ in _MODULES else x
+            if x.__name__ in _MODULES:
+                return _Module(x, self)
+            return _Helpers(x, self) if _own_module(x) else x
         if isinstance(x, functools.partial):
             bound = {name: self.value(v) for name, v in x.keywords.items()}
             return functools.partial(self.value(x.func), *map(self.value, x.args), **bound)
@@ -127,6 +137,16 @@ class _Module:
         if name in _FILLED:
             return _of_objects(found)
         return self._copier.named(name, found)
+
+
+class _Helpers:
+    """A module of the user's, whose functions are copied as they are asked for."""
+
+    def __init__(self, module: types.ModuleType, copier: _Copier) -> None:
+        self._module, self._copier = module, copier
+
+    def __getattr__(self, name: str) -> Any:
+        return self._copier.value(getattr(self._module, name))
 
 
 class _Self:

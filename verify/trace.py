@@ -37,6 +37,8 @@ class Tape:
     def __init__(self) -> None:
         self.readings: dict[float, Fraction] = {}
         self.rounded: set[float] = set()
+        self.refused: list[str] = []
+        self.positive = False  # whether it was asked for the sign of h
         self._nodes: dict[tuple[Any, ...], Node] = {}
 
     def symbol(self, name: str) -> "Traced":
@@ -71,6 +73,15 @@ class Traced(Carried):
 
     def known(self) -> Fraction | None:
         return self.node.value if self.node.operation == "number" else None
+
+    def compared(self, other: Any) -> int:
+        """h > 0, and nothing is known of the sign of anything else."""
+        known = other.known()
+        is_h = (self.node.operation, self.node.value) == (_SYMBOLS, "h")
+        if is_h and known is not None and known <= 0:
+            self.kind.positive = True
+            return 1
+        self.refuse("it compares numbers")
 
     def combined(self, name: str, other: Any) -> "Traced":
         x, y = self.known(), other.known()

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -178,7 +179,47 @@ def test_a_branch_that_hides_from_symbols_is_seen() -> None:
 
     found = found_of(step, Claims(order=1))
     assert (found.verdict, found.how) == ("MEASURED", "duals")
-    assert "with floats it does something else" in found.notes[0]
+    assert "catches the error of a symbol" in found.notes[0]
+
+
+def test_a_caught_error_hides_no_branch_that_no_point_reaches() -> None:
+    """Floats at the points that are tried agree with such a trace, and it is no proof."""
+
+    def compares(p: Any, q: Any, h: Any) -> Any:
+        with suppress(TypeError):
+            p = 2 * p if q > 100 else p
+        return own_steps.euler_a(p, q, h)
+
+    def rounds(p: Any, q: Any, h: Any) -> Any:
+        try:
+            turns = round(q / 1000)
+        except TypeError:
+            turns = 0
+        return own_steps.euler_a(p * (1 + turns), q, h)
+
+    for step in (compares, rounds):
+        assert found_of(step, Claims(order=1)).verdict == "MEASURED"
+
+
+def test_what_asks_whether_h_is_positive_is_proved_for_such_h() -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        if not h > 0:
+            raise ValueError("h")
+        return own_steps.verlet(p, q, h)
+
+    found = found_of(step)
+    assert found.verdict == "PROVED"
+    assert "h > 0 is taken for granted" in found.notes
+
+
+def test_a_map_that_is_not_the_identity_at_h_0_is_no_scheme() -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        p, q = own_steps.verlet(p, q, h)
+        return p + 1e-12, q
+
+    found = found_of(step)
+    assert (found.verdict, found.convergence_order) == ("REFUTED", -1)
+    assert found.reason.endswith("not even at h = 0")
 
 
 def test_exchanged_arguments_are_told() -> None:
