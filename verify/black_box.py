@@ -4,9 +4,11 @@ With dual numbers of 200 bits where its code lets them through; else with floats
 central differences of the sixth order, whose error is estimated by a second width.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from verify.arithmetic import mpfr
@@ -32,6 +34,10 @@ LADDERS = {
 }
 # To show where an order is missed: what is small beside the rest shows at small steps.
 FINER = {"duals": [Fraction(1, 2**k) for k in range(3, 31)], "floats": LADDERS["floats"]}
+_RISES = 1.5  # times the ΔJ of a larger step: no power of h does so
+_FINE = (
+    0.25  # the largest step at which that is looked for: further terms may do so for larger ones
+)
 _ENOUGH = 6  # rows, with which what is slow may end
 
 
@@ -43,6 +49,7 @@ class Reading:
     delta_noise: float
     error: float
     error_noise: float
+    increment: float  # of the exact flow
 
 
 @dataclass(frozen=True)
@@ -56,21 +63,41 @@ class Row:
     error: float
     error_noise: float
     error_at: Point
+    increment: float
 
 
 @dataclass(frozen=True)
 class Measured:
     """`how`: "duals" or "floats". `rows` by falling h. `opaque`: whether it may solve equations up
-    to a tolerance, since values were compared or floats hide what it does.
+    to a tolerance, since values were compared or floats hide what it does. `rounded`: whether its
+    coefficients are. `points`: those that it was tried at.
     """
 
     how: str
     rows: tuple[Row, ...]
     opaque: bool
+    rounded: bool
+    points: tuple[Point, ...]
+
+    @property
+    def steady(self) -> tuple[Row, ...]:
+        """The rows down to where ΔJ first grows as h falls, as where a loop does one turn less."""
+        told = [k for k, row in enumerate(self.rows) if abs(row.delta_j) > 10 * row.delta_noise]
+        for k, after in pairwise(told):
+            one, two = self.rows[k], self.rows[after]
+            if one.h <= _FINE and abs(two.delta_j) > _RISES * abs(one.delta_j):
+                return self.rows[:after]
+        return self.rows
+
+    @property
+    def ragged(self) -> bool:
+        """Whether ΔJ is like what the tolerance of a loop leaves, and follows no power before."""
+        return self.opaque and self.area.power is None and len(self.steady) < len(self.rows)
 
     @property
     def area(self) -> Fitted:
-        rows = [(float(r.h), abs(r.delta_j), r.delta_noise) for r in self.rows]
+        used = self.steady if self.opaque else self.rows
+        rows = [(float(r.h), abs(r.delta_j), r.delta_noise) for r in used]
         # Two steps of the same tolerance may differ by a power, by chance; five hardly do.
         return fitted(rows, self.opaque, 5 if self.how == "floats" else 3)
 
@@ -89,6 +116,12 @@ class Measured:
     def noise(self) -> float:
         """The largest noise of ΔJ: the probe's own error."""
         return max(row.delta_noise for row in self.rows)
+
+    @property
+    def unseen(self) -> float:
+        """An error of the step's increments, in parts of them, that would not show at any h."""
+        seen = [(r.error + 10 * r.error_noise) / r.increment for r in self.rows if r.increment]
+        return min(seen, default=math.inf)
 
 
 def measured(
@@ -126,7 +159,7 @@ def measured(
             rows.append(_row(h, readings))
     if len(rows) < _ENOUGH:
         raise StepError(lost or "it fails for most steps")
-    return Measured(how, tuple(rows), probe.opaque)
+    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive))
 
 
 def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
@@ -140,6 +173,7 @@ def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
         readings[distance].error,
         max(r.error_noise for r in readings.values()),
         distance,
+        max(r.increment for r in readings.values()),
     )
 
 
@@ -152,7 +186,8 @@ def _reading(probe: "_Duals | _Floats", flow: Flow, point: Point, h: Fraction) -
         raise StepError(str(error)) from None
     with flow.arithmetic.context():
         distance = max(abs(float(p - end[0])), abs(float(q - end[1])))
-    return Reading(delta, delta_noise, distance, noise)
+        increment = max(abs(float(end[0] - start[0])), abs(float(end[1] - start[1])))
+    return Reading(delta, delta_noise, distance, noise, increment)
 
 
 class _Duals:
@@ -166,6 +201,10 @@ class _Duals:
     @property
     def opaque(self) -> bool:
         return self.kind.compared
+
+    @property
+    def rounded(self) -> bool:
+        return bool(self.kind.rounded)
 
     def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
         with self.kind.running():
@@ -203,7 +242,7 @@ def carried_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: An
 class _Floats:
     """The step at floats."""
 
-    opaque = True
+    opaque = rounded = True
 
     def __init__(self, step: Step) -> None:
         self.step = step

@@ -4,17 +4,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from verify.black_box import Measured, Point, carried_step, measured
+from verify.black_box import Point, carried_step, measured
 from verify.carried_number import UntraceableError
 from verify.errors import InputError
-from verify.exact import decimal, plain, text
+from verify.exact import decimal, text
 from verify.hamiltonian import Hamiltonian
 from verify.integrator_agreement import by_duals, by_graph, must_agree
 from verify.integrator_claims import with_claims
 from verify.integrator_faults import examined
+from verify.integrator_measured import of_measured
 from verify.integrator_results import NOTHING, Claims, Finding
 from verify.own_functions import copied
 from verify.own_step import Step, StepError, last_line, within
+from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
 from verify.rounded_order import Rounded, rounded_orders
 from verify.trace import Tape
@@ -28,8 +30,6 @@ POINTS: tuple[Point, ...] = (
     (Fraction(3, 4), Fraction(-2, 5)),
 )
 _PROOF_SECONDS = 30.0
-_SEEN = 1e-6  # a ΔJ that no tolerance makes
-_NO_AREA = 1e-8  # a ΔJ above it, of no power of h, or a probe's error, leaves it undecided
 
 
 def check_integrator(
@@ -67,9 +67,8 @@ def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fin
             if how == "duals":
                 must_agree(step, points, by_duals(step), how)
             found = measured(step, hamiltonian, points, how)
-            return _with_floats(_of_measured(found), found, step, hamiltonian, points).noting(
-                *notes
-            )
+            told = of_measured(found, step, hamiltonian, points)
+            return replace(told, notes=(*notes, *told.notes))
         except Exception as error:  # as above
             notes.append(f"not measured with {how}: {_why(error)}")
     return Finding(Verdict.UNDECIDED, "it can be neither traced nor measured", "calls").noting(
@@ -113,6 +112,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
         order_known=proof.convergence_decided,
+        area_at_least=proof.first.power or MOST_ORDERS + 1,
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
         proof=proof,
@@ -155,6 +155,7 @@ def _but_for_rounding(found: Finding, traced: TracedMap, tape: Tape) -> Finding:
         area_preserving=True if kept else None if area is None else False,
         convergence_order=better.convergence if better.convergence is not None else p.most,
         leading=leading,
+        area_at_least=p.most,
         proof=None,
     )
 
@@ -185,7 +186,8 @@ def _measured_area(
     if found.area_preserving is not None or found.verdict is Verdict.REFUTED:
         return found
     try:
-        other = _of_measured(measured(step, hamiltonian, points, "duals"))
+        by_duals = measured(step, hamiltonian, points, "duals")
+        other = of_measured(by_duals, step, hamiltonian, points)
     except Exception as error:  # the user's code may raise anything
         return found.noting(f"not measured: {_why(error)}")
     if other.verdict is not Verdict.MEASURED:
@@ -195,90 +197,7 @@ def _measured_area(
         convergence_order=found.convergence_order,
         order_known=found.order_known,
         reason=f"{other.reason} (the coefficients of ΔJ are not decided: {found.reason})",
-        notes=found.notes,
+        notes=(*found.notes, *other.notes),
         leading=found.leading,
+        area_at_least=found.area_at_least,
     )
-
-
-# -- measured -------------------------------------------------------------------------------------
-
-
-def _of_measured(found: Measured) -> Finding:
-    area, distance = found.area, found.distance
-    exact = all(row.error <= 10 * row.error_noise for row in found.rows)
-    order = None if distance.power is None else distance.power - 1
-    vanishes, said = _area_said(found)
-    tail = distance.tail
-    if exact:
-        told = "the map is the exact flow to its last digits"
-    else:
-        known = order is not None
-        seen = f"{Fraction(distance.first)} … {distance.last:.1e}"
-        told = f"the map's order is {order}, as seen for h = {seen}"
-        told = told if known else "its error follows no power of h"
-    verdict = Verdict.MEASURED
-    if order is not None and order < 1:
-        verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"
-    elif (area.power is None and not vanishes) or (order is None and not exact):
-        verdict = Verdict.UNDECIDED
-    sure = tail is None or tail.small
-    finding = Finding(
-        verdict,
-        f"{told}; {said}",
-        found.how,
-        order=area.power,
-        area_preserving=True if vanishes else False if area.power is not None else None,
-        convergence_order=order,
-        order_known=exact or (order is not None and sure),
-        largest=abs(found.largest.delta_j),
-        probe_error=found.noise,
-    )
-    if tail is None:
-        return finding
-    return finding.noting(
-        f"for h below {tail.h:.1e}, where its error is {tail.error:.1e}, that shrinks as "
-        f"h^{tail.power} only, as the tolerance of a loop or a small mistake makes it"
-    )
-
-
-def _with_floats(
-    found: Finding,
-    by_duals: Measured,
-    step: Step,
-    hamiltonian: Hamiltonian,
-    points: Sequence[Point],
-) -> Finding:
-    """A small ΔJ of a step that compares values is taken from floats.
-
-    A loop with a tolerance ends before the derivatives have settled: what dual numbers have is then
-    the derivative of the operations that were done, and no more of the map.
-    """
-    if by_duals.how != "duals" or not by_duals.opaque or found.order is None:
-        return found
-    if found.largest is None or found.largest > _SEEN:
-        return found
-    other = _of_measured(measured(step, hamiltonian, points, "floats"))
-    area = replace(
-        found,
-        verdict=other.verdict if found.verdict is Verdict.MEASURED else found.verdict,
-        reason=f"{found.reason.partition('; ')[0]}; {other.reason.partition('; ')[2]}",
-        order=other.order,
-        area_preserving=other.area_preserving,
-        largest=other.largest,
-        probe_error=other.probe_error,
-    )
-    return area.noting("ΔJ is measured with floats, as a tolerance may hide in a smaller one")
-
-
-def _area_said(found: Measured) -> tuple[bool, str]:
-    """Whether ΔJ is 0 as far as can be seen, and what is seen of it."""
-    if found.area.power is not None:
-        return False, f"ΔJ shrinks as h^{found.area.power}"
-    largest, noise = abs(found.largest.delta_j), found.noise
-    most = max(largest, noise)  # a ΔJ of 0 is not known better than its noise
-    shown = plain(Fraction(most), 2) if most >= 1e-3 else f"{most:.1e}"
-    if noise > _NO_AREA:
-        return False, f"ΔJ is hidden by the probe's own error, {noise:.1e}"
-    if largest <= (_NO_AREA if found.how == "duals" else 10 * noise):
-        return True, f"|ΔJ| ≤ {shown} at every point and step"
-    return False, f"|ΔJ| up to {shown} follows no power of h"

@@ -6,22 +6,28 @@ from itertools import pairwise
 
 from verify.black_box import FINER, Measured, Point, Row, measured
 from verify.hamiltonian import Hamiltonian
-from verify.integrator_results import Claims, Counterexample, Finding, broken
+from verify.integrator_results import NOTHING, Claims, Counterexample, Finding, broken
 from verify.own_step import Step
 from verify.verdict import Verdict
 
 _TOO_SLOW = 1.3  # times what a power allows: a step's other terms make less of it
 _PLAINLY = 0.95
+_SHOWN = {"proof": Verdict.PROVED, "duals": Verdict.MEASURED, "floats": Verdict.MEASURED}
 
 
 def with_claims(
     found: Finding, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
 ) -> Finding:
-    """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided."""
+    """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided.
+
+    Where all that is claimed is shown, what else is not decided does not count.
+    """
     failed = broken(claims, found)
     false = [claim for claim in failed if claim[1] is False]
     if not failed and found.verdict is not Verdict.REFUTED:
-        return found
+        if claims == NOTHING or found.verdict is not Verdict.UNDECIDED:
+            return found
+        return replace(found, verdict=_SHOWN[found.how])
     if not false and found.verdict is not Verdict.REFUTED:
         return replace(
             found,

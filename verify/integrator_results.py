@@ -47,9 +47,10 @@ class Finding:
     was only called.
 
     `order`: ΔJ = O(h^order) and no better, None where det J ≡ 1 or it is not known.
-    `convergence_order`: None where no difference from the exact flow is found, or, with
-    `order_known` False, where it is not known. `leading`, `delta_j`: formulas, of a proof.
-    `largest`: the largest |ΔJ| that was measured, and `probe_error`: the error of such a value.
+    `area_at_least`: then ΔJ = O(h^area_at_least) may be known. `convergence_order`: None where no
+    difference from the exact flow is found, or, with `order_known` False, where it is not known.
+    `leading`, `delta_j`: formulas, of a proof. `largest`: the largest |ΔJ| that was measured, and
+    `probe_error`: the error of such a value.
     """
 
     verdict: Verdict
@@ -57,6 +58,7 @@ class Finding:
     how: str
     order: int | None = None
     area_preserving: bool | None = None
+    area_at_least: int | None = None
     convergence_order: int | None = None
     order_known: bool = False
     leading: str | None = None
@@ -81,14 +83,17 @@ def broken(claims: Claims, found: Finding) -> list[tuple[str, bool | None, str]]
             holds = found.convergence_order is None or found.convergence_order >= claims.order
         known = f"the map agrees with the exact flow up to h^{found.convergence_order} only"
         judged.append((f"order {claims.order}", holds, known))
-    area = f"ΔJ has order {found.order}" if found.order is not None else "ΔJ is not 0"
+    area = f"ΔJ has order {found.order}"
+    if found.order is None:
+        area = "ΔJ is not 0"
+        if found.area_at_least is not None:
+            area = f"ΔJ is not 0, but O(h^{found.area_at_least}), as where an iteration ends early"
     if claims.area_preserving:
         judged.append(("det J ≡ 1", found.area_preserving, area))
     if claims.area_order is not None:
-        holds = True if found.area_preserving else None
+        shown = found.area_at_least is not None and claims.area_order <= found.area_at_least
+        holds = True if found.area_preserving or shown else None
         if found.order is not None:
             holds = found.order >= claims.area_order
-        elif found.area_preserving is False:
-            holds = True if claims.area_order <= MOST_CLAIMED else None
         judged.append((f"ΔJ = O(h^{claims.area_order})", holds, area))
     return [claim for claim in judged if claim[1] is not True]

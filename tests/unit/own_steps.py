@@ -74,6 +74,31 @@ def midpoint_loosely(p: Any, q: Any, h: Any) -> Any:
     return x, y
 
 
+def midpoint_to(tolerance: float, change: float = 0.0) -> Any:
+    """The implicit midpoint rule by iteration, opaque to symbols; `change`: a planted friction."""
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        p, q, h = math.fmod(p, 99), math.fmod(q, 99), math.fmod(h, 99)
+        p *= 1 - change * h
+        x, y = p, q
+        for _ in range(200):
+            before = x, y
+            x, y = p + h * force((q + y) / 2), q + h * (p + x) / 2
+            if max(abs(x - before[0]), abs(y - before[1])) < tolerance:
+                break
+        return x, y
+
+    return step
+
+
+def newton_thrice(p: Any, q: Any, h: Any) -> Any:
+    y = q + h * p
+    for _ in range(3):
+        gap = y - q - h * p + h * h / 2 * math.sin((q + y) / 2)
+        y = y - gap / (1 + h * h / 4 * math.cos((q + y) / 2))
+    return p + h * force((q + y) / 2), y
+
+
 def midpoint_by_newton(p: Any, q: Any, h: Any) -> Any:
     """It stops before the last correction is made, so that derivatives lag behind."""
     y = q + h * p
