@@ -11,7 +11,7 @@ from verify.exact import decimal, text
 from verify.hamiltonian import Hamiltonian
 from verify.integrator_agreement import by_duals, by_graph, must_agree
 from verify.integrator_claims import with_claims
-from verify.integrator_faults import examined
+from verify.integrator_faults import Fault, changed_since, examined
 from verify.integrator_measured import of_measured
 from verify.integrator_results import NOTHING, Claims, Finding
 from verify.own_functions import copied
@@ -30,6 +30,8 @@ POINTS: tuple[Point, ...] = (
     (Fraction(3, 4), Fraction(-2, 5)),
 )
 _PROOF_SECONDS = 30.0
+_KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
+_FARTHEST = 10**9
 
 
 def check_integrator(
@@ -37,22 +39,33 @@ def check_integrator(
 ) -> Finding:
     """Runs the user's code. `start`: an initial value to look at beside those of `POINTS`.
 
-    Raises InputError where a parameter of H has no value.
+    Raises InputError where a parameter of H has no value, or `start` is too far for floats.
     """
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
+    for name, x in zip("pq", start or (), strict=False):
+        if abs(x) > _FARTHEST:
+            raise InputError(
+                name, decimal(x, 3), f"is beyond {_FARTHEST:.0e}, for a step in floats"
+            )
     points = ((start,) if start else ()) + POINTS
-    faults = examined(step, points)
-    fatal = [fault for fault in faults if fault.fatal]
-    if fatal:
-        names = tuple(fault.name for fault in faults)
-        return Finding(Verdict.REFUTED, fatal[0].text, "calls", faults=names)
+    faults, first = examined(step, points)
+    if any(fault.fatal for fault in faults):
+        return _no_step(faults)
     found = _found(step, hamiltonian, points)
+    later = changed_since(step, first)
+    if later:
+        return _no_step([*faults, *later])
     if found.verdict is Verdict.REFUTED:
         found = found.noting(*_exchanged(step, hamiltonian, points))
     found = replace(found, faults=tuple(fault.name for fault in faults))
     found = found.noting(*(fault.text for fault in faults))
     return with_claims(found, claims, step, hamiltonian, points)
+
+
+def _no_step(faults: Sequence[Fault]) -> Finding:
+    text = next(fault.text for fault in faults if fault.fatal)
+    return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
 
 
 def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
@@ -62,7 +75,9 @@ def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fin
             return _proved(step, hamiltonian, points)
     except Exception as error:  # the user's code may raise anything
         notes.append(f"no proof: {_why(error)}")
+    kept = _KEPT * max(step.left, 0)
     for how in ("duals", "floats"):
+        step.left += -kept if how == "duals" else kept
         try:
             if how == "duals":
                 must_agree(step, points, by_duals(step), how)

@@ -21,6 +21,7 @@ _NAMES = {
     **dict.fromkeys(("q", "x", "q0", "position", "displacement", "pos"), "q"),
     **dict.fromkeys(("h", "dt", "tau", "step", "step_size", "stepsize", "delta_t"), "h"),
 }
+_MOST_SECONDS = 86_400
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
 
@@ -81,8 +82,12 @@ def made_step(
     """The function as a Step, and notes on how its arguments are understood.
 
     `arguments`: "q,p,h" or another order; without it the names of its arguments tell, where they
-    do. `parameters`: those of H, which it may take by name. InputError for a wrong signature.
+    do. `parameters`: those of H, which it may take by name. InputError for a wrong signature, or
+    a time limit that is none.
     """
+    if not 0.01 <= time_limit <= _MOST_SECONDS:
+        problem = f"is no number of seconds from 0.01 to {_MOST_SECONDS}"
+        raise InputError("time limit", time_limit, problem)
     order = _order(arguments) if arguments is not None else None
     try:
         named = inspect.signature(function).parameters.values()

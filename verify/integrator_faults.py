@@ -20,8 +20,10 @@ class Fault:
 _STEPS = 0.125, 0.0625  # with which it is tried
 
 
-def examined(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fault]:
-    """What is wrong with it at these points; an empty list where nothing is seen.
+def examined(
+    step: Step, points: Sequence[tuple[Fraction, Fraction]]
+) -> tuple[list[Fault], dict[State, State]]:
+    """What is wrong with it at these points, and what it returned there.
 
     Finds out whether it wants arrays, and sets `step.arrays`.
     """
@@ -36,8 +38,25 @@ def examined(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fa
             if step.left <= 0:
                 break
     if not first:
-        return [_failure(states[0], failures[states[0]])]
-    return [*_as_a_map(step, first), *_with_arrays(step, first)]
+        return [_failure(states[0], failures[states[0]])], first
+    return [*_as_a_map(step, first), *_with_arrays(step, first)], first
+
+
+def changed_since(step: Step, first: Mapping[State, State]) -> list[Fault]:
+    """Whether it returns something else than it did, after many calls."""
+    for state, before in first.items():
+        try:
+            after = step.at(*state, _STEPS[0])
+        except Exception:  # noqa: S112 - a cache may hold numbers of ours
+            continue
+        if after != before:
+            return [_not_a_function(state, before, after)]
+    return []
+
+
+def _not_a_function(state: State, before: State, after: State) -> Fault:
+    found = f"{before} and then {after}{where(*state, _STEPS[0])}"
+    return Fault("not a function", f"it is not deterministic: it returns {found}")
 
 
 def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
@@ -72,8 +91,7 @@ def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
             said = str(error) if isinstance(error, StepError) else f"it raises {last_line(error)}"
             return [Fault("fails", f"{said}, at a later call", fatal=step.left <= 0)]
         if after != before:
-            found = f"{before} and then {after}{where(*state, _STEPS[0])}"
-            return [Fault("not a function", f"it is not deterministic: it returns {found}")]
+            return [_not_a_function(state, before, after)]
     if all(state == after for state, after in first.items()):
         text = "it is frozen: p' = p and q' = q, which preserves area and is no scheme"
         return [Fault("frozen", text)]

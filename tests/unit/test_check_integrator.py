@@ -177,6 +177,17 @@ def test_what_is_wrong_is_named(function: Function, fault: str, said: str) -> No
     assert said in found.reason
 
 
+def test_a_state_that_shows_after_many_calls_is_found_at_the_end() -> None:
+    calls = [0]
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        calls[0] += 1
+        p, q = own_steps.branching(p, q, h)
+        return p + (1e-9 if calls[0] > 40 else 0), q
+
+    assert found_of(step).faults == ("not a function",)
+
+
 def test_an_endless_call_is_ended() -> None:
     assert "does not end within" in found_of(own_steps.endless, limit=0.3).reason
 

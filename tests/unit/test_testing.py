@@ -55,7 +55,17 @@ def test_parameters_and_order_of_arguments() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [{"parameter": {}}, {"p": 1}, {"arguments": "q,p"}, {"p": "x", "q": 0}]
+    "options",
+    [
+        {"parameter": {}},
+        {"p": 1},
+        {"arguments": "q,p"},
+        {"p": "x", "q": 0},
+        {"p": "1e400", "q": 0},
+        {"time_limit": float("nan")},
+        {"time_limit": float("inf")},
+        {"time_limit": 0},
+    ],
 )
 def test_bad_options_are_named(options: dict[str, Any]) -> None:
     with pytest.raises(InputError):
