@@ -80,7 +80,7 @@ def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fin
         step.left += -kept if how == "duals" else kept
         try:
             if how == "duals":
-                must_agree(step, points, by_duals(step), how)
+                must_agree(step, points, by_duals(step))
             found = measured(step, hamiltonian, points, how)
             told = of_measured(found, step, hamiltonian, points)
             return replace(told, notes=(*notes, *told.notes))
@@ -116,7 +116,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
     if tape.refused:  # what is traced is then what it does where that fails
         raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
     p_next, q_next = (x.node for x in roots)
-    must_agree(step, points, lambda kind: by_graph(kind, p_next, q_next), "proof")
+    must_agree(step, points, lambda kind: by_graph(kind, p_next, q_next))
     traced = traced_map(hamiltonian, p_next, q_next)
     proof = prove(traced.step_map)
     found = Finding(

@@ -12,7 +12,8 @@ from verify.own_step import Step
 from verify.trace import Node, in_order
 
 _SIZES = Fraction(1, 8), Fraction(1, 64)
-_AGREES = {"proof": 1e-10, "duals": 1e-6}  # a loop's tolerance may end it elsewhere with duals
+_AGREES = 1e-10
+_ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may with duals
 
 
 def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Any:
@@ -47,7 +48,7 @@ def by_duals(step: Step) -> Any:
     return made
 
 
-def must_agree(step: Step, points: Sequence[Point], made: Any, how: str) -> None:
+def must_agree(step: Step, points: Sequence[Point], made: Any) -> None:
     """UntraceableError where our numbers and the user's floats part at a point.
 
     So it is where the code keeps a state, or takes another branch with floats.
@@ -64,9 +65,8 @@ def must_agree(step: Step, points: Sequence[Point], made: Any, how: str) -> None
                 theirs = [x.value for x in at(*kind.state(*point), kind.rational(h))]
                 compared += 1
                 reach = 1 + max(map(abs, mine))
-                if any(
-                    abs(x - y) > _AGREES[how] * reach for x, y in zip(mine, theirs, strict=True)
-                ):
+                near = _ENDS_ELSEWHERE if kind.compared else _AGREES
+                if any(abs(x - y) > near * reach for x, y in zip(mine, theirs, strict=True)):
                     where = f"p = {point[0]}, q = {point[1]}, h = {h}"
                     raise UntraceableError(f"with floats it does something else, at {where}")
     if not compared:

@@ -20,14 +20,14 @@ def with_claims(
 ) -> Finding:
     """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided.
 
-    Where all that is claimed is shown, what else is not decided does not count.
+    Where all that is claimed is shown, and that it is a scheme, what else is not decided does not
+    count.
     """
     failed = broken(claims, found)
     false = [claim for claim in failed if claim[1] is False]
     if not failed and found.verdict is not Verdict.REFUTED:
-        if claims == NOTHING or found.verdict is not Verdict.UNDECIDED:
-            return found
-        return replace(found, verdict=_SHOWN[found.how])
+        waits = found.verdict is Verdict.UNDECIDED and claims != NOTHING
+        return replace(found, verdict=_SHOWN[found.how]) if waits and found.scheme else found
     if not false and found.verdict is not Verdict.REFUTED:
         return replace(
             found,

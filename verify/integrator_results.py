@@ -70,6 +70,13 @@ class Finding:
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
 
+    @property
+    def scheme(self) -> bool:
+        """Whether it is shown to agree with the exact flow up to h, at least."""
+        if self.convergence_order is None:
+            return self.order_known
+        return self.convergence_order >= 1 and (self.order_known or self.how == "proof")
+
     def noting(self, *notes: str) -> "Finding":
         return replace(self, notes=(*self.notes, *notes))
 
