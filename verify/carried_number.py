@@ -7,6 +7,7 @@ rational whose nearest float it is; another float, such as 1.3512071919596578, i
 binary value, and counted as a rounded coefficient.
 """
 
+import math
 import operator
 from collections.abc import Callable
 from decimal import Decimal
@@ -225,17 +226,28 @@ class Carried:
     def __abs__(self) -> Any:
         return -self if self._order(0) < 0 else self
 
-    def _number(self) -> Fraction:
+    def _number(self, problem: str = "it turns numbers into floats or integers") -> Fraction:
         known = self.known()
         if known is None:
-            self.refuse("it turns numbers into floats or integers")
+            self.refuse(problem)
         return known
 
-    def _round(self, *_: Any) -> NoReturn:
-        self.refuse("it rounds numbers, or takes remainders")
+    def __round__(self, digits: int | None = None) -> Any:
+        return round(self._number("it rounds numbers"), digits)
 
-    __round__ = __floor__ = __ceil__ = __trunc__ = _round
-    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __rdivmod__ = _round
+    def __floor__(self) -> int:
+        return math.floor(self._number("it rounds numbers"))
+
+    def __ceil__(self) -> int:
+        return math.ceil(self._number("it rounds numbers"))
+
+    def __trunc__(self) -> int:
+        return int(self._number("it rounds numbers"))
+
+    def _remainder(self, *_: Any) -> NoReturn:
+        self.refuse("it takes remainders")
+
+    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __rdivmod__ = _remainder
 
     def __float__(self) -> float:
         return float(self._number())

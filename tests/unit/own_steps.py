@@ -130,6 +130,14 @@ def branching(p: Any, q: Any, h: Any) -> Any:
     return p, q + h * p
 
 
+def substeps(p: Any, q: Any, h: Any) -> Any:
+    """As many as their size wants."""
+    count = max(1, math.ceil(h / 0.05))
+    for _ in range(count):
+        p, q = verlet(p, q, h / count)
+    return p, q
+
+
 def only_floats(p: Any, q: Any, h: Any) -> Any:
     p = p - h * math.remainder(math.sin(q), 7)
     return p, q + h * p

@@ -42,6 +42,7 @@ RIGHT = [
     (own_steps.midpoint_loosely, "duals", "MEASURED", 2, None),
     (own_steps.midpoint_by_newton, "duals", "MEASURED", 2, None),
     (own_steps.branching, "duals", "MEASURED", 1, None),
+    (own_steps.substeps, "duals", "MEASURED", 2, None),
     (own_steps.only_floats, "floats", "MEASURED", 1, None),
 ]
 
