@@ -15,6 +15,7 @@ from verify.cli_check import check
 from verify.cli_explore import explore
 from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
+from verify.cli_integrator import check_integrator
 from verify.cli_prove import certificate, prove
 from verify.cli_stability import stability
 from verify.cli_tasks import json_option, told, with_where
@@ -56,6 +57,7 @@ cli.add_command(explore)
 cli.add_command(flow)
 cli.add_command(stability)
 cli.add_command(check)
+cli.add_command(check_integrator)
 cli.add_command(bench)
 
 

@@ -33,7 +33,8 @@ class Proof:
     where ΔJ ≡ 0 (`area_preserving` True) or where it is not decided (`area_preserving` None).
     `witness`: a point (p, q, parameters) at which `leading` is not zero; `enclosure`: its value.
     `convergence_order`: p', q' agree with the exact flow up to h to this power; None where all
-    coefficients looked at agree. `verdict` is REFUTED for a map that is not a scheme for H at all,
+    coefficients looked at agree. `convergence_decided`: whether it is shown to agree no further.
+    `verdict` is REFUTED for a map that is not a scheme for H at all,
     or misses the order its scheme claims; `reason` says what was found in one line.
     """
 
@@ -46,6 +47,7 @@ class Proof:
     step_map: StepMap = field(repr=False, compare=False)
     witness: dict[str, Fraction] = field(default_factory=dict)
     enclosure: str = ""
+    convergence_decided: bool = True
 
     @property
     def leading(self) -> sympy.Expr:
@@ -89,6 +91,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         step_map=step_map,
         witness=leading.decision.witness,
         enclosure=leading.decision.enclosure,
+        convergence_decided=convergence.decided,
     )
 
 
@@ -208,7 +211,10 @@ def _convergence_by(series: _BySeries) -> Convergence:
     flow: tuple[Poly, Poly] | None = None
     for n in range(MOST_ORDERS + 1):
         field, own = series.coefficients(n)
-        flow = own if flow is None else (field.derive(flow[0]), field.derive(flow[1]))
+        if flow is None:  # not `own`: a map need not be the identity at h = 0
+            flow = field.ring.variable("p"), field.ring.variable("q")
+        else:
+            flow = field.derive(flow[0]), field.derive(flow[1])
         for x, y in zip(own, flow, strict=True):
             agrees = field.ring.vanishes(x - y / math.factorial(n))
             if agrees is not True:
@@ -238,7 +244,8 @@ def _verdict(
             return Verdict.UNDECIDED, f"the map {known}; whether further is not decided"
         if scheme:
             return Verdict.REFUTED, f"{scheme.name} claims order {claimed}; the map {known} only"
-        return Verdict.REFUTED, f"not a scheme for this H: the map {known} only"
+        only = " only" if convergence.order is not None and convergence.order >= 0 else ""
+        return Verdict.REFUTED, f"not a scheme for this H: the map {known}{only}"
     match leading.decision.zero:
         case True:
             return Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1"

@@ -1,0 +1,122 @@
+"""`verify check-integrator` and the README's example of `verify.testing`, as users run them."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.test_command_line import apart, here, json_of
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SECTION = README.partition("<!-- check-integrator -->")[2].partition("\n## ")[0]
+EXAMPLE, TESTED = re.findall(r"```python\n(.*?)```", SECTION, re.DOTALL)
+SHOWN = re.findall(r"```\n((?:REFUTED|PROVED).*?)```", SECTION, re.DOTALL)
+KEYS = {"verdict", "order", "leading", "delta_j", "area_preserving", "convergence_order",
+        "telescopes", "potential", "seconds", "reason", "witness"}  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The README's `mine.py`, in the current folder; it is imported anew."""
+    (tmp_path / "mine.py").write_text(EXAMPLE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.delitem(sys.modules, "mine", raising=False)
+    return tmp_path
+
+
+def test_a_plain_function_is_checked_in_under_five_seconds(folder: Path) -> None:
+    begun = time.perf_counter()
+    done = apart("check-integrator", "mine:step", "--system", "pendulum", "--json", cwd=folder)
+    assert time.perf_counter() - begun < 5
+    assert done.returncode == 0, done.stderr
+    found = json_of(done.stdout)
+    assert set(found) >= KEYS
+    assert (found["verdict"], found["area_preserving"]) == ("PROVED", True)
+
+
+def test_the_text_is_that_of_the_readme(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shown = iter(SHOWN)
+    for command in re.findall(r"verify (check-integrator mine.*)", SECTION):
+        status, out, _ = here(capsys, *command.split())
+        text = next(shown)
+        assert status == (1 if text.startswith("REFUTED") else 0)
+        assert out == text
+
+
+def test_json_of_a_refuted_claim_has_the_counterexample(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = ["check-integrator", "mine.py:step", "--system", "pendulum", "--order", "3", "--json"]
+    status, out, err = here(capsys, *given)
+    found = json_of(out)
+    assert (status, err, found["verdict"]) == (1, "", "REFUTED")
+    assert set(found["counterexample"]) == {"p", "q", "h", "quantity", "found", "expected"}
+
+
+BAD = [
+    ("nowhere_at_all:step", [], "does not import: ModuleNotFoundError"),
+    ("broken:step", [], "does not import: ZeroDivisionError: division by zero"),
+    ("quits:step", [], "does not import: SystemExit: 3"),
+    ("spelt:step", [], "does not import: SyntaxError"),
+    ("mine:other", [], "mine has no other; it has: step"),
+    ("mine:math", [], "is no function but module"),
+    ("mine", [], "MODULE:FUNCTION"),
+    ("no.py:step", [], "there is no file no.py"),
+    ("two:step", [], "wanted: step(p, q, h)"),
+    ("mine:step", ["--arguments", "q,p"], "is no order of p, q and h"),
+    ("mine:step", ["--p", "1"], "give both or none"),
+    ("mine:step", ["--system", "pendulum", "--hamiltonian", "p"], "give one of the two"),
+    ("mine:step", ["--system", "duffing"], "has no value"),
+]
+
+
+@pytest.mark.parametrize(("target", "more", "said"), BAD)
+def test_what_cannot_be_called_is_bad_input_in_one_line(
+    folder: Path, capsys: pytest.CaptureFixture[str], target: str, more: list[str], said: str
+) -> None:
+    (folder / "broken.py").write_text("print('about to')\n1 / 0\n")
+    (folder / "quits.py").write_text("import sys\nsys.exit(3)\n")
+    (folder / "spelt.py").write_text("def step(:\n")
+    (folder / "two.py").write_text("def step(p, q):\n    return p, q\n")
+    system = [] if "--system" in more else ["--system", "pendulum"]
+    status, out, err = here(capsys, "check-integrator", target, *system, *more)
+    assert (status, out) == (2, "")
+    assert said in err
+    assert len([line for line in err.splitlines() if line != "about to"]) == 1
+    for name in ("broken", "quits", "spelt", "two"):
+        sys.modules.pop(name, None)
+
+
+def test_the_help_says_that_it_runs_the_users_code(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = here(capsys, "check-integrator", "--help")
+    assert status == 0
+    assert "RUNS YOUR CODE" in out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "status", "said"),
+    [
+        ("", "", 0, "passed"),
+        ("p = p - h / 2", "p = p + h / 2", 1, "not a scheme for this H"),
+        ("step, PENDULUM, 2", "step, PENDULUM, 3", 1, "order 3 is claimed"),
+    ],
+)
+def test_the_pytest_example_passes_and_fails_with_an_error(
+    folder: Path, old: str, new: str, status: int, said: str
+) -> None:
+    assert not old or (EXAMPLE + TESTED).count(old) == 1
+    (folder / "mine.py").write_text(EXAMPLE.replace(old, new), encoding="utf-8")
+    (folder / "test_mine.py").write_text(TESTED.replace(old, new), encoding="utf-8")
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir=.",
+               "test_mine.py"]  # fmt: skip
+    paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+    environment = {**os.environ, "PYTHONPATH": paths}
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment)
+    assert done.returncode == status, done.stdout
+    assert said in done.stdout

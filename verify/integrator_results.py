@@ -1,0 +1,106 @@
+"""What was found of a user's step, and what it claims."""
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from verify.proof.order import Proof
+from verify.verdict import Verdict
+
+MOST_CLAIMED = 12
+
+
+@dataclass(frozen=True)
+class Claims:
+    """What is asked for; None and False ask for nothing.
+
+    `order`: of convergence, at least. `area_order`: ΔJ = O(h^area_order). `area_preserving`:
+    det J ≡ 1.
+    """
+
+    order: int | None = None
+    area_order: int | None = None
+    area_preserving: bool = False
+
+
+NOTHING = Claims()
+
+
+@dataclass(frozen=True)
+class Counterexample:
+    """At (p, q) with step h: what `quantity` is there, and what it would have to be."""
+
+    p: Fraction
+    q: Fraction
+    h: Fraction
+    quantity: str
+    found: str
+    expected: str
+
+    def __str__(self) -> str:
+        at = f"at p = {self.p}, q = {self.q}, h = {self.h}"
+        return f"{at}: {self.quantity} is {self.found}, expected {self.expected}"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """`verdict` with its `reason`; `how`: "proof", "duals", "floats", or "calls" where the function
+    was only called.
+
+    `order`: ΔJ = O(h^order) and no better, None where det J ≡ 1 or it is not known.
+    `area_at_least`: then ΔJ = O(h^area_at_least) may be known. `convergence_order`: None where no
+    difference from the exact flow is found, or, with `order_known` False, where it is not known.
+    `leading`, `delta_j`: formulas, of a proof. `largest`: the largest |ΔJ| that was measured, and
+    `probe_error`: the error of such a value.
+    """
+
+    verdict: Verdict
+    reason: str
+    how: str
+    order: int | None = None
+    area_preserving: bool | None = None
+    area_at_least: int | None = None
+    convergence_order: int | None = None
+    order_known: bool = False
+    leading: str | None = None
+    delta_j: str | None = None
+    proof: Proof | None = field(default=None, repr=False)
+    largest: float | None = None
+    probe_error: float | None = None
+    notes: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
+    counterexample: Counterexample | None = None
+
+    @property
+    def scheme(self) -> bool:
+        """Whether it is shown to agree with the exact flow up to h, at least."""
+        if self.convergence_order is None:
+            return self.order_known
+        return self.convergence_order >= 1 and (self.order_known or self.how == "proof")
+
+    def noting(self, *notes: str) -> "Finding":
+        return replace(self, notes=(*self.notes, *notes))
+
+
+def broken(claims: Claims, found: Finding) -> list[tuple[str, bool | None, str]]:
+    """The claims that are not shown: (which, False or None for undecided, what was found)."""
+    judged: list[tuple[str, bool | None, str]] = []
+    if claims.order is not None:
+        holds = None
+        if found.order_known:
+            holds = found.convergence_order is None or found.convergence_order >= claims.order
+        known = f"the map agrees with the exact flow up to h^{found.convergence_order} only"
+        judged.append((f"order {claims.order}", holds, known))
+    area = f"ΔJ has order {found.order}"
+    if found.order is None:
+        area = "ΔJ is not 0"
+        if found.area_at_least is not None:
+            area = f"ΔJ is not 0, but O(h^{found.area_at_least}), as where an iteration ends early"
+    if claims.area_preserving:
+        judged.append(("det J ≡ 1", found.area_preserving, area))
+    if claims.area_order is not None:
+        shown = found.area_at_least is not None and claims.area_order <= found.area_at_least
+        holds = True if found.area_preserving or shown else None
+        if found.order is not None:
+            holds = found.order >= claims.area_order
+        judged.append((f"ΔJ = O(h^{claims.area_order})", holds, area))
+    return [claim for claim in judged if claim[1] is not True]

@@ -1,0 +1,122 @@
+"""For pytest: what a step function of one's own preserves, asserted.
+
+    from verify.testing import assert_area_preserving, assert_convergence_order
+
+    def step(p, q, h):
+        p = p - h * math.sin(q)
+        return p, q + h * p
+
+    def test_step():
+        assert_area_preserving(step, "pendulum")
+        assert_convergence_order(step, "pendulum", 1)
+
+The step is proved where its code lets symbols through, and else measured; see
+`verify.check_integrator`. It is called, also with p, q and h that are no floats.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from verify.check_integrator import check_integrator
+from verify.errors import InputError
+from verify.exact import Exact, rational
+from verify.hamiltonian import Hamiltonian
+from verify.integrator import made_step
+from verify.integrator_results import MOST_CLAIMED, Claims, Finding
+from verify.own_step import TIME_LIMIT
+from verify.verdict import Verdict
+
+__all__ = ["assert_area_order", "assert_area_preserving", "assert_convergence_order"]
+
+StepFunction = Callable[..., Any]
+
+
+def assert_area_preserving(
+    step: StepFunction, hamiltonian: Hamiltonian | str, **options: Any
+) -> Finding:
+    """AssertionError unless det J ≡ 1 for the map (p, q) ↦ step(p, q, h), and it is a scheme for H.
+
+    `step(p, q, h)` returns p' and q', numbers or arrays of one entry; where its arguments are named
+    q, p, h or x, v, dt it gets and returns them so. `hamiltonian`: a Hamiltonian, a formula such as
+    "p**2/2 - cos(q)", or the name of a known system. `options`: `parameters`, a mapping of names to
+    exact values; `arguments`, such as "q,p,h"; `p` and `q`, an initial value to look at beside
+    others; `time_limit`, seconds for all calls.
+
+    The message has the counterexample: initial value, h, det J − 1 as found. What is not decided
+    fails too, and the message says UNDECIDED. Returns what was found, with its verdict: PROVED, or
+    MEASURED with `probe_error`. Raises InputError where an argument is none that is allowed.
+    """
+    __tracebackhide__ = True
+    return _asserted(step, hamiltonian, Claims(area_preserving=True), options)
+
+
+def assert_area_order(
+    step: StepFunction, hamiltonian: Hamiltonian | str, order: int, **options: Any
+) -> Finding:
+    """AssertionError unless ΔJ = det J − 1 is O(h^order), or 0; else as `assert_area_preserving`.
+
+    The scheme lie2 has ΔJ = O(h³), so that `assert_area_order(lie2, H, 3)` passes.
+    """
+    __tracebackhide__ = True
+    return _asserted(step, hamiltonian, Claims(area_order=_order(order)), options)
+
+
+def assert_convergence_order(
+    step: StepFunction, hamiltonian: Hamiltonian | str, order: int, **options: Any
+) -> Finding:
+    """AssertionError unless one step agrees with the exact flow up to h^order, at least.
+
+    Then the global error is O(h^order). Else as `assert_area_preserving`.
+    """
+    __tracebackhide__ = True
+    return _asserted(step, hamiltonian, Claims(order=_order(order)), options)
+
+
+def _order(order: int) -> int:
+    if isinstance(order, bool) or not isinstance(order, int) or not 1 <= order <= MOST_CLAIMED:
+        raise InputError("order", order, f"is no whole number from 1 to {MOST_CLAIMED}")
+    return order
+
+
+def _hamiltonian(
+    given: Hamiltonian | str, parameters: Mapping[str, Exact | None] | None
+) -> Hamiltonian:
+    from verify import systems
+
+    if isinstance(given, Hamiltonian):
+        return given.with_values({**dict(given.values), **parameters}) if parameters else given
+    if isinstance(given, str) and given in systems.all_systems():
+        return systems.get(given).hamiltonian(parameters)
+    return Hamiltonian.parse(given, parameters)
+
+
+def _asserted(
+    step: StepFunction, hamiltonian: Hamiltonian | str, claims: Claims, options: dict[str, Any]
+) -> Finding:
+    __tracebackhide__ = True
+    known = {"parameters", "arguments", "p", "q", "time_limit"}
+    for name in options:
+        if name not in known:
+            raise InputError(name, options[name], f"unknown; allowed: {', '.join(sorted(known))}")
+    if not callable(step):
+        raise InputError("step", step, "is no function")
+    exact = _hamiltonian(hamiltonian, options.get("parameters"))
+    p, q = options.get("p"), options.get("q")
+    if (p is None) != (q is None):
+        raise InputError("p, q", p if p is not None else q, "give both or none")
+    start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
+    limit = options.get("time_limit", TIME_LIMIT)
+    made, notes = made_step(step, options.get("arguments"), dict(exact.values), limit)
+    found = check_integrator(made, exact, claims, start).noting(*notes)
+    if not found.verdict.holds:
+        raise AssertionError(_message(found))
+    return found
+
+
+def _message(found: Finding) -> str:
+    lines = [f"{found.verdict}: {found.reason}"]
+    if found.verdict is Verdict.UNDECIDED:
+        lines[0] = f"UNDECIDED, which is neither yes nor no: {found.reason}"
+    if found.counterexample is not None:
+        lines.append(str(found.counterexample))
+    return "\n".join([*lines, *found.notes])
