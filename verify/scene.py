@@ -38,6 +38,11 @@
     step_size = 0.01
     steps = [5000, 20000]
 
+    [[reference]]                          # numbers to test against; see verify.reference_sections
+    step_sizes = [0.01]
+    initial_values = [{ q = 1.5, p = 0 }]
+    steps = [0, 1, 10, 100]
+
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
@@ -56,6 +61,7 @@ from verify.errors import InputError
 from verify.exact import text
 from verify.flow_sections import Flow
 from verify.hamiltonian import Hamiltonian
+from verify.reference_sections import Reference
 from verify.results import Frozen
 from verify.runs import CLOSED_FORM, MAX_STEPS, OBSERVABLES
 from verify.scene_sections import WorkPrecision
@@ -193,6 +199,7 @@ class Scene(Frozen):
     stability: tuple[Stability, ...] = ()
     largest_step: tuple[LargestStepOver, ...] = ()
     stability_map: tuple[StabilityMap, ...] = ()
+    reference: tuple[Reference, ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -203,9 +210,11 @@ class Scene(Frozen):
         also = [name for section in of_stability for name in section.schemes]
         also += self.work_precision.schemes if self.work_precision else ()
         also += [name for section in self.flow for name in section.schemes]
+        also += [name for section in self.reference for name in section.schemes]
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
-        runs = self.grid, self.series, self.separation, self.work_precision, self.flow
+        runs = (self.grid, self.series, self.separation, self.work_precision, self.flow,
+                self.reference)  # fmt: skip
         free = set(exact.symbols)
         if not any((*runs, self.stability, self.largest_step)):
             free -= {over.parameter for over in self.stability_map}
