@@ -16,6 +16,7 @@ from verify.cli_explore import explore
 from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_prove import certificate, prove
+from verify.cli_reference import reference
 from verify.cli_stability import stability
 from verify.cli_tasks import json_option, told, with_where
 from verify.errors import InputError, PlaceError
@@ -57,6 +58,7 @@ cli.add_command(flow)
 cli.add_command(stability)
 cli.add_command(check)
 cli.add_command(bench)
+cli.add_command(reference)
 
 
 @cli.command()

@@ -111,7 +111,7 @@ def delta_j_at(step_map: StepMap, p: Known, q: Known, h: Fraction, digits: int) 
         return middle_and_radius(total) if in_reach(total) else None
 
 
-# -- the exact flow ---------------------------------------------------------------------------------
+# -- the exact flow ----------------------------------------------------------------------------
 
 
 def solution(hamiltonian: Hamiltonian, task: SolutionTask) -> SolutionResult:
