@@ -65,7 +65,7 @@ def step_of(name: str, field: Field) -> Step:
     raise UnknownSchemeError(name)
 
 
-# -- the Lie-derivative scheme: the Taylor polynomial of the flow -------------------------------------
+# -- the Lie-derivative scheme: the Taylor polynomial of the flow ---------------------------------
 
 
 def flow_series(field: Field, p: Number, q: Number, order: int) -> tuple[list[Any], list[Any]]:
@@ -127,7 +127,7 @@ def _polynomial(coefficients: Sequence[Number], h: Number) -> Number:
     return total
 
 
-# -- Runge–Kutta --------------------------------------------------------------------------------------
+# -- Runge–Kutta ----------------------------------------------------------------------------------
 
 _Rows = tuple[tuple[Fraction, ...], ...]
 TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
@@ -168,7 +168,7 @@ def product(x: Matrix, y: Matrix) -> Matrix:
     return a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h
 
 
-# -- compositions of shears ---------------------------------------------------------------------------
+# -- compositions of shears -----------------------------------------------------------------------
 
 
 def _yoshida() -> list[Number]:
@@ -200,7 +200,7 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 
 
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
-    """p ← p − a h V'(q), q ← q + a h T'(p), with J's rows likewise: p_row ← p_row − a h V'' q_row."""
+    """p ← p − a h V'(q), q ← q + a h T'(p); J's rows likewise: p_row ← p_row − a h V'' q_row."""
     made: dict[int, list[tuple[str, Number]]] = {}
 
     def step(p: Number, q: Number, h: Number) -> tuple[State, Matrix]:

@@ -55,7 +55,7 @@ def schema_text(name: str) -> str:
     return json.dumps({"$schema": _DIALECT} | schema, ensure_ascii=False, indent=1) + "\n"
 
 
-# -- tables -------------------------------------------------------------------------------------------
+# -- tables ---------------------------------------------------------------------------------------
 
 
 def tables(data: Data) -> dict[str, list[Row]]:
@@ -115,7 +115,7 @@ def _cell(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-# -- the manifest -------------------------------------------------------------------------------------
+# -- the manifest ---------------------------------------------------------------------------------
 
 
 def digest(content: bytes) -> str:

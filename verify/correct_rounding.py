@@ -33,11 +33,15 @@ def correctly_rounded(value: Fraction, bound: Fraction, digits: int) -> Rounded 
     return None
 
 
-def near_zero(value: Fraction, bound: Fraction) -> Rounded | None:
-    """0 with the power of ten that no number within `bound` exceeds; None if 0 is not among them"""
-    if abs(value) > bound:
+def near_zero(value: Fraction, bound: Fraction, digits: int, size: Fraction) -> Rounded | None:
+    """0 ± 10^(−2·digits) times the power of ten in `size`; None where more may be left than that.
+
+    `size`: what the number is small against, such as the initial value; 0 counts as 1.
+    """
+    exponent = (magnitude(size) if size else 0) - 2 * digits
+    if abs(value) + bound > Fraction(10) ** exponent:
         return None
-    return Rounded(value="0", radius=f"1e{magnitude(abs(value) + bound) + 1:+03d}")
+    return Rounded(value="0", radius=f"1e{exponent:+03d}")
 
 
 def exactly(value: Fraction) -> Rounded:

@@ -53,7 +53,7 @@ def _point(hamiltonian: Hamiltonian, step_map: StepMap, task: OrbitTask, step: i
         if change is not None:
             known["delta_j"] = change
         last = guard == _GUARDS[-1]
-        values = {n: _rounded(x, task.digits, last) for n, x in known.items()}
+        values = {n: _rounded(x, task.digits, last, _size(task, n)) for n, x in known.items()}
         if all(values.values()):
             names = {n: values.get(n) for n in ("p", "q", "delta_j", "mse", "lambda")}
             return OrbitPoint(step=step, status="finished", failed_step=None, kind=kind, **names)
@@ -78,8 +78,14 @@ def _run(hamiltonian: Hamiltonian, task: OrbitTask, steps: int, digits: int) -> 
     )
 
 
-def _rounded(known: Known, digits: int, last: bool) -> Rounded | None:
-    return correctly_rounded(*known, digits) or (near_zero(*known) if last else None)
+def _rounded(known: Known, digits: int, last: bool, size: Fraction) -> Rounded | None:
+    rounded = correctly_rounded(*known, digits)
+    return rounded or (near_zero(*known, digits, size) if last else None)
+
+
+def _size(task: OrbitTask | SolutionTask, name: str) -> Fraction:
+    """What a number of that name is small against: p and q against the initial value."""
+    return max(abs(task.p), abs(task.q)) if name in ("p", "q") else Fraction(1)
 
 
 def _without(step: int, status: str, failed_step: int | None) -> OrbitPoint:
@@ -127,7 +133,8 @@ def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> Flow
             digits = task.digits + guard
             at = exact_solution(hamiltonian, **start, time=time, digits=digits)
             last = guard == _GUARDS[-1]
-            p, q = (_rounded((x, at.bound), task.digits, last) for x in (at.p, at.q))
+            size = _size(task, "p")
+            p, q = (_rounded((x, at.bound), task.digits, last, size) for x in (at.p, at.q))
             if p and q:
                 kind = "estimated" if at.bound else "enclosed"
                 return FlowPoint(**row, status="finished", kind=kind, p=p, q=q)

@@ -35,7 +35,8 @@ class Rounded(Frozen):
         Decimal,
         Field(
             description="half a unit of the value's last place; 0 where the value is exact; for a "
-            "value of 0 that is not exact, a power of ten that the number does not exceed"
+            "value of 0 that is not exact, 10 to minus twice the digits, p and q in units of "
+            "their initial values"
         ),
     ]
 
@@ -49,9 +50,8 @@ class OrbitPoint(Frozen):
     status: Annotated[
         Literal["finished", "left range", "unresolved"],
         Field(
-            description="finished: the values are there; left range: the scheme's orbit is not "
-            "defined any more, or beyond every number format; unresolved: the digits asked for "
-            "could not be had"
+            description="finished: the values are there; left range: the scheme's orbit has passed "
+            "2^4000, or is not defined any more; unresolved: the digits asked for could not be had"
         ),
     ]
     failed_step: Annotated[

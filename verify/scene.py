@@ -249,6 +249,11 @@ def load_scene(path: Path) -> Scene:
     return scene_from(read_toml(path), path.name, default_name=path.stem)
 
 
+def scene_from_toml(content: str, name: str) -> Scene:
+    """The scene in a TOML text, which a file of that name held."""
+    return scene_from(_from_toml(content, name), name, default_name=name)
+
+
 def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
     """The scene from a mapping, as TOML gives it."""
     if not _shallow(data):
@@ -264,15 +269,20 @@ def read_toml(path: Path) -> dict[str, Any]:
     """The file's content with its decimals kept as text, so that they stay exact."""
     try:
         content = path.read_bytes().decode()
-        data = tomllib.loads(content, parse_float=str)
     except OSError as error:
         raise InputError("file", str(path), error.strerror or "cannot be read") from None
     except UnicodeDecodeError:
         raise InputError("file", str(path), "is not UTF-8 text") from None
+    return _from_toml(content, str(path))
+
+
+def _from_toml(content: str, source: str) -> dict[str, Any]:
+    try:
+        data = tomllib.loads(content, parse_float=str)
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
-        raise InputError("file", str(path), f"is not TOML: {error}") from None
+        raise InputError("file", source, f"is not TOML: {error}") from None
     if not _shallow(data):
-        raise InputError("file", str(path), f"is nested deeper than {_MAX_DEPTH}")
+        raise InputError("file", source, f"is nested deeper than {_MAX_DEPTH}")
     return data
 
 
