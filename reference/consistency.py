@@ -5,6 +5,7 @@ follows from it; since the scene says what is asked for, every name and input fo
 since the same data always give the same bytes, every file follows from its scene's JSON.
 """
 
+import ast
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -17,7 +18,7 @@ from reference.reading import rows_of
 from reference.writing import Row
 from verify.errors import InputError
 from verify.exact import decimal, magnitude, text
-from verify.formula import parse, to_text
+from verify.formula import parse
 from verify.reference_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference_results import FlowPoint, OrbitPoint, Rounded
 from verify.scene import Scene
@@ -92,11 +93,14 @@ def _proof(data: Data, file: str, proof: Any) -> Iterator[Difference]:
     if proof.area_preserving is False and proof.order is None:
         yield Difference(file, row, "order", "a number, since ΔJ is not 0", "null")
     try:
-        again = to_text(parse(proof.leading, ["p", "q", *data.parameters]))
+        parse(proof.leading, ["p", "q", *data.parameters])
+        tight = ast.unparse(ast.parse(proof.leading, mode="eval")).replace(" ", "")
     except InputError as error:
-        again = f"a formula ({error.problem})"
-    if again != proof.leading:
-        yield Difference(file, row, "leading", again, proof.leading)
+        yield Difference(file, row, "leading", f"a formula ({error.problem})", proof.leading)
+        return
+    spaced = re.sub(r" [+-] ", "", proof.leading)  # the only place where a formula has spaces
+    if tight != proof.leading.replace(" ", "") or " " in spaced:
+        yield Difference(file, row, "leading", tight, proof.leading)
 
 
 def _orbit_row(file: str, run: Run, row: OrbitPoint) -> Iterator[Difference]:
