@@ -15,10 +15,10 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from reference import consistency
-from reference.difference import Difference
+from reference.difference import Difference, Found
 from reference.models import Data, Manifest
-from reference.reading import content_of, json_of, text_of
-from reference.recompute import Found, recomputed
+from reference.reading import content_of, json_of, rows_of, text_of
+from reference.recompute import recomputed
 from reference.writing import MANIFEST, SCHEMAS, digest, json_text, schema_text, tables
 from verify.errors import InputError
 from verify.executors import HERE, Call, Where, opened, performed
@@ -61,7 +61,7 @@ def check(
     found = Checked(seed=seed)
     units = []
     for data, file in _by_itself(folder, own, found):
-        found.rows += len(data.proofs) + sum(len(x.rows) for x in (*data.runs, *data.flow))
+        found.rows += data.count
         kinds = ("proof", data.proofs), ("run", data.runs), ("flow", data.flow)
         units += [(data, file, kind, k) for kind, items in kinds for k in range(len(items))]
     if found.differences:  # what is asked for may not even be known
@@ -106,7 +106,7 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
         if name.endswith(".json") and name not in SCHEMAS:
             read[name] = _model(Data, content, name, found)
         elif name.endswith(".csv"):
-            consistency.rows_of(content, name)
+            rows_of(content, name)
     for each in manifest.files:
         if each.name in contents:
             content = contents[each.name]
@@ -149,12 +149,10 @@ def _model(model: type[M], content: bytes, name: str, found: Checked) -> M | Non
     raw = json_of(content, name)
     try:
         made = model.model_validate(raw)
-    except (ValidationError, RecursionError) as error:
-        told = error.errors(include_url=False)[0] if isinstance(error, ValidationError) else {}
-        where = ".".join(map(str, told.get("loc", ())))
-        given = str(told.get("input", ""))
-        what = f"as the schema says ({told.get('msg', 'not so deep')})"
-        found.differences.append(Difference(name, where, "", what, given))
+    except ValidationError as error:
+        told = error.errors(include_url=False)[0]
+        where, what = ".".join(map(str, told["loc"])), f"as the schema says ({told['msg']})"
+        found.differences.append(Difference(name, where, "", what, str(told["input"])))
         return None
     found.differences += consistency.of_text(json_text(made), text_of(content, name), name)
     return made

@@ -123,8 +123,8 @@ def _orbit_row(file: str, run: Run, row: OrbitPoint) -> Iterator[Difference]:
     if row.failed_step is not None and not 1 <= row.failed_step <= row.step:
         yield Difference(file, label, "failed_step", f"1 … {row.step}", str(row.failed_step))
     if row.step == 0:
-        wanted = {"p": Fraction(run.p), "q": Fraction(run.q), "lam": Fraction(0)}
-        yield from _start(file, label, row, wanted, run.digits)
+        start = {"p": Fraction(run.p), "q": Fraction(run.q), "lam": Fraction(0)}
+        yield from _start(file, label, row, start, run.digits)
 
 
 def _flow_row(file: str, flow: Flow, row: FlowPoint) -> Iterator[Difference]:
@@ -139,8 +139,8 @@ def _flow_row(file: str, flow: Flow, row: FlowPoint) -> Iterator[Difference]:
             yield from _cell(file, label, name, value, flow.digits, size)
     yield from _status(file, label, row)
     if row.step == 0:
-        wanted = {"p": Fraction(flow.p), "q": Fraction(flow.q)}
-        yield from _start(file, label, row, wanted, flow.digits)
+        start = {"p": Fraction(flow.p), "q": Fraction(flow.q)}
+        yield from _start(file, label, row, start, flow.digits)
 
 
 def _status(file: str, label: str, row: OrbitPoint | FlowPoint) -> Iterator[Difference]:

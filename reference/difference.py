@@ -1,6 +1,6 @@
 """What a check finds: one place in the files, what should stand there, and what does."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
 _MOST_SHOWN = 120
 
@@ -28,3 +28,12 @@ def _short(text: str) -> str:
     return (
         "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in shown) or "nothing"
     )
+
+
+@dataclass
+class Found:
+    """What one recomputation found: differences, and what could not be recomputed, and why."""
+
+    rows: int = 0
+    differences: list[Difference] = field(default_factory=list)
+    not_recomputed: list[str] = field(default_factory=list)

@@ -8,8 +8,10 @@ from verify.reference_results import FlowPoint, OrbitPoint
 from verify.results import Frozen
 from verify.verdict import Verdict
 
-DATA_FORMAT = "areaproof reference data 1"
-MANIFEST_FORMAT = "areaproof reference manifest 1"
+DataFormat = Literal["areaproof reference data 1"]
+ManifestFormat = Literal["areaproof reference manifest 1"]
+DATA_FORMAT: DataFormat = "areaproof reference data 1"
+MANIFEST_FORMAT: ManifestFormat = "areaproof reference manifest 1"
 _SHA256 = r"^[0-9a-f]{64}$"
 _EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
 Exact = Annotated[str, Field(pattern=_EXACT)]
@@ -69,7 +71,7 @@ class Data(Frozen):
 
     model_config = ConfigDict(title="areaproof reference data")
 
-    format: Annotated[Literal["areaproof reference data 1"], Field(description="this format")]
+    format: Annotated[DataFormat, Field(description="this format")]
     name: Annotated[Name, Field(description="the scene's name; the files begin with it")]
     hamiltonian: Annotated[
         str, Field(description="the formula of H(p, q) in p, q and the parameters; ** is a power")
@@ -80,6 +82,12 @@ class Data(Frozen):
     proofs: Annotated[tuple[Proof, ...], Field(description="one a scheme")]
     runs: Annotated[tuple[Run, ...], Field(description="one a scheme, initial value and step size")]
     flow: Annotated[tuple[Flow, ...], Field(description="one an initial value and step size")]
+
+    @property
+    def count(self) -> int:
+        """The rows of all tables."""
+        rows = [len(run.rows) for run in self.runs] + [len(flow.rows) for flow in self.flow]
+        return len(self.proofs) + sum(rows)
 
 
 class SceneFile(Frozen):
@@ -103,7 +111,7 @@ class Manifest(Frozen):
 
     model_config = ConfigDict(title="areaproof reference manifest")
 
-    format: Annotated[Literal["areaproof reference manifest 1"], Field(description="this format")]
+    format: Annotated[ManifestFormat, Field(description="this format")]
     command: Annotated[str, Field(description="the command that made the files")]
     versions: Annotated[
         dict[str, str], Field(description="versions of Python and of the libraries that did")

@@ -5,20 +5,19 @@ Jacobians are those of `reference.textbook`, and det J is a d − b c of the fou
 system is flint's balls, so that what is recomputed of a scheme's orbit is rigorous.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
 import flint
 
 from reference.consistency import flow_label, run_label
-from reference.difference import Difference
+from reference.difference import Difference, Found
 from reference.exact_flow import BlowsUpError, NotFollowedError, states_at
-from reference.models import Data, Flow, Proof, Run
+from reference.models import Data, Flow, Run
+from reference.recompute_proof import proof_again, shown
 from reference.tape import NotReadError
 from reference.taylor import Number, number
-from reference.textbook import Field, Step, UnknownSchemeError, flow_series, step_of
+from reference.textbook import Field, Step, UnknownSchemeError, step_of
 from verify.exact import magnitude
 from verify.reference_results import OrbitPoint, Rounded
 
@@ -26,17 +25,7 @@ _FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
 _SHARP = 5  # digits beyond those printed to which an exact value must be met
 _ESCAPED = 4000  # bits of |z| at which an orbit is said to have left
 _FLOW_DIGITS = (8, 40, 100)  # beyond those printed, in turn
-_MOST_ORDER = 12  # to which a map is looked at that agrees with another
 _VALUES = ("p", "q", "delta_j", "mse", "lam")
-
-
-@dataclass
-class Found:
-    """What one recomputation found: differences, and what could not be recomputed, and why."""
-
-    rows: int = 0
-    differences: list[Difference] = field(default_factory=list)
-    not_recomputed: list[str] = field(default_factory=list)
 
 
 class _TooWide(Exception):  # noqa: N818 - no error: the same is done with more bits
@@ -54,7 +43,7 @@ def recomputed(data: Data, file: str, kind: str, index: int) -> Found:
         elif kind == "flow":
             _flow(known, data.flow[index], file, found)
         else:
-            _proof(known, data, data.proofs[index], file, found)
+            proof_again(known, data, data.proofs[index], file, found)
     except (UnknownSchemeError, NotReadError) as error:
         found.not_recomputed.append(f"{file}: {kind} no. {index + 1}: {error}")
     return found
@@ -192,10 +181,6 @@ def _compare(
         raise _TooWide
 
 
-def shown(ball: Number, digits: int) -> str:
-    return str(ball.str(digits + 2, radius=False))
-
-
 # -- the exact flow -------------------------------------------------------------------------------
 
 
@@ -249,114 +234,3 @@ def _burst(known: Field, flow: Flow, step: int, file: str, found: Found) -> None
     else:
         where = file, flow_label(flow, step), "status"
         found.differences.append(Difference(*where, "finished", "blows up"))
-
-
-# -- what is proved -------------------------------------------------------------------------------
-
-
-def _proof(known: Field, data: Data, proof: Proof, file: str, found: Found) -> None:
-    """The powers of h in det J and in the map, at points near the initial values.
-
-    That a coefficient vanishes for every p and q is not seen so, but that it does not is.
-    """
-    step, told = step_of(proof.scheme, known), Found()
-    order, convergence = proof.order, proof.convergence_order
-    most = max(_MOST_ORDER if order is None else order, (convergence or 0) + 1)
-    leading = known.tape.read(proof.leading)
-    seen = {"order": order is None, "convergence_order": convergence is None}
-    looked = 0
-    for p, q in _points(data):
-        with flint.ctx.workprec(512), _cap(most + 1):
-            area, apart, lead = _powers(known, step, p, q, most, leading)
-        if area is None:
-            continue
-        looked += 1
-        where = file, f"proof of {proof.scheme}"
-        _vanish(area[: order or most + 1], (*where, "order"), told)
-        _vanish(apart[: most if convergence is None else convergence + 1],
-                (*where, "convergence_order"), told)  # fmt: skip
-        if order is not None and not (area[order] - lead).contains(0):
-            told.differences.append(
-                Difference(*where, "leading", shown(area[order], 20), shown(lead, 20))
-            )
-        seen["order"] |= order is not None and not area[order].contains(0)
-        seen["convergence_order"] |= convergence is not None and not apart[
-            convergence + 1
-        ].contains(0)
-    found.differences += told.differences
-    if not looked:
-        found.not_recomputed.append(f"{file}: proof of {proof.scheme}: H is not defined nearby")
-        return
-    found.rows += 1
-    for column in (name for name, is_seen in seen.items() if not is_seen):
-        wanted, given = "more: that coefficient is 0", str(getattr(proof, column))
-        if column == "order" or not _exact_nearby(data):
-            found.differences.append(
-                Difference(file, f"proof of {proof.scheme}", column, wanted, given)
-            )
-
-
-def _exact_nearby(data: Data) -> bool:
-    return False
-
-
-def _powers(
-    known: Field, step: Step, p: Fraction, q: Fraction, most: int, leading: int
-) -> tuple[list[Number] | None, list[Number], Number]:
-    """Coefficients of h⁰ … in det J − 1; in the map less the flow (the larger of two); leading."""
-    from reference.taylor import Expansion
-
-    x, y = flint.arb(number(p)), flint.arb(number(q))
-    h = flint.arb_series([0, 1], most + 1)
-    zero = 0 * h
-    (p_next, q_next), (a, b, c, d) = step(x + zero, y + zero, h)
-    ps, qs = flow_series(known, x, y, most)
-    value = Expansion(known.tape, [leading])
-    value.begin(x, y)
-    area = _coefficients(a * d - b * c - 1 + zero, most)
-    along = [_coefficients(z + zero, most) for z in (p_next, q_next)]
-    apart = [
-        max(u - v, w - s, key=lambda ball: not ball.contains(0))
-        for u, v, w, s in zip(along[0], ps, along[1], qs, strict=True)
-    ]
-    lead = value.value(leading)
-    finite = all(x.is_finite() for x in (*area, *apart, lead))
-    return (area if finite else None), apart, lead
-
-
-def _coefficients(series: Any, most: int) -> list[Number]:
-    return [series[k] for k in range(most + 1)]
-
-
-def _vanish(coefficients: list[Number], where: tuple[str, str, str], found: Found) -> None:
-    for k, c in enumerate(coefficients):
-        if not c.contains(0):
-            wanted = f"at most {k}: the coefficient of h^{k} is {shown(c, 12)}"
-            found.differences.append(Difference(*where, wanted, "more"))
-            return
-
-
-def _points(data: Data) -> list[tuple[Fraction, Fraction]]:
-    """Points near the initial values, of no pattern; both coordinates are other than 0."""
-    starts = dict.fromkeys((Fraction(run.p), Fraction(run.q)) for run in data.runs)
-    found = []
-    for p, q in list(starts)[:3]:
-        p, q = p or q / 3 or Fraction(2, 3), q or p / 5 or Fraction(4, 5)
-        found += [(p * Fraction(29, 31), q * Fraction(17, 16)), (p * Fraction(-5, 7), q)]
-    return found
-
-
-class _cap:  # noqa: N801 - used as a statement's word
-    """flint's length of power series, set for a while and given back."""
-
-    def __init__(self, length: int) -> None:
-        self.length = length
-
-    def __enter__(self) -> None:
-        self.before, flint.ctx.cap = flint.ctx.cap, self.length
-
-    def __exit__(self, *_: object) -> None:
-        flint.ctx.cap = self.before
-
-
-Recompute = Callable[[Data, str, str, int], Found]

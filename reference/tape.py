@@ -113,8 +113,8 @@ class Tape:
 
     def _read(self, node: ast.expr, source: str) -> int:
         match node:
-            case ast.Constant(value=int()) if not isinstance(node.value, bool):
-                return self.const(node.value)
+            case ast.Constant(value=int(value)) if not isinstance(value, bool):
+                return self.const(value)
             case ast.Constant(value=float()):
                 return self.const(Fraction(ast.get_source_segment(source, node) or ""))
             case ast.Name(id="p" | "q" | "pi"):

@@ -98,7 +98,7 @@ def lie(field: Field, eta: int) -> Step:
             if k + 1 < eta:
                 known.more(ps[-1], qs[-1])
         z = _polynomial(ps, h), _polynomial(qs, h)
-        return z, tuple(_polynomial([m[i] for m in ms], h) for i in range(4))  # type: ignore[return-value]
+        return z, tuple(_polynomial([m[i] for m in ms], h) for i in range(4))
 
     return step
 
@@ -117,7 +117,7 @@ def _variation(a: list[list[Number | None]], ms: list[Matrix], k: int) -> Matrix
                 total[i] -= qq * m[2 + i]
             if pp is not None:
                 total[2 + i] += pp * m[i]
-    return tuple(x / (k + 1) for x in total)  # type: ignore[return-value]
+    return tuple(x / (k + 1) for x in total)
 
 
 def _polynomial(coefficients: Sequence[Number], h: Number) -> Number:
@@ -155,9 +155,9 @@ def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Ste
         for row in rows:
             at_p, at_q, *m = along(row)
             f, a = field.at(at_p, at_q)
-            slopes.append((*f, *product(a, tuple(m))))  # type: ignore[arg-type]
+            slopes.append((*f, *product(a, tuple(m))))
         z_p, z_q, *j = along(weights)
-        return (z_p, z_q), tuple(j)  # type: ignore[return-value]
+        return (z_p, z_q), tuple(j)
 
     return step
 

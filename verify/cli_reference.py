@@ -68,7 +68,7 @@ def make(
     files = making.files_of(data, parquet=parquet)
     manifest = making.manifest_of(asked, files, making.command_of(scenes, parquet))
     making.write(folder, files, manifest)
-    rows = sum(len(x.rows) for each in data for x in (*each.runs, *each.flow))
+    rows = sum(each.count for each in data)
     size = sum(map(len, files.values()))
     if as_json:
         found: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}

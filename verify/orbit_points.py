@@ -6,6 +6,7 @@ all states within that bound. More digits are asked for until all numbers round 
 """
 
 from fractions import Fraction
+from typing import Literal
 
 import flint
 
@@ -19,7 +20,14 @@ from verify.exact_solution import exact_solution, leaves_by_algebra
 from verify.hamiltonian import Hamiltonian
 from verify.precision import working_precision
 from verify.proof.exact_flow import NoFlowError
-from verify.reference_results import FlowPoint, OrbitPoint, OrbitResult, Rounded, SolutionResult
+from verify.reference_results import (
+    FlowPoint,
+    Kind,
+    OrbitPoint,
+    OrbitResult,
+    Rounded,
+    SolutionResult,
+)
 from verify.results import RunResult
 from verify.runs import AUTO, run
 from verify.step_map import StepMap
@@ -28,6 +36,7 @@ from verify.tasks import OrbitTask, SolutionTask
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step
 _ZERO = Fraction(0), Fraction(0)
+_ENCLOSED: Kind = "enclosed"
 Known = tuple[Fraction, Fraction]  # a value and its bound
 
 
@@ -39,7 +48,7 @@ def orbit(hamiltonian: Hamiltonian, task: OrbitTask) -> OrbitResult:
 
 def _point(hamiltonian: Hamiltonian, step_map: StepMap, task: OrbitTask, step: int) -> OrbitPoint:
     for guard in _GUARDS:
-        known, kind = _start(task), "enclosed"
+        known, kind = _start(task), _ENCLOSED
         if step > 0:
             found = _run(hamiltonian, task, step, task.digits + guard)
             if found.status == "left range":
@@ -127,7 +136,6 @@ def solution(hamiltonian: Hamiltonian, task: SolutionTask) -> SolutionResult:
 
 def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> FlowPoint:
     time, start = step * task.step_size, {"p": task.p, "q": task.q}
-    row = {"step": step, "time": text(time)}
     try:
         for guard in _GUARDS:
             digits = task.digits + guard
@@ -136,13 +144,17 @@ def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> Flow
             size = _size(task, "p")
             p, q = (_rounded((x, at.bound), task.digits, last, size) for x in (at.p, at.q))
             if p and q:
-                kind = "estimated" if at.bound else "enclosed"
-                return FlowPoint(**row, status="finished", kind=kind, p=p, q=q)
+                kind: Kind = "estimated" if at.bound else "enclosed"
+                return FlowPoint(step=step, time=text(time), status="finished", kind=kind, p=p, q=q)
     except InputError as error:
         if error.name != "digits":
             raise
     except NoFlowError:
         told = leaves_by_algebra(hamiltonian, **start, time=time)
         if told is not None and told.startswith("it blows up"):
-            return FlowPoint(**row, status="blows up", kind=None, p=None, q=None)
-    return FlowPoint(**row, status="not followed", kind=None, p=None, q=None)
+            return _nothing(step, time, "blows up")
+    return _nothing(step, time, "not followed")
+
+
+def _nothing(step: int, time: Fraction, status: Literal["blows up", "not followed"]) -> FlowPoint:
+    return FlowPoint(step=step, time=text(time), status=status, kind=None, p=None, q=None)
