@@ -50,7 +50,9 @@ def test_it_is_a_schema_and_the_committed_files_are_of_it(name: str) -> None:
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
     files = sorted(COMMITTED.glob("*.json"))
-    wanted = [x for x in files if x.name not in SCHEMAS and (x.name == MANIFEST) == (name[0] == "m")]
+    wanted = [
+        x for x in files if x.name not in SCHEMAS and (x.name == MANIFEST) == (name[0] == "m")
+    ]
     assert wanted
     for path in wanted:
         content = json.loads(path.read_text(encoding="utf-8"))
