@@ -20,7 +20,7 @@ def nearest(value: Fraction, digits: int) -> Fraction:
 
 @pytest.mark.parametrize("seed", range(200))
 def test_it_is_the_nearest_decimal_and_the_number_is_within_half_a_unit(seed: int) -> None:
-    draw = random.Random(seed)
+    draw = random.Random(seed)  # noqa: S311 - no secret
     value = Fraction(draw.randrange(-(10**40), 10**40), draw.randrange(1, 10**25))
     value *= Fraction(10) ** draw.randrange(-300, 300)
     digits = draw.randrange(1, 25)
@@ -39,7 +39,7 @@ def round_exponent(found: Rounded) -> int:
 
 @pytest.mark.parametrize("seed", range(50))
 def test_it_does_not_depend_on_the_bound(seed: int) -> None:
-    draw = random.Random(seed)
+    draw = random.Random(seed)  # noqa: S311 - no secret
     value = Fraction(draw.randrange(1, 10**30), draw.randrange(1, 10**12))
     bounds = [value / 10**n for n in (20, 25, 40)]
     moved = [value + draw.choice((-1, 1)) * b * Fraction(9, 10) for b in bounds]

@@ -75,7 +75,7 @@ def cells(of: Data, kind: str) -> Iterator[list[Any]]:
 
 @pytest.mark.parametrize("kind", ["run", "flow"])
 def test_any_other_digit_of_any_number_is_found(kind: str) -> None:
-    draw, of = random.Random(5), data("mine")
+    draw, of = random.Random(5), data("mine")  # noqa: S311 - no secret
     for place in cells(of, kind):
         cell = of.model_dump(mode="json", by_alias=True)
         for part in place:
@@ -135,7 +135,7 @@ def test_an_area_that_is_said_to_be_preserved_and_is_not_is_found() -> None:
     of = changed(of, ["proofs", 1, "area_preserving"], True)
     of = changed(of, ["proofs", 1, "order"], None)
     found = again(changed(of, ["proofs", 1, "leading"], "0"), "proof", 1)
-    assert [x.column for x in found.differences][0] == "order"
+    assert found.differences[0].column == "order"
 
 
 @pytest.mark.parametrize("step", [-1, 1])
