@@ -21,12 +21,13 @@ from reference.reading import content_of, json_of, rows_of, text_of
 from reference.recompute import recomputed
 from reference.writing import MANIFEST, SCHEMAS, digest, json_text, schema_text, tables
 from verify.errors import InputError
-from verify.executors import HERE, Call, Where, opened, performed
+from verify.executors import ANYWHERE, HERE, Call, Where, opened, performed
 from verify.keeping import versions
 from verify.scene import Scene, scene_from_toml
 
 M = TypeVar("M", bound=BaseModel)
 Unit = tuple[Data, str, str, int]  # what `recomputed` takes
+_WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
 _VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
 
 
@@ -49,7 +50,7 @@ def check(
     share: float,
     seed: int,
     own: Path | None = None,
-    where: Where = HERE,
+    where: Where = ANYWHERE,
     done: Callable[[int, int], None] | None = None,
 ) -> Checked:
     """Everything of the folder by itself, and a random share of its data computed again.
@@ -69,7 +70,8 @@ def check(
     chosen = _chosen(units, share, seed)
     calls = [Call(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, Found] = {}
-    with opened(where) as place:
+    few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
+    with opened(HERE if few else where) as place:
         for name, part in performed(place, calls):
             parts[name] = part
             if done:
