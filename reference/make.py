@@ -1,5 +1,6 @@
 """Scenes → reference data: the plan's tasks, then one JSON file a scene, its tables, a manifest."""
 
+import re
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -35,6 +36,7 @@ from verify.results import ProofResult
 from verify.scene import Scene, load_scene
 from verify.tasks import key
 
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
 SCENES = Path(__file__).parent / "scenes"
 COMMITTED = Path(__file__).parent / "data"
 
@@ -48,14 +50,17 @@ class Asked:
 
 
 def load(paths: Sequence[Path]) -> list[Asked]:
-    """The scenes in TOML files. InputError for one that asks for no reference data, or two of one
-    name, of which one would overwrite the other."""
+    """The scenes in TOML files. InputError for one that asks for no reference data, a name that no
+    file can have, or two of one name, of which one would overwrite the other."""
     found = [Asked(load_scene(path), path.read_bytes().decode()) for path in paths]
     for path, asked in zip(paths, found, strict=True):
         if not asked.scene.reference:
             raise InputError("SCENE", str(path), "asks for no [[reference]]")
     names = [asked.scene.name for asked in found]
     for name in names:
+        if not _NAME.fullmatch(name) or f"{name}.json" == MANIFEST:
+            problem = "cannot begin a file's name; allowed: letters, digits, - and _; not manifest"
+            raise InputError("name", name, problem)
         if names.count(name) > 1:
             raise InputError("SCENE", name, "two scenes have this name")
     return found

@@ -144,6 +144,29 @@ def test_a_section_that_cannot_be_is_one_line(
     assert says in err
 
 
+@pytest.mark.parametrize("name", ["my scene", "manifest", "data.schema", "-x", "ä"])
+def test_a_scene_whose_name_no_file_can_have_is_refused(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, name: str
+) -> None:
+    path = tmp_path / f"{name}.toml"
+    path.write_text(SCENES["mine"])
+    status, _, err = here(capsys, "reference", "make", str(path), "-o", str(tmp_path / "out"))
+    assert (status, err.count("\n")) == (2, 1)
+    assert "name=" in err
+
+
+def test_a_scheme_that_is_not_computed_again_is_named(
+    capsys: pytest.CaptureFixture[str], scene: Path, tmp_path: Path
+) -> None:
+    own = "p_next = p - h*3/2*sin(q); q_next = q + h*p_next"
+    scene.write_text(SCENES["mine"].replace('"lie1"', f'"{own}"'))
+    folder = str(tmp_path / "out")
+    assert here(capsys, "reference", "make", str(scene), "-o", folder)[0] == 0
+    status, out, _ = here(capsys, "reference", "check", folder, "--all")
+    assert status == 0
+    assert out.count(f"not looked at: mine.json: run no. 1: {own}") == 1
+
+
 def test_other_commands_say_that_they_leave_reference_data_out(
     capsys: pytest.CaptureFixture[str], scene: Path
 ) -> None:
