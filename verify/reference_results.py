@@ -63,8 +63,8 @@ class OrbitPoint(Frozen):
     delta_j: Annotated[
         Rounded | None,
         Field(
-            description="ΔJ = det J − 1 of the step that begins at that state; null too where the "
-            "step is given by equations and det J is not known to be 1"
+            description="ΔJ = det J − 1 of the step that begins at that state; null too where no "
+            "step is defined there, or it is given by equations and det J is not known to be 1"
         ),
     ]
     mse: Annotated[

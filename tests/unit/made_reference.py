@@ -32,7 +32,7 @@ schemes = ["lie2", "symplectic-euler"]
 [[reference]]
 step_sizes = [100]
 initial_values = [{ q = 1, p = 0 }]
-steps = [0, 1, 2, 20]
+steps = [0, 1, 2, 8, 9]
 digits = 9
 flow = false
 """,

@@ -153,6 +153,25 @@ def test_the_step_that_left_the_range_is_found_again(step: int) -> None:
     assert found.differences
 
 
+def test_an_orbit_that_is_not_defined_any_more_has_left() -> None:
+    toml = """
+hamiltonian = "p**2/2 + q*log(q) - q"
+schemes = ["lie2"]
+[[reference]]
+step_sizes = [1]
+initial_values = [{ q = "0.5", p = "-2" }]
+steps = [0, 1, 3, 5]
+digits = 8
+flow = false
+"""
+    of = made({"pole": toml})[0]
+    statuses = [row.status for row in of.runs[0].rows]
+    assert statuses[0] == "finished"
+    assert "left range" in statuses
+    found = again(of, "run", 0)
+    assert (found.differences, found.not_recomputed, found.rows) == ([], [], 4)
+
+
 def test_an_orbit_that_is_said_to_leave_and_does_not_is_found() -> None:
     of = data("mine")
     nothing = dict.fromkeys(("kind", "p", "q", "delta_j", "mse", "lambda"))
