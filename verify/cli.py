@@ -17,6 +17,7 @@ from verify.cli_flow import flow
 from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_integrator import check_integrator
 from verify.cli_prove import certificate, prove
+from verify.cli_reference import reference
 from verify.cli_stability import stability
 from verify.cli_tasks import json_option, told, with_where
 from verify.errors import InputError, PlaceError
@@ -59,6 +60,7 @@ cli.add_command(stability)
 cli.add_command(check)
 cli.add_command(check_integrator)
 cli.add_command(bench)
+cli.add_command(reference)
 
 
 @cli.command()

@@ -119,7 +119,7 @@ def decimal(value: Fraction, digits: int) -> str:
     """`value` rounded half-even to `digits` significant digits, in scientific notation."""
     if value == 0:
         return "0"
-    units, exponent = _rounded(value, digits)
+    units, exponent = rounded_units(value, digits)
     mantissa = gmpy2.mpz(abs(units)).digits()  # str() stops at 4300 digits
     exponent += len(mantissa) - 1
     mantissa = mantissa[:digits]  # 9.99… rounded up to 10 has one more
@@ -128,7 +128,7 @@ def decimal(value: Fraction, digits: int) -> str:
     return f"{sign}{mantissa[0]}{point}e{exponent:+03d}"
 
 
-def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
+def rounded_units(value: Fraction, digits: int) -> tuple[int, int]:
     """(units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits` digits."""
     exponent = magnitude(value) - digits + 1
     return round(value / Fraction(10) ** exponent), exponent
@@ -163,7 +163,7 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
         if known < 1:
             return "0", upper(abs(value) + bound)
         digits = min(most, known)
-    units, exponent = _rounded(value, digits)
+    units, exponent = rounded_units(value, digits)
     return decimal(value, digits), upper(bound + abs(value - units * Fraction(10) ** exponent))
 
 

@@ -22,8 +22,10 @@ from verify.tasks import (
     FlowTask,
     HuntTask,
     LargestStepTask,
+    OrbitTask,
     RunTask,
     SeparationTask,
+    SolutionTask,
     StabilityMapTask,
     StabilityTask,
     Task,
@@ -37,6 +39,7 @@ _CASE_COST = 2_000_000  # about what a case costs that is judged, however short
 _CASES_OF_BISECTION = 20
 _POINT_COST = 30_000_000  # of a point of error against run time: some tenths of a second
 _SCENE_COST = 10_000  # of one property of one drawn scene
+_ROW_COST = 1_000_000  # of a row of reference data, however few its steps
 _FLOW_COST, _FLOW_POINTS = 20_000_000, 20_000  # of a region carried by a map
 # In float64 steps; an arithmetic that is not listed counts as one in between.
 _STEP_COST = {"float64": 1, "fixed": 40, "auto": 40, "mpfr": 700, "mpmath": 3000}
@@ -139,6 +142,10 @@ def cost(task: Task) -> int:
         return 3 * task.steps * _STEP_COST[AUTO]
     if isinstance(task, FlowTask):
         return _FLOW_COST + _FLOW_POINTS * task.steps
+    if isinstance(task, OrbitTask):
+        return _ROW_COST * len(task.steps) + _STEP_COST["mpfr"] * sum(task.steps)
+    if isinstance(task, SolutionTask):
+        return 10 * _ROW_COST * len(task.steps)
     if isinstance(task, ExploreTask):
         return _SCENE_COST * task.count * (len(task.properties) + len(task.claims))
     if isinstance(task, HuntTask):

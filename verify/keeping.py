@@ -19,13 +19,14 @@ _DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
 _SECONDS = 5.0  # between two checkpoints of a run
 
 
-def write_atomically(path: Path, content: str) -> None:
+def write_atomically(path: Path, content: str | bytes) -> None:
     """The whole content or the old one, never a part: written beside it, then renamed."""
+    raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(content)
+        with os.fdopen(handle, "wb") as file:
+            file.write(raw)
             file.flush()
             os.fsync(file.fileno())
         Path(temporary).chmod(0o644)

@@ -12,6 +12,7 @@ from verify.formula import to_text
 from verify.hamiltonian import Hamiltonian
 from verify.keeping import NOTHING, Keeper
 from verify.proof.order import prove
+from verify.reference_results import OrbitResult, SolutionResult
 from verify.results import AverageResult, EveryResult, ProofResult, RunResult, SeparationResult
 from verify.runs import run
 from verify.schemes import get
@@ -25,10 +26,12 @@ from verify.tasks import (
     GrowthTask,
     HuntTask,
     LargestStepTask,
+    OrbitTask,
     ProofTask,
     RunTask,
     SeparationTask,
     ShrinkTask,
+    SolutionTask,
     StabilityMapTask,
     StabilityTask,
     Task,
@@ -47,6 +50,8 @@ Result = (
     | LargestStepResult
     | StabilityMapResult
     | FlowImage
+    | OrbitResult
+    | SolutionResult
     | ExploreResult
     | ShrunkResult
     | HuntResult
@@ -112,6 +117,18 @@ def _flow(task: FlowTask, _: Keeper) -> FlowImage:
     from verify.flow import carry
 
     return carry(_given(task), task)
+
+
+def _orbit(task: OrbitTask, _: Keeper) -> OrbitResult:
+    from verify.orbit_points import orbit
+
+    return orbit(_given(task), task)
+
+
+def _solution(task: SolutionTask, _: Keeper) -> SolutionResult:
+    from verify.orbit_points import solution
+
+    return solution(_given(task), task)
 
 
 def _explore(task: ExploreTask, _: Keeper) -> ExploreResult:
@@ -206,6 +223,8 @@ KINDS: dict[str, Kind] = {
     "largest_step": Kind(_largest_step, LargestStepResult),
     "stability_map": Kind(_stability_map, StabilityMapResult),
     "flow": Kind(_flow, FlowImage),
+    "orbit": Kind(_orbit, OrbitResult),
+    "solution": Kind(_solution, SolutionResult),
     "explore": Kind(_explore, ExploreResult),
     "shrink": Kind(_shrink, ShrunkResult),
     "hunt": Kind(_hunt, HuntResult),

@@ -104,6 +104,8 @@ def _plan_scene(plan: Plan, scene: Scene) -> None:
             plan.leave_out(f"{name}: {peer} beside the schemes", why)
     need_flows(plan, scene)
     need_stability(plan, scene)
+    if scene.reference:
+        plan.leave_out(f"{name}: reference data", "`verify reference make` makes it")
     for what, why, asked in _SECTIONS:
         if not asked(scene):
             plan.leave_out(f"{name}: {what}", why)

@@ -38,6 +38,11 @@
     step_size = 0.01
     steps = [5000, 20000]
 
+    [[reference]]                          # numbers to test against; see verify.reference_sections
+    step_sizes = [0.01]
+    initial_values = [{ q = 1.5, p = 0 }]
+    steps = [0, 1, 10, 100]
+
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
@@ -56,6 +61,7 @@ from verify.errors import InputError
 from verify.exact import text
 from verify.flow_sections import Flow
 from verify.hamiltonian import Hamiltonian
+from verify.reference_sections import Reference
 from verify.results import Frozen
 from verify.runs import CLOSED_FORM, MAX_STEPS, OBSERVABLES
 from verify.scene_sections import WorkPrecision
@@ -193,6 +199,7 @@ class Scene(Frozen):
     stability: tuple[Stability, ...] = ()
     largest_step: tuple[LargestStepOver, ...] = ()
     stability_map: tuple[StabilityMap, ...] = ()
+    reference: tuple[Reference, ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -203,9 +210,11 @@ class Scene(Frozen):
         also = [name for section in of_stability for name in section.schemes]
         also += self.work_precision.schemes if self.work_precision else ()
         also += [name for section in self.flow for name in section.schemes]
+        also += [name for section in self.reference for name in section.schemes]
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
-        runs = self.grid, self.series, self.separation, self.work_precision, self.flow
+        runs = (self.grid, self.series, self.separation, self.work_precision, self.flow,
+                self.reference)  # fmt: skip
         free = set(exact.symbols)
         if not any((*runs, self.stability, self.largest_step)):
             free -= {over.parameter for over in self.stability_map}
@@ -240,6 +249,11 @@ def load_scene(path: Path) -> Scene:
     return scene_from(read_toml(path), path.name, default_name=path.stem)
 
 
+def scene_from_toml(content: str, name: str) -> Scene:
+    """The scene in a TOML text, which a file of that name held."""
+    return scene_from(_from_toml(content, name), name, default_name=name)
+
+
 def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
     """The scene from a mapping, as TOML gives it."""
     if not _shallow(data):
@@ -255,15 +269,20 @@ def read_toml(path: Path) -> dict[str, Any]:
     """The file's content with its decimals kept as text, so that they stay exact."""
     try:
         content = path.read_bytes().decode()
-        data = tomllib.loads(content, parse_float=str)
     except OSError as error:
         raise InputError("file", str(path), error.strerror or "cannot be read") from None
     except UnicodeDecodeError:
         raise InputError("file", str(path), "is not UTF-8 text") from None
+    return _from_toml(content, str(path))
+
+
+def _from_toml(content: str, source: str) -> dict[str, Any]:
+    try:
+        data = tomllib.loads(content, parse_float=str)
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
-        raise InputError("file", str(path), f"is not TOML: {error}") from None
+        raise InputError("file", source, f"is not TOML: {error}") from None
     if not _shallow(data):
-        raise InputError("file", str(path), f"is nested deeper than {_MAX_DEPTH}")
+        raise InputError("file", source, f"is nested deeper than {_MAX_DEPTH}")
     return data
 
 

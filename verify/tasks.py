@@ -134,6 +134,26 @@ class FlowTask(_OfHamiltonian):
     distance: bool
 
 
+class OrbitTask(_FromPoint):
+    """State, ΔJ, MSE and Λ after each of these numbers of steps, correctly rounded."""
+
+    kind: Literal["orbit"] = "orbit"
+    step_size: StepSize
+    steps: tuple[int, ...]
+    digits: int
+
+
+class SolutionTask(_OfHamiltonian):
+    """The exact flow at the times N·h for each of these N, correctly rounded."""
+
+    kind: Literal["solution"] = "solution"
+    q: Number
+    p: Number
+    step_size: StepSize
+    steps: tuple[int, ...]
+    digits: int
+
+
 class Drawn(Frozen):
     """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all)."""
 
@@ -190,6 +210,8 @@ Task = (
     | LargestStepTask
     | StabilityMapTask
     | FlowTask
+    | OrbitTask
+    | SolutionTask
     | ExploreTask
     | ShrinkTask
     | HuntTask

@@ -1,0 +1,39 @@
+"""What a check finds: one place in the files, what should stand there, and what does."""
+
+from dataclasses import asdict, dataclass, field
+
+_MOST_SHOWN = 120
+
+
+@dataclass(frozen=True)
+class Difference:
+    """`wanted` is what the check has, `found` what stands in the file."""
+
+    file: str
+    row: str
+    column: str
+    wanted: str
+    found: str
+
+    def __str__(self) -> str:
+        where = ": ".join(filter(None, (self.file, self.row, self.column)))
+        return f"{where}: should be {_short(self.wanted)}, is {_short(self.found)}"
+
+    def as_json(self) -> dict[str, str]:
+        return asdict(self)
+
+
+def _short(text: str) -> str:
+    shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
+    return (
+        "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in shown) or "nothing"
+    )
+
+
+@dataclass
+class Found:
+    """What one recomputation found: differences, and what could not be recomputed, and why."""
+
+    rows: int = 0
+    differences: list[Difference] = field(default_factory=list)
+    not_recomputed: list[str] = field(default_factory=list)

@@ -1,0 +1,80 @@
+"""Files that may be corrupt or hostile → texts and JSON, or one InputError that says what is wrong.
+
+Nothing is read that is larger than `MOST_BYTES`, and no JSON that would become very many objects.
+"""
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+from verify.errors import InputError
+
+MOST_BYTES = 64 * 2**20
+_MOST_PARTS = 8 * 2**20  # commas and brackets, each about an object of Python's
+_MOST_OPEN = 2**21
+
+
+def content_of(path: Path) -> bytes:
+    """A regular file's content. InputError names the file and the problem."""
+    try:
+        if not path.is_file():
+            raise InputError("file", str(path), "is not there, or is no file")
+        size = path.stat().st_size
+        if size > MOST_BYTES:
+            raise InputError("file", str(path), f"has {size} bytes; allowed: {MOST_BYTES}")
+        with path.open("rb") as file:
+            return file.read(MOST_BYTES)
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+
+
+def text_of(content: bytes, name: str) -> str:
+    """The content as text. InputError where it is not UTF-8."""
+    try:
+        return content.decode()
+    except UnicodeDecodeError as error:
+        raise InputError("file", name, f"is not UTF-8 text, at byte {error.start}") from None
+
+
+def json_of(content: bytes, name: str) -> Any:
+    """The JSON in it, in which no number is a float. InputError for what is not such JSON."""
+    opened = content.count(b"[") + content.count(b"{")
+    if opened > _MOST_OPEN or opened + content.count(b",") > _MOST_PARTS:
+        raise InputError("file", name, "has too many parts")
+    try:
+        return json.loads(
+            text_of(content, name),
+            object_pairs_hook=_unique,
+            parse_float=_no_float,
+            parse_constant=_no_float,
+        )
+    except RecursionError:
+        raise InputError("file", name, "is nested too deep") from None
+    except InputError:
+        raise
+    except ValueError as error:  # JSONDecodeError is one, and so is an integer of too many digits
+        raise InputError("file", name, f"is not JSON: {error}") from None
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key stands twice")
+    return found
+
+
+def _no_float(text: str) -> None:
+    raise ValueError(f"{text[:20]} is no number that these files have")
+
+
+def rows_of(content: bytes, name: str) -> list[tuple[str, ...]]:
+    """The rows of a CSV file. InputError for what is not CSV."""
+    source = text_of(content, name)
+    if content.count(b",") > _MOST_PARTS or content.count(b"\n") > _MOST_PARTS:
+        raise InputError("file", name, "has too many cells")
+    try:
+        return [tuple(row) for row in csv.reader(io.StringIO(source, newline=""), strict=True)]
+    except csv.Error as error:
+        raise InputError("file", name, f"is not CSV: {error}") from None

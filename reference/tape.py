@@ -1,0 +1,202 @@
+"""A formula as a list of operations, its derivatives as more of them: for recomputing, and alone.
+
+Nothing of `verify` is used here: the formula is read from Python's syntax tree, and derivatives are
+taken operation by operation. Operations that are the same are one.
+"""
+
+import ast
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+Node = tuple[Any, ...]  # (kind, operands …); operands are indices of earlier nodes
+PAIRS = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
+_FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan")
+
+
+class NotReadError(ValueError):
+    """A formula with something in it that this module does not know."""
+
+
+class Tape:
+    """Operations in p and q; each node comes after its operands.
+
+    Kinds: const, pi, p, q, add, mul, scale (by a Fraction), power (by a Fraction), sin, cos, exp,
+    log, sinh, cosh, atan (with 1 + u² as second operand). sin and cos of a node come together, and
+    so do sinh and cosh.
+    """
+
+    def __init__(self, parameters: Mapping[str, Fraction]) -> None:
+        self.parameters = parameters
+        self.nodes: list[Node] = []
+        self._known: dict[Node, int] = {}
+        self._derived: dict[tuple[int, str], int] = {}
+
+    # -- building -------------------------------------------------------------------------------
+
+    def node(self, *content: Any) -> int:
+        if content not in self._known:
+            self._known[content] = len(self.nodes)
+            self.nodes.append(content)
+        return self._known[content]
+
+    def const(self, value: Fraction | int) -> int:
+        return self.node("const", Fraction(value))
+
+    def value(self, x: int) -> Fraction | None:
+        """The rational that a node is, where it is one."""
+        kind, *rest = self.nodes[x]
+        return rest[0] if kind == "const" else None
+
+    def add(self, x: int, y: int) -> int:
+        a, b = self.value(x), self.value(y)
+        if a is not None and b is not None:
+            return self.const(a + b)
+        if a == 0 or b == 0:
+            return y if a == 0 else x
+        return self.node("add", *sorted((x, y)))
+
+    def scale(self, factor: Fraction | int, x: int) -> int:
+        kind, *rest = self.nodes[x]
+        if kind == "const":
+            return self.const(factor * rest[0])
+        if kind == "scale":
+            return self.scale(factor * rest[0], rest[1])
+        if factor == 0:
+            return self.const(0)
+        return x if factor == 1 else self.node("scale", Fraction(factor), x)
+
+    def mul(self, x: int, y: int) -> int:
+        for one, other in ((x, y), (y, x)):
+            kind, *rest = self.nodes[one]
+            if kind == "const":
+                return self.scale(rest[0], other)
+            if kind == "scale":
+                return self.scale(rest[0], self.mul(rest[1], other))
+        return self.node("mul", *sorted((x, y)))
+
+    def power(self, x: int, exponent: Fraction) -> int:
+        a = self.value(x)
+        if exponent == 1:
+            return x
+        if a is not None and exponent.denominator == 1:
+            return self.const(a ** int(exponent))
+        if exponent.denominator == 1 and exponent >= 0:
+            half = self.power(x, exponent // 2 + Fraction(0)) if exponent > 1 else self.const(1)
+            square = self.mul(half, half)
+            return self.mul(square, x) if exponent % 2 else square
+        return self.node("power", Fraction(exponent), x)
+
+    def function(self, name: str, x: int) -> int:
+        if name in ("tan", "tanh"):
+            above, below = ("sin", "cos") if name == "tan" else ("sinh", "cosh")
+            inverse = self.power(self.function(below, x), Fraction(-1))
+            return self.mul(self.function(above, x), inverse)
+        if name == "sqrt":
+            return self.power(x, Fraction(1, 2))
+        if name == "atan":
+            return self.node("atan", x, self.add(self.const(1), self.mul(x, x)))
+        if name in PAIRS:
+            first, second = sorted((name, PAIRS[name]))
+            self.node(first, x)
+            self.node(second, x)
+        return self.node(name, x)
+
+    # -- reading --------------------------------------------------------------------------------
+
+    def read(self, formula: str) -> int:
+        """The node of a formula in p, q and the parameters. NotReadError for what is not known."""
+        try:
+            return self._read(ast.parse(formula, mode="eval").body, formula)
+        except (SyntaxError, RecursionError, ArithmeticError, MemoryError) as error:
+            raise NotReadError(f"{formula[:60]!r} is not a formula: {error}") from None
+
+    def _read(self, node: ast.expr, source: str) -> int:
+        match node:
+            case ast.Constant(value=int(value)) if not isinstance(value, bool):
+                return self.const(value)
+            case ast.Constant(value=float()):
+                return self.const(Fraction(ast.get_source_segment(source, node) or ""))
+            case ast.Name(id="p" | "q" | "pi"):
+                return self.node(node.id)
+            case ast.Name(id=name) if name in self.parameters:
+                return self.const(self.parameters[name])
+            case ast.UnaryOp(op=ast.USub()):
+                return self.scale(-1, self._read(node.operand, source))
+            case ast.UnaryOp(op=ast.UAdd()):
+                return self._read(node.operand, source)
+            case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]):
+                if name in _FUNCTIONS:
+                    return self.function(name, self._read(argument, source))
+            case ast.BinOp():
+                return self._operation(node, source)
+        raise NotReadError(f"{ast.unparse(node)[:60]!r} is not known here")
+
+    def _operation(self, node: ast.BinOp, source: str) -> int:
+        x, y = self._read(node.left, source), self._read(node.right, source)
+        match node.op:
+            case ast.Add():
+                return self.add(x, y)
+            case ast.Sub():
+                return self.add(x, self.scale(-1, y))
+            case ast.Mult():
+                return self.mul(x, y)
+            case ast.Div():
+                return self.mul(x, self.power(y, Fraction(-1)))
+            case ast.Pow():
+                exponent = self.value(y)
+                if exponent is not None:
+                    return self.power(x, exponent)
+        raise NotReadError(f"{ast.unparse(node)[:60]!r} is not known here")
+
+    # -- derivatives ----------------------------------------------------------------------------
+
+    def diff(self, x: int, name: str) -> int:
+        """The node of ∂x/∂p or ∂x/∂q."""
+        if (x, name) not in self._derived:
+            self._derived[x, name] = self._diff(self.nodes[x], x, name)
+        return self._derived[x, name]
+
+    def _diff(self, node: Node, x: int, name: str) -> int:
+        kind, *args = node
+        if kind in ("const", "pi", "p", "q"):
+            return self.const(int(kind == name))
+        if kind == "add":
+            return self.add(*(self.diff(a, name) for a in args))
+        if kind == "mul":
+            a, b = args
+            return self.add(self.mul(self.diff(a, name), b), self.mul(a, self.diff(b, name)))
+        if kind == "scale":
+            return self.scale(args[0], self.diff(args[1], name))
+        inner = self.diff(args[-1] if kind == "power" else args[0], name)
+        if self.value(inner) == 0:
+            return inner
+        return self.mul(self._outer(kind, args, x), inner)
+
+    def _outer(self, kind: str, args: Sequence[Any], x: int) -> int:
+        """The derivative of a function by its argument."""
+        if kind == "power":
+            return self.scale(args[0], self.power(args[1], args[0] - 1))
+        if kind == "exp":
+            return x
+        if kind == "log":
+            return self.power(args[0], Fraction(-1))
+        if kind == "atan":
+            return self.power(args[1], Fraction(-1))
+        other = self.function(PAIRS[kind], args[0])
+        return self.scale(-1, other) if kind == "cos" else other
+
+    def needed(self, *roots: int) -> tuple[int, ...]:
+        """The nodes that the roots are made of, themselves among them, in order."""
+        found: set[int] = set()
+        waiting = list(roots)
+        while waiting:
+            x = waiting.pop()
+            if x in found:
+                continue
+            found.add(x)
+            kind, *args = self.nodes[x]
+            if kind in PAIRS:  # each needs the other's coefficients
+                waiting.append(self._known[PAIRS[kind], args[0]])
+            waiting += [a for a in args if not isinstance(a, Fraction)]
+        return tuple(sorted(found))
