@@ -207,3 +207,13 @@ def test_a_field_that_wants_many_steps_in_a_short_time_is_left_out() -> None:
     example = replace(example_of("lie1", steep), p=Fraction(-4, 3), q=Fraction(-61, 50))
     assert not properties.get("exact-flows").holds(replace(example, p=Fraction(-40, 3)))
     assert properties.get("exact-flows").holds(replace(example, p=Fraction(0), q=Fraction(0)))
+
+
+def test_where_h_is_steep_nothing_is_held_against_what_rounding_and_higher_orders_leave() -> None:
+    """Scenes 20360 and 28671 of seed 7, for which the properties once failed."""
+    law = example_of("lie4", "2*exp(p - 3*q) - 7*exp(2*p + 3*q)/9")
+    law = replace(law, p=Fraction(5, 3), q=Fraction(3, 2), step_size=Fraction(1, 1000))
+    assert properties.get("growth-laws").holds(law)
+    steep = "-2*cosh(3*p - 2*q) + 3*p*q**2/7 - 2*exp(p + 3*q)/7"
+    run = replace(example_of("implicit-midpoint", steep), p=Fraction(-1), q=Fraction(38, 25))
+    assert properties.get("symplectic-schemes").holds(replace(run, step_size=Fraction(1, 1000)))

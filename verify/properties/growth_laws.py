@@ -16,9 +16,11 @@ from verify.precision import working_precision
 from verify.proof.growth import Element, GrowthLaw, NoLawError, growth_law
 from verify.property import Violation
 
-_STEP, _STEPS = Fraction(1, 2**128), 3
-_BITS_A_POWER, _SPARE = 128, 320
-_WITHIN = Fraction(1, 2**64)  # of 1 + |g|: what is left out is 2⁻¹²⁸ times derivatives of H
+_STEP, _STEPS = Fraction(1, 2**256), 3
+_BITS_A_POWER, _SPARE = 256, 320
+_WITHIN = Fraction(
+    1, 2**64
+)  # of 1 + |g|: what is left out is 2⁻²⁵⁶ times products of H's derivatives
 _MOST_ORDER = 4
 
 
