@@ -37,3 +37,9 @@ class Found:
     rows: int = 0
     differences: list[Difference] = field(default_factory=list)
     not_recomputed: list[str] = field(default_factory=list)
+
+    def add(self, other: "Found") -> None:
+        """Takes up what another one found."""
+        self.rows += other.rows
+        self.differences += other.differences
+        self.not_recomputed += other.not_recomputed

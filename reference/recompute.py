@@ -63,9 +63,7 @@ def _run(known: Field, run: Run, file: str, found: Found) -> None:
         except _TooWide:
             bits *= 2
             continue
-        found.rows += again.rows
-        found.differences += again.differences
-        found.not_recomputed += again.not_recomputed
+        found.add(again)
         return
     label = run_label(run, run.rows[-1].step)
     found.not_recomputed.append(f"{file}: {label}: {bits // 2} bits do not tell")
@@ -230,9 +228,7 @@ def _flow(known: Field, flow: Flow, file: str, found: Found) -> None:
             continue
         except NotFollowedError as error:
             again.not_recomputed.append(f"{file}: {flow_label(flow, rows[-1].step)}: {error}")
-        found.rows += again.rows
-        found.differences += again.differences
-        found.not_recomputed += again.not_recomputed
+        found.add(again)
         return
     label = flow_label(flow, flow.rows[-1].step)
     found.not_recomputed.append(f"{file}: {label}: more digits do not tell")

@@ -9,6 +9,7 @@ binary value, and counted as a rounded coefficient.
 
 import math
 import operator
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
@@ -99,7 +100,7 @@ def constant(kind: Kind, value: Any) -> "Carried | None":
     return kind.rational(read)
 
 
-class Carried:
+class Carried(ABC):
     """A number of one `kind`; subclasses say what an operation on it is."""
 
     __slots__ = ("kind",)
@@ -110,20 +111,20 @@ class Carried:
 
     # -- what a subclass says -----------------------------------------------------------------
 
+    @abstractmethod
     def combined(self, name: str, other: Any) -> "Carried":
         """self + other for "add", and so "subtract", "multiply", "divide"; of the same kind."""
-        raise NotImplementedError
 
+    @abstractmethod
     def applied(self, name: str) -> "Carried":
         """The function of `FUNCTIONS` at it."""
-        raise NotImplementedError
 
-    def raised(self, exponent: Fraction) -> "Carried":
-        raise NotImplementedError
+    @abstractmethod
+    def raised(self, exponent: Fraction) -> "Carried": ...
 
+    @abstractmethod
     def known(self) -> Fraction | None:
         """Its value, where it is a rational number that does not depend on p, q and h."""
-        raise NotImplementedError
 
     def compared(self, other: Any) -> int:
         """−1, 0 or 1."""

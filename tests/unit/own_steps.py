@@ -54,24 +54,18 @@ def midpoint_iterated(p: Any, q: Any, h: Any) -> Any:
     return new
 
 
-def midpoint_until(p: Any, q: Any, h: Any) -> Any:
+def midpoint_until(p: Any, q: Any, h: Any, tolerance: float = 1e-13) -> Any:
     x, y = p, q
     for _ in range(200):
         before = x, y
         x, y = p + h * force((q + y) / 2), q + h * (p + x) / 2
-        if max(abs(x - before[0]), abs(y - before[1])) < 1e-13:
+        if max(abs(x - before[0]), abs(y - before[1])) < tolerance:
             break
     return x, y
 
 
 def midpoint_loosely(p: Any, q: Any, h: Any) -> Any:
-    x, y = p, q
-    for _ in range(200):
-        before = x, y
-        x, y = p + h * force((q + y) / 2), q + h * (p + x) / 2
-        if max(abs(x - before[0]), abs(y - before[1])) < 1e-10:
-            break
-    return x, y
+    return midpoint_until(p, q, h, 1e-10)
 
 
 def midpoint_to(tolerance: float, change: float = 0.0) -> Any:

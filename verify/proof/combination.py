@@ -16,8 +16,7 @@ def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, Any] |
 
     None for the coefficients where there are none.
     """
-    terms = [dict(terms_of(x)) for x in (*columns, wanted)]
-    rows = {m: k for k, m in enumerate({m for column in terms for m in column})}
+    terms, rows = _by_monomial((*columns, wanted))
     matrix = flint.fmpq_mat(len(rows), len(terms))
     for at, column in enumerate(terms):
         for monomial, coefficient in column.items():
@@ -36,8 +35,7 @@ def may_combine(columns: Sequence[Poly], wanted: Poly) -> bool:
     Where it is not, it is none over the rationals either, unless the prime divides a denominator of
     every such combination: good enough to give up a search, not to refute.
     """
-    terms = [dict(terms_of(x)) for x in (*columns, wanted)]
-    rows = {m: k for k, m in enumerate({m for column in terms for m in column})}
+    terms, rows = _by_monomial((*columns, wanted))
     matrix = flint.nmod_mat(len(rows), len(terms), _PRIME)
     for at, column in enumerate(terms):
         for monomial, coefficient in column.items():
@@ -47,3 +45,11 @@ def may_combine(columns: Sequence[Poly], wanted: Poly) -> bool:
     reduced, rank = matrix.rref()
     last = len(columns)
     return rank == 0 or any(int(reduced[rank - 1, c]) for c in range(last))
+
+
+def _by_monomial(
+    elements: Sequence[Poly],
+) -> tuple[list[dict[tuple[int, ...], Any]], dict[tuple[int, ...], int]]:
+    """Each one's coefficients by their monomials, and a row for each monomial that occurs."""
+    terms = [dict(terms_of(x)) for x in elements]
+    return terms, {m: k for k, m in enumerate({m for each in terms for m in each})}
