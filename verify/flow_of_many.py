@@ -56,10 +56,10 @@ def follow(
 def _slopes(hamiltonian: Hamiltonian) -> Slopes:
     field, _ = hamiltonian.field()
     elements = [(field.ring, -field.h_q), (field.ring, field.h_p)]
-    return functions_at(_arrays(), elements)
+    return functions_at(arrays(), elements)
 
 
-def _arrays() -> Arithmetic:
+def arrays() -> Arithmetic:
     """Long double over arrays."""
     import numpy as np
 

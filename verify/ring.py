@@ -157,7 +157,16 @@ class Ring:
         return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
-        return any(g.kind == "variable" and g.name == name for g in self.used(x))
+        """Whether the variable is in x, or in an argument of its generators."""
+        place, seen, stack = self.places.get(name), set[int](), _occurring(x)
+        while stack:
+            index = stack.pop()
+            if index == place:
+                return True
+            if index not in seen:
+                seen.add(index)
+                stack += self._inside_of(index)
+        return False
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
         """x as a polynomial in one variable: {power: coefficient}, the coefficients non-zero.

@@ -110,12 +110,19 @@ class Tried:
         and what is counted."""
         made = {}
         with working_precision(2 * self.arithmetic.bits + 200):
-            for i, op in self.ops.items():
-                if op.kind != "input":
-                    true = exactly(op, [rational_ball(self.values[a]) for a in op.args], {})
-                    apart = abs(true - rational_ball(self.values[i]))
-                    made[i] = bounds(apart)[0], bounds(count(op, abs(true)))[1]
+            for i, true in self.true().items():
+                apart = abs(true - rational_ball(self.values[i]))
+                made[i] = bounds(apart)[0], bounds(count(self.ops[i], abs(true)))[1]
         return made
+
+    def true(self) -> dict[int, Ball]:
+        """Each operation's value at the arguments that it had."""
+        with working_precision(2 * self.arithmetic.bits + 200):
+            return {
+                i: exactly(op, [rational_ball(self.values[a]) for a in op.args], {})
+                for i, op in self.ops.items()
+                if op.kind != "input"
+            }
 
 
 def tried(text: str, scheme: str, arithmetic: Arithmetic, at: Sequence[Fraction]) -> Tried | None:
@@ -132,9 +139,10 @@ def tried(text: str, scheme: str, arithmetic: Arithmetic, at: Sequence[Fraction]
         found = values(kernel, arithmetic, inputs | state)
     except (InputError, UnsupportedError, ArithmeticError, ValueError):
         return None
-    if arithmetic.absolute and any(abs(x) > 2**14 for x in found.values()):
-        return None  # may be what is left of a number beyond the range, which a run watches
-    return Tried(kernel, arithmetic, inputs, state, found)
+    made = Tried(kernel, arithmetic, inputs, state, found)
+    if arithmetic.absolute and not all(abs(x) < 2**14 for x in made.true().values()):
+        return None  # beyond the range, where what is left of a number is kept; a run watches it
+    return made
 
 
 INVOLVED = ["a*p**2/2 + exp(-q**2)", "sqrt(1 + p**2)/a + log(2 + q**2)", "p**2/(2 + q**2) + pi*q",

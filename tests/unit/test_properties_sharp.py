@@ -217,3 +217,12 @@ def test_where_h_is_steep_nothing_is_held_against_what_rounding_and_higher_order
     steep = "-2*cosh(3*p - 2*q) + 3*p*q**2/7 - 2*exp(p + 3*q)/7"
     run = replace(example_of("implicit-midpoint", steep), p=Fraction(-1), q=Fraction(38, 25))
     assert properties.get("symplectic-schemes").holds(replace(run, step_size=Fraction(1, 1000)))
+
+
+def test_what_more_digits_solve_otherwise_is_not_held_against_the_scheme() -> None:
+    """Scene 69831 of seed 7, shrunk: 80 digits find a far solution of the second step."""
+    formula = "p**4/2 + 3*q**2 + cosh(3*p + 2*q)/8 + 7*exp(2*p - 3*q)/5"
+    example = replace(example_of("implicit-midpoint", formula), p=Fraction(-2), q=Fraction(-1, 5))
+    assert not properties.get("symplectic-schemes").holds(
+        replace(example, step_size=Fraction(1, 10))
+    )

@@ -10,6 +10,7 @@ import sympy
 from verify.errors import InputError
 from verify.formula import checked
 from verify.generators import embed
+from verify.proof.quotient_series import QuotientSeries
 from verify.ring import Decision, Poly, Ring
 from verify.step_map import H_STEP
 from verify.substep import h_inside
@@ -73,6 +74,8 @@ class Expansion:
         """The coefficient of hⁿ, with the ring that it is an element of."""
         if self.polynomial:
             return self.ring, self._powers.get(n, self.ring.zero)
+        if self._quotient is not None:
+            return self.ring, self._quotient[n]
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
         value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
@@ -82,6 +85,11 @@ class Expansion:
             raise InputError("map", error.value, "is not smooth in h at h = 0") from None
         ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
         return ring, x
+
+    @cached_property
+    def _quotient(self) -> list[Poly] | None:
+        """All coefficients that are looked at, where x is a quotient of polynomials in h."""
+        return QuotientSeries(self.ring, self.length + 1).of(self._derivatives[0])
 
     def leading(self) -> Leading:
         found = first_left(self.coefficient, self.length)

@@ -1,6 +1,7 @@
 """A scheme that claims det J ≡ 1 has it: by the proof, and by J's four entries at a point.
 
-Where the step solves equations the entries are multiplied along a run with 80 digits.
+Where the step solves equations the entries are multiplied along a run with 80 digits. These may not
+do to solve them: what 160 digits find elsewhere, or not at all, is not held against the scheme.
 """
 
 from fractions import Fraction
@@ -33,13 +34,24 @@ def holds(example: Example) -> bool:
 
 
 def _by_a_run(example: Example) -> bool:
+    found = _run(example, _DIGITS)
+    if found is None:
+        return False
+    change = found["lambda_plain"]
+    if abs(change) <= _SMALL * _size(found):
+        return True
+    again = _run(example, 2 * _DIGITS)
+    if again is None or any(abs(found[n] - again[n]) > _SMALL * _size(again) for n in ("p", "q")):
+        return False
+    raise Violation(f"Π det J − 1 is {decimal(change, 6)} after {_STEPS} steps")
+
+
+def _run(example: Example, digits: int) -> dict[str, Fraction] | None:
     wanted = frozenset({"lambda_plain"})
     job = Job(example.hamiltonian, example.scheme.name, example.start, _STEPS, wanted, 0)
-    found = job.go(number_systems.get("mpfr", _DIGITS))
-    if found.done < _STEPS:
-        return False
-    change = found.values["lambda_plain"]
-    size = 1 + abs(found.values["p"]) + abs(found.values["q"])
-    if abs(change) > _SMALL * size:
-        raise Violation(f"Π det J − 1 is {decimal(change, 6)} after {_STEPS} steps")
-    return True
+    found = job.go(number_systems.get("mpfr", digits))
+    return found.values if found.done == _STEPS else None
+
+
+def _size(found: dict[str, Fraction]) -> Fraction:
+    return 1 + abs(found["p"]) + abs(found["q"])
