@@ -1,4 +1,5 @@
-"""The commands `verify reference make` and `check`: numbers for others to test against."""
+"""The commands `verify reference make` and `check`: numbers for others to test against; `compare`
+is in `verify.cli_compare`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -6,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import show
+from verify.cli_compare import compare
 from verify.cli_input import writable
 from verify.cli_tasks import json_option, told, with_tasks, with_where
 from verify.errors import InputError
@@ -21,6 +23,9 @@ _SHARE = 0.05
 @click.group()
 def reference() -> None:
     """Reference data: numbers whose every digit is known, to test an integrator against."""
+
+
+reference.add_command(compare)
 
 
 @reference.command()

@@ -1,0 +1,128 @@
+"""A printed number against a known one: how many digits agree, and how fine its printing is."""
+
+import math
+import re
+import struct
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.exact import magnitude, rational
+from verify.reference_results import Rounded
+
+_NOT_FINITE = {"nan", "inf", "infinity"}
+_DIGITS = re.compile(r"[+-]?([0-9]*)\.?([0-9]*)(?:[eE]([+-]?[0-9]+))?")
+_ENOUGH, _LONG = 3, 7  # cells, and digits of one
+_HEXADECIMAL = re.compile(r"[+-]?0[xX].{1,60}")
+
+
+@dataclass(frozen=True)
+class Printing:
+    """How a column is printed: so many significant digits, or so many after the point; or exact."""
+
+    digits: int | None
+    places: int | None
+
+    def unit(self, value: Fraction) -> Fraction:
+        """A unit of the last place of a number so printed: it may be cut or rounded."""
+        if self.places is not None:
+            return Fraction(1, 10**self.places)
+        if self.digits is None or value == 0:
+            return Fraction(0)
+        return Fraction(10) ** (magnitude(value) - self.digits + 1)
+
+
+EXACT = Printing(None, None)
+
+
+def printing(texts: Iterable[str]) -> Printing:
+    """That of a column, from its cells; exact, where they are too few and too short to tell.
+
+    A language's shortest decimal drops zeros, and a format with an exponent or with a fixed number
+    of places does not: only where all cells have the same number of places, and no exponent, is
+    that number taken for the precision.
+    """
+    cells = {text.strip() for text in texts}
+    found = [match.groups() for match in map(_DIGITS.fullmatch, cells) if match]
+    most = max((len((whole + after).lstrip("0")) for whole, after, _ in found), default=0)
+    if len(found) < _ENOUGH and most < _LONG:
+        return EXACT
+    places = {len(after) for _, after, exponent in found}
+    if len(places) == 1 and places != {0} and not any(exponent for *_, exponent in found):
+        return Printing(None, places.pop())
+    return Printing(most, None)
+
+
+def number(text: str, what: str) -> Fraction | None:
+    """The exact value of a cell; None where it is not finite, an InputError where it is no number.
+
+    Hexadecimal floats, as C prints them with %a, are numbers, too.
+    """
+    bare = text.strip()
+    if bare.lstrip("+-").casefold() in _NOT_FINITE:
+        return None
+    if _HEXADECIMAL.fullmatch(bare):
+        try:
+            return Fraction(float.fromhex(bare))
+        except (ValueError, OverflowError):
+            pass
+    return rational(bare, what)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One number of theirs beside ours. `theirs` is None where it is not finite.
+
+    `unit`: what their printing leaves open; `radius`: what ours does.
+    """
+
+    theirs: Fraction | None
+    ours: Fraction
+    radius: Fraction
+    unit: Fraction
+
+    @property
+    def apart(self) -> Fraction:
+        """How far they are apart beyond what the printing of both leaves open."""
+        if self.theirs is None:
+            raise ValueError("theirs is not finite")
+        return max(Fraction(0), abs(self.theirs - self.ours) - self.unit - self.radius)
+
+    @property
+    def differs(self) -> bool:
+        return self.theirs is None or self.apart > 0
+
+    @property
+    def agrees(self) -> bool:
+        """Whether all digits that are printed agree."""
+        return not self.differs
+
+    @property
+    def digits(self) -> float:
+        """−log₁₀ of the relative difference: digits that agree. Infinite where there is none."""
+        if self.theirs is None:
+            return 0.0
+        difference = abs(self.theirs - self.ours)
+        if difference <= self.radius:
+            return math.inf
+        if self.ours == 0:
+            return 0.0
+        ratio = difference / abs(self.ours)
+        exponent = magnitude(ratio)
+        return max(0.0, -(exponent + math.log10(float(ratio / Fraction(10) ** exponent))))
+
+
+def beside(theirs: str, ours: Rounded, how: Printing, what: str) -> Cell:
+    """The cell of a text. InputError where it is no number."""
+    value = number(theirs, what)
+    unit = Fraction(0) if value is None else how.unit(value)
+    return Cell(value, Fraction(ours.value), Fraction(ours.radius), unit)
+
+
+def is_single(value: Fraction, unit: Fraction) -> bool:
+    """Whether it is a single-precision number, up to its printing."""
+    try:
+        near = struct.unpack("f", struct.pack("f", float(value)))[0]
+    except OverflowError:
+        return False
+    return abs(Fraction(near) - value) <= unit

@@ -1,0 +1,169 @@
+"""A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from reference.agreement import Printing, printing
+from reference.judge import Fit, Judge, Judged, Named, Verdict
+from reference.ours import OurRun
+from reference.scatter import Scatters
+from reference.theirs import Theirs
+from verify.errors import InputError
+from verify.results import SeparationResult
+from verify.separation import separate
+
+_MOST_SEARCHES = 3  # in vain: a mistake that they all had would have been found
+_MOST_SEPARATED = 100_000  # steps
+_SEPARATED_DIGITS = 3
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of all runs together; `digits` agree at least, in `run` at `step`, and it parts
+    there first where a run differs by more than rounding."""
+
+    name: str
+    verdict: Verdict
+    rows: int
+    digits: float
+    run: str
+    step: int
+    parts_run: str | None
+    parts_at: int | None
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What fits in so many runs: one mistake, or several that the table does not tell apart."""
+
+    mistakes: tuple[Named, ...]
+    runs: int
+
+
+@dataclass(frozen=True)
+class Separated:
+    """The Λ that is off most by what rounding may do, and that run's separation in float64."""
+
+    run: str
+    step: int
+    apart: Fraction
+    result: SeparationResult
+
+
+@dataclass
+class Compared:
+    """`runs` were compared in so many `rows`. `unexplained`: runs that differ by more than rounding
+    and no mistake fits. `lost`: steps from which rounding may have taken every digit, by run."""
+
+    rows: int = 0
+    runs: int = 0
+    columns: list[Column] = field(default_factory=list)
+    diagnoses: list[Diagnosis] = field(default_factory=list)
+    unexplained: list[str] = field(default_factory=list)
+    lost: dict[str, int] = field(default_factory=dict)
+    separated: Separated | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether nothing is there that rounding cannot explain."""
+        return not self.diagnoses and all(x.verdict is not Verdict.MORE for x in self.columns)
+
+
+def compare(theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None) -> Compared:
+    """Everything of the table that the reference data have; `done` hears of runs, of how many."""
+    if not theirs.runs:
+        raise InputError("table", theirs.first_outside or "no rows", "has no row of these data")
+    how = _printings(theirs)
+    found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
+    judged: list[Judged] = []
+    off: list[tuple[Fraction, int, OurRun]] = []  # Λ, by no more than rounding may do
+    search = _Search()
+    steps = {step for _, rows in theirs.runs.values() for step in rows}
+    scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(steps))
+    for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
+        judge = Judge(run, rows, how, scatters)
+        if judge.cells:
+            each, fit = judge.judged()
+            search.explain(judge, each, fit)
+            judged.append(each)
+            off += _off_by_rounding(judge, each)
+        done(count, len(theirs.runs))
+    names = [n for n in theirs.columns if any(n in x.columns for x in judged)]
+    found.columns = [_column(name, judged) for name in names]
+    found.diagnoses = _diagnoses(judged)
+    found.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
+    found.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
+    found.separated = _separated(off)
+    return found
+
+
+def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, int, OurRun]]:
+    of = judged.columns.get("lambda")
+    if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
+        return
+    for (step, name), cell in judge.cells.items():
+        if name == "lambda" and 0 < step <= _MOST_SEPARATED and cell.apart:
+            yield cell.apart, step, judge.ours
+
+
+def _separated(off: list[tuple[Fraction, int, OurRun]]) -> Separated | None:
+    if not off:
+        return None
+    apart, step, run = max(off, key=lambda x: x[0])
+    case = run.case
+    result = separate(
+        case.hamiltonian, case.scheme, q=case.q, p=case.p,
+        step_size=case.step_size, steps=step, digits=_SEPARATED_DIGITS,
+    )  # fmt: skip
+    return Separated(run.label, step, apart, result) if result.plain else None
+
+
+def _printings(theirs: Theirs) -> dict[str, Printing]:
+    cells: Mapping[str, list[str]] = {name: [] for name in theirs.columns}
+    for _, rows in theirs.runs.values():
+        for row in rows.values():
+            for name, text in row.cells.items():
+                cells[name].append(text)
+    return {name: printing(texts) for name, texts in cells.items()}
+
+
+class _Search:
+    """Looks for mistakes: in the first runs among all, in the others among those found before."""
+
+    def __init__(self) -> None:
+        self.known: set[str] = set()
+        self.in_vain = 0
+
+    def explain(self, judge: Judge, judged: Judged, fit: Fit) -> None:
+        if self.known:
+            judge.explained(judged, fit, frozenset(self.known))
+        if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
+            judge.explained(judged, fit)
+            self.in_vain += judged.verdict is Verdict.MORE and not judged.mistakes
+        self.known |= {name for group in judged.mistakes for name, _ in group}
+
+
+def _column(name: str, judged: Iterable[Judged]) -> Column:
+    own = [(x.label, x.columns[name]) for x in judged if name in x.columns]
+    label, least = min(own, key=lambda x: x[1].digits)
+    parted = [(of.parts_at, label) for label, of in own if of.parts_at is not None]
+    parts_at, parts_run = min(parted, default=(None, None))
+    return Column(
+        name=name,
+        verdict=max(of.verdict for _, of in own),
+        rows=sum(of.rows for _, of in own),
+        digits=least.digits,
+        run=label,
+        step=least.step,
+        parts_run=parts_run,
+        parts_at=parts_at,
+    )
+
+
+def _diagnoses(judged: Iterable[Judged]) -> list[Diagnosis]:
+    counts: dict[tuple[Named, ...], int] = {}
+    for each in judged:
+        for group in each.mistakes:
+            counts[tuple(group)] = counts.get(tuple(group), 0) + 1
+    return [Diagnosis(group, count) for group, count in counts.items()]

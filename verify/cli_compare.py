@@ -1,0 +1,197 @@
+"""The command `verify reference compare`: somebody's numbers beside ours."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify import show
+from verify.cli_tasks import json_option
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from reference.compare import Column, Compared, Diagnosis, Separated
+    from reference.theirs import Theirs
+
+DIFFERENT = 1  # exit status
+_MOST_SHOWN = 5
+_SHOWN = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
+_SAYS = (
+    "agrees in all digits that are printed",
+    "differs by what float64 rounding explains",
+    "differs by more than rounding usually does, and no more than it may do",
+    "DIFFERS by more than rounding",
+)
+_PARTS = ("input", "trajectory", "determinant", "product")
+_KEYS = ("agrees", "rounding", "perhaps rounding", "more than rounding")
+
+
+@click.command()
+@click.argument("theirs", type=click.Path(path_type=Path), metavar="THEIRS.csv")
+@click.option("--data", type=click.Path(path_type=Path), metavar="DIR",
+              help="The reference data; without it, the committed set.")  # fmt: skip
+@click.option("--scene", metavar="NAME", help="The scene of all rows, such as duffing.")
+@click.option("--scheme", metavar="NAME", help="The scheme of all rows.")
+@click.option("--step-size", metavar="H", help="Their step size.")
+@click.option("--q", "q0", metavar="X", help="Their initial q.")
+@click.option("--p", "p0", metavar="X", help="Their initial p.")
+@click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
+              help="What the table calls a column, such as q=position; repeatable.")  # fmt: skip
+@json_option
+def compare(
+    theirs: Path,
+    data: Path | None,
+    scene: str | None,
+    columns: tuple[str, ...],
+    as_json: bool,
+    **given: str | None,
+) -> None:
+    """Compare the numbers in THEIRS.csv, somebody's own, with the reference data.
+
+    THEIRS.csv has a header line; columns step (or time), some of p, q, delta_j, mse and lambda, and
+    scene, scheme, step_size, q0 and p0 where the options do not say them. All rows that the
+    reference data have, too, are compared: digits that agree, where they part, and whether float64
+    rounding explains it. Where it does not, known mistakes are tried: the double 0.001 for h =
+    1/1000, p and q swapped, a step index off by one, another scheme or η, … Exit status 1 where
+    more than rounding differs.
+
+    verify reference compare mine.csv --scene duffing --scheme lie2
+    """
+    from reference.compare import compare as compared
+    from reference.make import COMMITTED
+    from reference.ours import load
+    from reference.theirs import read
+    from verify.progress import progress_bar
+
+    ours = load(data or COMMITTED, scene)
+    said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
+    table = read(theirs, ours, said, _names(columns))
+    with progress_bar("compared", len(table.runs), unit="run") as advance:
+        found = compared(table, lambda *_: advance(1))
+    if as_json:
+        show.print_json(_as_json(table, found))
+    else:
+        _print(table, found)
+    if not found.agrees:
+        raise SystemExit(DIFFERENT)
+
+
+def _names(columns: tuple[str, ...]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for text in columns:
+        ours, equals, theirs = text.partition("=")
+        if not (ours and equals and theirs):
+            raise InputError("--column", text, "write it as OURS=THEIRS, such as q=position")
+        if ours in found:
+            raise InputError("--column", text, f"{ours} is given twice")
+        found[ours] = theirs
+    return found
+
+
+# -- for programs ---------------------------------------------------------------------------------
+
+
+def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
+    return {
+        "agrees": found.agrees,
+        "rows": found.rows,
+        "runs": found.runs,
+        "rows_read": table.rows,
+        "outside": table.outside,
+        "first_outside": table.first_outside or None,
+        "ignored_columns": list(table.ignored),
+        "columns": [
+            {
+                "column": x.name,
+                "verdict": _KEYS[x.verdict],
+                "rows": x.rows,
+                "digits": None if math.isinf(x.digits) else f"{x.digits:.1f}",
+                "run": x.run,
+                "step": x.step,
+                "parts_in": x.parts_run,
+                "parts_at": x.parts_at,
+            }
+            for x in found.columns
+        ],
+        "diagnoses": [
+            {
+                "runs": x.runs,
+                "mistakes": [{"id": name, "says": says} for name, says in x.mistakes],
+                "certain": len(x.mistakes) == 1,
+            }
+            for x in found.diagnoses
+        ],
+        "unexplained": found.unexplained,
+        "lost": found.lost,
+        "separation": found.separated and _separation_json(found.separated),
+    }
+
+
+def _separation_json(x: "Separated") -> dict[str, Any]:
+    from verify.exact import decimal
+
+    ways = {"plain": x.result.plain, "closed_form": x.result.closed_form}
+    parts = {n: way.parts.model_dump(mode="json") if way else None for n, way in ways.items()}
+    return {"run": x.run, "step": x.step, "difference": decimal(x.apart, 3), **parts}
+
+
+# -- for people -----------------------------------------------------------------------------------
+
+
+def _print(table: "Theirs", found: "Compared") -> None:
+    of = f"{found.rows:,} rows of {found.runs:,} runs compared"
+    click.echo(f"{of}; {table.rows:,} rows read")
+    if table.outside:
+        first = table.first_outside
+        click.echo(f"not in the reference data: {table.outside:,} rows, the first {first}")
+    if table.ignored:
+        click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
+    for name, (theirs, ours) in table.read_as.items():
+        click.echo(f"your {name} {_exact(theirs)} is taken for {_exact(ours)}")
+    for column in found.columns:
+        click.echo(_column(column))
+    if found.separated is not None:
+        click.echo(_separated(found.separated))
+    for label, step in list(found.lost.items())[:_MOST_SHOWN]:
+        click.echo(f"{label}: from step {step} on rounding may have taken every digit")
+    for diagnosis in found.diagnoses:
+        click.echo(_diagnosis(diagnosis))
+    for label in found.unexplained[:_MOST_SHOWN]:
+        click.echo(f"{label}: no known mistake fits")
+    if len(found.unexplained) > _MOST_SHOWN:
+        click.echo(f"… and {len(found.unexplained) - _MOST_SHOWN:,} more runs that none fits")
+
+
+def _exact(x: Any) -> str:
+    from verify.exact import short
+
+    return short(x)
+
+
+def _column(x: "Column") -> str:
+    shown = "all" if math.isinf(x.digits) else f"{x.digits:.1f}"
+    line = f"{_SHOWN.get(x.name, x.name):>3}  {shown:>5} digits  {_SAYS[x.verdict]}"
+    if x.parts_at is not None:
+        return f"{line}, first at step {x.parts_at} ({x.parts_run})"
+    return f"{line}; the fewest at step {x.step} ({x.run})" if x.verdict else line
+
+
+def _separated(x: "Separated") -> str:
+    from verify.exact import decimal
+
+    plain = x.result.plain
+    assert plain is not None  # noqa: S101 - it is not shown without
+    parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in _PARTS)
+    return (
+        f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({x.run}); rounding makes "
+        f"{plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"
+    )
+
+
+def _diagnosis(x: "Diagnosis") -> str:
+    many = "1 run" if x.runs == 1 else f"{x.runs} runs"
+    says = [says for _, says in x.mistakes]
+    if len(says) == 1:
+        return f"in {many}: {says[0]}"
+    return f"in {many} one of these, which the table does not tell apart: " + "; or ".join(says)
