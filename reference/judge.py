@@ -14,7 +14,15 @@ from functools import partial
 
 from reference.agreement import Cell, Printing, beside, is_single
 from reference.allowance import Allowance
-from reference.mistakes import Foretold, Mistake, of_inputs, of_states, readings, value_of
+from reference.mistakes import (
+    Foretold,
+    Mistake,
+    of_inputs,
+    of_states,
+    readings,
+    value_of,
+    without_synonyms,
+)
 from reference.ours import OurRun
 from reference.scatter import Scatters
 from reference.setting import Known, Setting
@@ -214,7 +222,7 @@ class Judge:
         states = [n for n in STATE if n in self.names] or list(self.names)
         settings = [self.right]
         if any(judged.columns[n].verdict >= Verdict.PERHAPS for n in states) or self._fine(judged):
-            fitting = list(self._fitting(states, only))
+            fitting = without_synonyms(list(self._fitting(states, only)))
             if not fitting and self._is_single(states):
                 fitting = [Mistake("single", "you work with single precision", self.right)]
                 judged.unit = SINGLE

@@ -55,6 +55,7 @@ def of_states(right: Setting) -> Iterator[Mistake]:
 
 
 _MOST_INEXACT = 4
+_OF_SCHEME = "scheme "
 _OTHER_EULER = "symplectic Euler of the other kind"
 
 
@@ -102,7 +103,27 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
         said.setdefault(name, f"your scheme is {name}")
     said.pop(mine, None)
     for name, says in said.items():
-        yield Mistake(f"scheme {name}", says, replace(right, case=replace(right.case, scheme=name)))
+        yield Mistake(
+            f"{_OF_SCHEME}{name}", says, replace(right, case=replace(right.case, scheme=name))
+        )
+
+
+_ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
+_SHARP = 40  # digits
+
+
+def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
+    """The mistakes but for those that are another name of an earlier one's scheme, for this H."""
+    found: dict[object, Mistake] = {}
+    for mistake in mistakes:
+        setting, (q, p, h) = mistake.setting, _ELSEWHERE
+        there = replace(setting.case, q=q, p=p, step_size=h)
+        state = None
+        if mistake.name.startswith(_OF_SCHEME):
+            known = replace(setting, case=there).state(1, _SHARP)
+            state = known and (known["p"][0], known["q"][0])
+        found.setdefault(state or mistake.name, mistake)
+    return list(found.values())
 
 
 def _relatives(name: str) -> Iterator[tuple[str, str]]:

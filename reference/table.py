@@ -7,7 +7,9 @@ line is held.
 
 import csv
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from verify.errors import InputError
 
@@ -15,19 +17,24 @@ _LONGEST_LINE = 2**16
 _MOST_COLUMNS = 500
 
 
+@contextmanager
+def opened(path: Path) -> Iterator["Table"]:
+    """The table in a file. InputError where it is no file, or cannot be read."""
+    if not path.is_file():
+        raise InputError("file", str(path), "is not there, or is no file")
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            yield Table(file, path.name)
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+
+
 class Table:
     """A file's lines as cells; `header` is the first, `line` the number of the last one read."""
 
-    def __init__(self, path: Path) -> None:
-        self.name, self.line = path.name, 0
-        self._first = ""
-        try:
-            if not path.is_file():
-                raise InputError("file", str(path), "is not there, or is no file")
-            self._file = path.open(encoding="utf-8-sig", newline="")
-            head = self._head()
-        except OSError as error:
-            raise InputError("file", str(path), error.strerror or "cannot be read") from None
+    def __init__(self, file: IO[str], name: str) -> None:
+        self.name, self.line, self._file = name, 0, file
+        head = self._head()
         mark = next((mark for mark in (",", ";", "\t") if mark in head), " ")
         self._cells = csv.reader(
             self._texts(), delimiter=mark, skipinitialspace=mark == " ", strict=True
@@ -50,8 +57,6 @@ class Table:
                     yield row
         except csv.Error as error:
             raise self.error(f"is not CSV: {error}") from None
-        finally:
-            self._file.close()
 
     def _head(self) -> str:
         for text in self._texts():

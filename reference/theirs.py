@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from reference.ours import KEYS, VALUES, OurRun, Ours, double
-from reference.table import Table
+from reference.table import Table, opened
 from verify.errors import InputError
 from verify.exact import rational
 
@@ -59,7 +59,11 @@ def read(path: Path, ours: Ours, given: Mapping[str, str], names: Mapping[str, s
     `given`: what holds for all rows, by column: scene, and `KEYS`. `names`: what the table calls a
     column, by ours. InputError where it cannot be read, or does not tell which run a row is of.
     """
-    lines = Table(path)
+    with opened(path) as lines:
+        return _read(lines, ours, given, names)
+
+
+def _read(lines: Table, ours: Ours, given: Mapping[str, str], names: Mapping[str, str]) -> Theirs:
     found = Theirs()
     places = _header(lines, names, found)
     keys = _Keys(ours, given, places)

@@ -140,11 +140,12 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 
 
 def _print(table: "Theirs", found: "Compared") -> None:
-    of = f"{found.rows:,} rows of {found.runs:,} runs compared"
-    click.echo(f"{of}; {table.rows:,} rows read")
+    of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"
+    click.echo(f"{of}; {_count(table.rows, 'row')} read")
     if table.outside:
         first = table.first_outside
-        click.echo(f"not in the reference data: {table.outside:,} rows, the first {first}")
+        count = _count(table.outside, "row")
+        click.echo(f"not in the reference data: {count}, the first {first}")
     if table.ignored:
         click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
     for name, (theirs, ours) in table.read_as.items():
@@ -161,6 +162,10 @@ def _print(table: "Theirs", found: "Compared") -> None:
         click.echo(f"{label}: no known mistake fits")
     if len(found.unexplained) > _MOST_SHOWN:
         click.echo(f"… and {len(found.unexplained) - _MOST_SHOWN:,} more runs that none fits")
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number:,} {what}" + ("" if number == 1 else "s")
 
 
 def _exact(x: Any) -> str:
@@ -190,7 +195,7 @@ def _separated(x: "Separated") -> str:
 
 
 def _diagnosis(x: "Diagnosis") -> str:
-    many = "1 run" if x.runs == 1 else f"{x.runs} runs"
+    many = _count(x.runs, "run")
     says = [says for _, says in x.mistakes]
     if len(says) == 1:
         return f"in {many}: {says[0]}"

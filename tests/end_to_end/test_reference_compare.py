@@ -1,0 +1,103 @@
+"""`verify reference compare`: the README's programs, what is printed, JSON's keys, statuses."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.test_command_line import here, json_of
+
+README = Path(__file__).parents[2] / "reference" / "README.md"
+GIVEN = ["--scene", "duffing", "--scheme", "lie2", "--step-size", "0.001", "--q", "1.5", "--p", "0"]
+
+
+def program(language: str) -> str:
+    found = re.search(rf"```{language}\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    assert found
+    return found[1]
+
+
+def by_c(folder: Path, source: str) -> str:
+    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    (folder / "mine.c").write_text(source)
+    subprocess.run([compiler, "-O2", "mine.c", "-o", "mine"], cwd=folder, check=True)
+    return subprocess.run(["./mine"], cwd=folder, check=True, capture_output=True, text=True).stdout
+
+
+def by_python(folder: Path, source: str) -> str:
+    (folder / "mine.py").write_text(source)
+    command = [sys.executable, "mine.py"]
+    return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
+
+
+@pytest.mark.parametrize(("language", "run"), [("c", by_c), ("python", by_python)])
+def test_the_readmes_program_differs_by_rounding(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, language: str, run: object
+) -> None:
+    table = tmp_path / "mine.csv"
+    assert callable(run)
+    table.write_text(run(tmp_path, program(language)))
+    status, out, _ = here(capsys, "reference", "compare", str(table), *GIVEN)
+    assert status == 0
+    assert out.startswith("6 rows of 1 run compared; 5,001 rows read\n")
+    assert "DIFFERS" not in out
+    assert "float64 rounding explains" in out
+    assert ("determinant" in out) == (language == "python")
+
+
+def test_a_mistake_is_told_to_people_and_to_programs(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    table = tmp_path / "mine.csv"
+    table.write_text(by_python(tmp_path, program("python").replace("{n}", "n")))
+    lines = table.read_text().splitlines()
+    swapped = [",".join([x[0], x[2], x[1]]) for x in (line.split(",") for line in lines)]
+    table.write_text("\n".join(["step,p,q", *swapped[1:]]))
+    status, out, _ = here(capsys, "reference", "compare", str(table), *GIVEN)
+    assert status == 1
+    assert "in 1 run: your columns p and q are swapped\n" in out
+    status, out, _ = here(capsys, "reference", "compare", str(table), *GIVEN, "--json")
+    shown = json_of(out)
+    assert status == 1
+    assert shown["agrees"] is False
+    assert [x["column"] for x in shown["columns"]] == ["p", "q"]
+    assert {x["verdict"] for x in shown["columns"]} == {"more than rounding"}
+    assert [x["parts_at"] for x in shown["columns"]] == [0, 0]
+    (diagnosis,) = shown["diagnoses"]
+    assert diagnosis["certain"]
+    assert diagnosis["mistakes"][0]["id"] == "swapped-columns"
+    assert shown["rows"] == 6
+    assert shown["outside"] == 4995
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "told"),
+    [
+        ("", GIVEN, "is empty"),
+        ("step,p\n0,zero\n", GIVEN, "line 2, p=zero: not a finite number"),
+        ("step,p\n7,1\n", GIVEN, "has no row of these data"),
+        ("step,p\n0,1\n", [], "--scene"),
+        ("step,p\n0,1\n", [*GIVEN, "--column", "p"], "OURS=THEIRS"),
+        ("step,p\n0,1\n", ["--scene", "nowhere"], "is not in the reference data; they have:"),
+        ("step,p\n0,1\n", [*GIVEN, "--data", "nowhere"], "is no folder"),
+    ],
+)
+def test_bad_input_is_one_line_and_status_2(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    content: str,
+    options: list[str],
+    told: str,
+) -> None:
+    table = tmp_path / "mine.csv"
+    table.write_text(content)
+    status, out, err = here(capsys, "reference", "compare", str(table), *options)
+    assert (status, out) == (2, "")
+    assert told in err
+    assert err.count("\n") == 1
+    assert "Traceback" not in err

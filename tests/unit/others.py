@@ -1,0 +1,109 @@
+"""Programs of other people: Duffing's oscillator in doubles, as they would write it; and mistakes.
+
+Nothing here is taken from the toolkit: schemes are written out by hand, J is made of their four
+derivatives, and areas are a d − b c.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+STEPS = (0, 1, 10, 100)
+State = tuple[Any, Any]
+Entries = tuple[Any, Any, Any, Any]  # ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q
+
+
+def lie2(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    f, g = -q - d * q * q * q, -1 - 3 * d * q * q
+    state = p + h * f + h * h / 2 * g * p, q + h * p + h * h / 2 * f
+    return state, (1 + h * h / 2 * g, h * g - 3 * d * h * h * q * p, h, 1 + h * h / 2 * g)
+
+
+def lie1(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    return (p - h * (q + d * q**3), q + h * p), (1, -h * (1 + 3 * d * q * q), h, 1)
+
+
+def lie3(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    f, g = -q - d * q**3, -1 - 3 * d * q * q
+    (p2, q2), entries = lie2(p, q, h, d)
+    return (p2 + h**3 / 6 * (g * f - 6 * d * q * p * p), q2 + h**3 / 6 * g * p), entries
+
+
+def kick_first(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    p = p - h * (q + d * q**3)
+    g = -1 - 3 * d * q * q
+    return (p, q + h * p), (1, h * g, h, 1 + h * h * g)
+
+
+def drift_first(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    q = q + h * p
+    g = -1 - 3 * d * q * q
+    return (p - h * (q + d * q**3), q), (1 + h * h * g, h * g, h, 1)
+
+
+def drift_kick_drift(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    q = q + h / 2 * p
+    p = p - h * (q + d * q**3)
+    return (p, q + h / 2 * p), (1, 0, 0, 1)
+
+
+def kick_drift_kick(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
+    p = p - h / 2 * (q + d * q**3)
+    q = q + h * p
+    return (p - h / 2 * (q + d * q**3), q), (1, 0, 0, 1)
+
+
+@dataclass(frozen=True)
+class Areas:
+    """What a program has summed up before step `n`: det J of it and of those before."""
+
+    n: int
+    product: Any
+    squares: Any
+    total: Any
+    now: Any
+    before: Any
+    first: Any
+
+
+@dataclass(frozen=True)
+class Program:
+    """Steps from (q, p), and prints a table with what it holds for each number."""
+
+    step: Callable[..., tuple[State, Entries]] = lie2
+    h: Any = 0.01
+    q: Any = 1.5
+    p: Any = 0.0
+    d: Any = 1.0
+    late: int = 0
+    shown: Callable[[State], State] = lambda z: z
+    number: Callable[[Any], str] = repr
+    delta_j: Callable[[Areas], Any] | None = None
+    mse: Callable[[Areas], Any] | None = None
+    lam: Callable[[Areas], Any] | None = None
+
+    def changed(self, **what: Any) -> "Program":
+        return replace(self, **what)
+
+    def rows(self, steps: Sequence[int] = STEPS) -> Iterator[str]:
+        """The table's lines, the header first; row N is of the step N + `late`."""
+        asked = [(n, f) for n, f in self._asked().items() if f]
+        yield ",".join(["step", "p", "q", *(n for n, _ in asked)])
+        z, product, squares, total, before, first = (self.p, self.q), 1.0, 0.0, 0.0, 1.0, 1.0
+        for n in range(max(steps) + max(self.late, 0) + 1):
+            after, (a, b, c, d) = self.step(*z, self.h, self.d)
+            now = a * d - b * c
+            first = now if n == 0 else first
+            if n - self.late in steps:
+                areas = Areas(n, product, squares, total, now, before, first)
+                values = [*self.shown(z), *(f(areas) for _, f in asked)]
+                cells = ("" if x is None else self.number(x) for x in values)
+                yield ",".join([str(n - self.late), *cells])
+            product, squares, total = product * now, squares + (now - 1) ** 2, total + (now - 1)
+            z, before = after, now
+
+    def _asked(self) -> dict[str, Callable[[Areas], Any] | None]:
+        return {"delta_j": self.delta_j, "mse": self.mse, "lambda": self.lam}
+
+    def table(self, steps: Sequence[int] = STEPS) -> str:
+        return "\n".join(self.rows(steps)) + "\n"
