@@ -6,8 +6,9 @@ from fractions import Fraction
 
 from reference.agreement import Printing, printing
 from reference.judge import Fit, Judge, Judged, Named, Verdict
-from reference.ours import OurRun
+from reference.ours import OurRun, Ours
 from reference.scatter import Scatters
+from reference.setting import Points
 from reference.theirs import Theirs
 from verify.errors import InputError
 from verify.results import SeparationResult
@@ -70,7 +71,9 @@ class Compared:
         return not self.diagnoses and all(x.verdict is not Verdict.MORE for x in self.columns)
 
 
-def compare(theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None) -> Compared:
+def compare(
+    ours: Ours, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
+) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many."""
     if not theirs.runs:
         raise InputError("table", theirs.first_outside or "no rows", "has no row of these data")
@@ -81,8 +84,9 @@ def compare(theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None) 
     search = _Search()
     steps = {step for _, rows in theirs.runs.values() for step in rows}
     scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(steps))
+    points = Points({run.case: (run.run.digits, run.rows) for run in ours.runs()})
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
-        judge = Judge(run, rows, how, scatters)
+        judge = Judge(run, rows, how, scatters, points)
         if judge.cells:
             each, fit = judge.judged()
             search.explain(judge, each, fit)

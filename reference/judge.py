@@ -25,7 +25,7 @@ from reference.mistakes import (
 )
 from reference.ours import OurRun
 from reference.scatter import Scatters
-from reference.setting import Known, Setting
+from reference.setting import Known, Points, Setting
 from reference.theirs import Row
 
 DOUBLE, SINGLE = Fraction(1, 2**53), Fraction(1, 2**24)
@@ -106,6 +106,7 @@ class Judge:
         rows: Mapping[int, Row],
         how: Mapping[str, Printing],
         scatters: Scatters,
+        points: Points,
     ) -> None:
         self.ours, self.how, self._scatters = ours, how, scatters
         self.cells: dict[tuple[int, str], Cell] = {}
@@ -114,7 +115,7 @@ class Judge:
                 self.cells[step, name] = cell
         names = {name for _, name in self.cells}
         self.names = tuple(n for n in (*STATE, *AREA) if n in names)
-        self.right = Setting(ours.case)
+        self.right = Setting(ours.case, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
         point = self.ours.rows[step]

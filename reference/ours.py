@@ -90,6 +90,11 @@ class Ours:
             return found[0]
         return next((x for x in found if x.exact == exact), None)
 
+    def runs(self) -> Iterator[OurRun]:
+        """All of them."""
+        for runs in self.by_scene.values():
+            yield from runs
+
     def given(self, scene: str, key: str) -> list[str]:
         """What the scene's runs have for one of `KEYS`, each once."""
         name = {"q0": "q", "p0": "p"}.get(key, key)

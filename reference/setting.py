@@ -3,9 +3,9 @@
 Each mistake of `reference.mistakes` makes another setting of the reference data's.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
 
 from verify.errors import InputError
 from verify.hamiltonian import Hamiltonian
@@ -14,6 +14,7 @@ from verify.orbit_points import orbit
 from verify.reference_results import OrbitPoint
 from verify.tasks import OrbitTask
 
+_MOST_KEPT = 4096
 Known = tuple[Fraction, Fraction]  # a value and its radius
 
 
@@ -28,12 +29,35 @@ class Case:
     p: Fraction
 
 
+class Points:
+    """Cases after some steps: from the reference data where they have them, else by a run."""
+
+    def __init__(self, known: Mapping[Case, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
+        """`known`: of a case its digits, and its points by step."""
+        self._known = known
+        self._run: dict[tuple[Case, int, int], OrbitPoint | None] = {}
+
+    def at(self, case: Case, step: int, digits: int) -> OrbitPoint | None:
+        """To so many digits and no fewer; None where there is no such state."""
+        have, rows = self._known.get(case, (0, {}))
+        if have >= digits and step in rows:
+            point = rows[step]
+            return point if point.status == "finished" else None
+        key = case, step, digits
+        if key not in self._run:
+            if len(self._run) > _MOST_KEPT:
+                self._run.clear()
+            self._run[key] = _run_at(*key)
+        return self._run[key]
+
+
 @dataclass(frozen=True)
 class Setting:
     """A run; row N holds what it is after N + `late` steps, the columns perhaps `swapped`, and p
-    perhaps `negated`."""
+    perhaps `negated`. `points` knows what it is."""
 
     case: Case
+    points: Points = field(compare=False)
     late: int = 0
     swapped: bool = False
     negated: bool = False
@@ -50,12 +74,11 @@ class Setting:
 
     def point(self, step: int, digits: int) -> OrbitPoint | None:
         """What is known of the run where row `step` is of it."""
-        return None if step + self.late < 0 else run_at(self.case, step + self.late, digits)
+        after = step + self.late
+        return None if after < 0 else self.points.at(self.case, after, digits)
 
 
-@lru_cache(maxsize=4096)
-def run_at(case: Case, step: int, digits: int) -> OrbitPoint | None:
-    """A case after so many steps, to so many digits; None where it cannot be run."""
+def _run_at(case: Case, step: int, digits: int) -> OrbitPoint | None:
     given = case.hamiltonian.written
     try:
         task = OrbitTask(

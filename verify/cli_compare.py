@@ -68,7 +68,7 @@ def compare(
     said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
     table = read(theirs, ours, said, _names(columns))
     with progress_bar("compared", len(table.runs), unit="run") as advance:
-        found = compared(table, lambda *_: advance(1))
+        found = compared(ours, table, lambda *_: advance(1))
     if as_json:
         show.print_json(_as_json(table, found))
     else:

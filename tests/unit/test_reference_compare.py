@@ -45,7 +45,7 @@ def of(ours: Ours, folder: Path, program: Program, table: str = "", **given: str
     path.write_text(table or program.table())
     said = {"scene": "duffing", "scheme": "lie2", "step_size": "0.01", "q0": "1.5", **given}
     said.setdefault("p0", str(program.p))
-    return compare(read(path, ours, said, {}))
+    return compare(ours, read(path, ours, said, {}))
 
 
 def named(found: Compared) -> list[set[str]]:
