@@ -76,15 +76,16 @@ def compare(
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many."""
     if not theirs.runs:
-        raise InputError("table", theirs.first_outside or "no rows", "has no row of these data")
+        steps = f"{theirs.other_steps} rows of other steps" if theirs.other_steps else "no rows"
+        raise InputError("table", theirs.first_outside or steps, "has no row of these data")
     how = _printings(theirs)
     found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
     judged: list[Judged] = []
     off: list[tuple[Fraction, int, OurRun]] = []  # Λ, by no more than rounding may do
     search = _Search()
-    steps = {step for _, rows in theirs.runs.values() for step in rows}
-    scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(steps))
-    points = Points({run.case: (run.run.digits, run.rows) for run in ours.runs()})
+    marks = {step for _, rows in theirs.runs.values() for step in rows}
+    scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(marks))
+    points = Points({own.case: (own.run.digits, own.rows) for own in ours.runs()})
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
         judge = Judge(run, rows, how, scatters, points)
         if judge.cells:

@@ -41,8 +41,8 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
     for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *_ones(inexact)]:
         changed = {n: _double(doubles[n]) for n in names}
-        shown = ", ".join(f"{n} is the double {_text(doubles[n])}" for n in names)
-        says = f"your {shown}, and not exactly {', '.join(_text(doubles[n]) for n in names)}"
+        shown = " and ".join(f"{n} is the double nearest to {_text(doubles[n])}" for n in names)
+        says = f"your {shown}, and not exactly that"
         name = f"double-{'-'.join(names)}"
         yield Mistake(name, says, replace(right, case=_with(case, changed)))
 
@@ -86,7 +86,7 @@ def _of_step(right: Setting) -> Iterator[Mistake]:
                       replace(right, case=replace(case, step_size=factor * h)))  # fmt: skip
     single = {"h": _single(h)}
     if single["h"] not in (None, h):
-        yield Mistake("single-h", f"your h is the single-precision number {_text(h)}",
+        yield Mistake("single-h", f"your h is the single-precision number nearest to {_text(h)}",
                       replace(right, case=_with(case, single)))  # fmt: skip
     for name, value in case.hamiltonian.values:
         for what, other in (("minus", -value), ("no", Fraction(0))):

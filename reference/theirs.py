@@ -39,7 +39,8 @@ class Row:
 class Theirs:
     """What of a table is in the reference data. `rows`: of the table; `runs`: by run and step.
 
-    `outside`: rows whose step or inputs the reference data do not have, `first_outside` says one.
+    `other_steps`: rows of runs that the reference data have, though not at that step. `outside`:
+    rows of other runs, of which `first_outside` is one.
     `ignored`: columns that mean nothing here. `read_as`: inputs that are not written exactly as
     ours are, though they are the same double: theirs, ours.
     """
@@ -47,6 +48,7 @@ class Theirs:
     columns: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
     rows: int = 0
+    other_steps: int = 0
     outside: int = 0
     first_outside: str = ""
     runs: dict[str, tuple[OurRun, dict[int, Row]]] = field(default_factory=dict)
@@ -73,12 +75,13 @@ def _read(lines: Table, ours: Ours, given: Mapping[str, str], names: Mapping[str
         if len(row) < lines.width:
             raise lines.error(f"has {len(row)} cells, and the header {lines.width}")
         run = keys.run_of(row, lines)
-        step = None if run is None else keys.step_of(row, run, lines)
-        if run is None or step not in run.rows:
+        step = run and keys.step_of(row, run, lines)
+        if run is None:
             found.outside += 1
-            if not found.first_outside:
-                at = f"step {step} of {run.label}" if run else keys.told(row)
-                found.first_outside = f"line {lines.line}: {at}"
+            found.first_outside = found.first_outside or f"line {lines.line}: {keys.told(row)}"
+            continue
+        if step not in run.rows:
+            found.other_steps += 1
             continue
         _keep(found, run, step, Row(lines.line, {name: row[at] for name, at in texts}), lines)
     found.read_as = keys.read_as

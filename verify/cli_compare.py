@@ -98,6 +98,7 @@ def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
         "rows": found.rows,
         "runs": found.runs,
         "rows_read": table.rows,
+        "other_steps": table.other_steps,
         "outside": table.outside,
         "first_outside": table.first_outside or None,
         "ignored_columns": list(table.ignored),
@@ -142,10 +143,14 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 def _print(table: "Theirs", found: "Compared") -> None:
     of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"
     click.echo(f"{of}; {_count(table.rows, 'row')} read")
+    if table.other_steps:
+        click.echo(
+            f"of steps that the reference data do not have: {_count(table.other_steps, 'row')}"
+        )
     if table.outside:
         first = table.first_outside
         count = _count(table.outside, "row")
-        click.echo(f"not in the reference data: {count}, the first {first}")
+        click.echo(f"of runs that they do not have: {count}, the first {first}")
     if table.ignored:
         click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
     for name, (theirs, ours) in table.read_as.items():

@@ -72,7 +72,7 @@ def test_a_mistake_is_told_to_people_and_to_programs(
     assert diagnosis["certain"]
     assert diagnosis["mistakes"][0]["id"] == "swapped-columns"
     assert shown["rows"] == 6
-    assert shown["outside"] == 4995
+    assert shown["other_steps"] == 4995
 
 
 @pytest.mark.parametrize(

@@ -100,9 +100,11 @@ def test_columns_may_have_other_names(table: Callable[..., Theirs]) -> None:
 
 def test_rows_that_the_data_do_not_have_are_counted(table: Callable[..., Theirs]) -> None:
     found = table(Program().table(range(0, 12)))
-    assert (found.rows, found.outside) == (12, 9)
-    assert found.first_outside.startswith("line 4: step 2 of duffing: lie2")
-    assert table(GOOD, **(GIVEN | {"scheme": "lie77"})).outside == 4
+    assert (found.rows, found.other_steps, found.outside) == (12, 9, 0)
+    other = table(GOOD.replace("step,", "scheme,step,").replace("\n", "\nlie77,").rstrip("lie7,"),
+                  **{name: x for name, x in GIVEN.items() if name != "scheme"})  # fmt: skip
+    assert (other.other_steps, other.outside) == (0, 4)
+    assert other.first_outside == "line 2: scheme = lie77"
 
 
 BAD = {
@@ -145,5 +147,5 @@ def test_a_long_table_is_not_held_in_memory(table: Callable[..., Theirs]) -> Non
     peak = tracemalloc.get_traced_memory()[1] - before
     tracemalloc.stop()
     assert found.rows == 100_004
-    assert found.outside == 100_000
+    assert found.other_steps == 100_000
     assert peak < 2**20
