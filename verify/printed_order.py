@@ -290,7 +290,7 @@ class _Near:
 
 def _around(radius: Any) -> Any:
     """[−radius, radius]."""
-    return flint.arb(0, radius.abs_upper())
+    return radius.abs_upper() * flint.arb(0, 1)  # a tiny radius given as such may become infinite
 
 
 def _ball(x: Fraction) -> Any:
