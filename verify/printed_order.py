@@ -17,7 +17,7 @@ import sympy
 from verify.balls import middle_and_radius
 from verify.errors import InputError
 from verify.precision import working_precision
-from verify.printed_table import PrintedTable
+from verify.printed_table import PrintedTable, power
 from verify.proof.words_of_steps import (
     MOST_ORDER,
     LogCondition,
@@ -176,7 +176,7 @@ class _Near:
         """Whether Σ weight · residue is not 0 at any numbers within so many units."""
         radius = [u * units for u in self.unit]
         total = sum((w * self.value[k] for k, w in weights.items()), flint.arb(0))
-        reach = sum(radius, flint.arb(0)) ** 2 / 2
+        reach = sum(radius, flint.arb(0)) * sum(radius, flint.arb(0)) / 2
         spread = sum((abs(w) * self.second[k] * reach for k, w in weights.items()), flint.arb(0))
         for i, r in enumerate(radius):
             slope = sum((w * self.slope[k][i] for k, w in weights.items()), flint.arb(0))
@@ -252,7 +252,7 @@ class _Near:
         rest = identity - flint.arb_mat([slope[k] for k in rows]) * inverse
         image = (rest * ball).tolist()
         for i, k in enumerate(rows):
-            curved = _around(self.second[k] * far**2 / 2)
+            curved = _around(self.second[k] * far * far / 2)
             if not ball[i, 0].contains_interior(target[i] + image[i][0] + curved):
                 return None
         return [x + d for x, d in zip(at, moved, strict=True)]
@@ -308,7 +308,7 @@ def _evaluated(expression: sympy.Expr, at: Mapping[str, Any]) -> Any:
     for powers, coefficient in _terms(expression):
         term = _ball(coefficient)
         for name, n in powers:
-            term = term * at[name] ** n
+            term = term * power(at[name], n)
         total += term
     return total
 
@@ -319,7 +319,7 @@ def _majorant(expression: sympy.Expr, reach: Mapping[str, Any]) -> Any:
     for powers, coefficient in _terms(expression):
         term = _ball(abs(coefficient))
         for name, n in powers:
-            term = term * reach[name] ** n
+            term = term * power(reach[name], n)
         total += term
     return total
 

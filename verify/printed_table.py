@@ -86,7 +86,7 @@ class PrintedTable:
     def letters(self, sizes: Sequence[Any]) -> list[Mapping[str, Any]]:
         """The parts for `verify.proof.words_of_steps.step`, with these sizes."""
         if self.kind == "composition":
-            return [{str(n): _power(x, n) for n in _ODD} for x in sizes]
+            return [{str(n): power(x, n) for n in _ODD} for x in sizes]
         names = (name for name, _ in self.parts)
         return [{LETTERS[name]: x} for name, x in zip(names, sizes, strict=True)]
 
@@ -106,7 +106,8 @@ class PrintedTable:
         )
 
 
-def _power(x: Any, n: int) -> Any:
+def power(x: Any, n: int) -> Any:
+    """xⁿ, n ≥ 1, by products: of a ball with 0 in it, powers may be undefined."""
     result = x
     for _ in range(n - 1):
         result = result * x
