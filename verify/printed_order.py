@@ -1,8 +1,9 @@
 """What the digits of a printed table can say of a claimed order; the module `printed_table` has how.
 
 - PROVED or REFUTED by exact algebra where no coefficient is rounded;
-- REFUTED where no numbers within ten units of the last digits satisfy all conditions;
-- ENCLOSED where exact ones are shown to exist there;
+- REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a residue
+  is larger than 10⁻¹³, so that float64 would see it;
+- ENCLOSED where exact ones are shown to exist there, or, with residues below that, nearby;
 - MEASURED where neither is shown: the residues are as small as the digits make them.
 """
 
@@ -33,6 +34,7 @@ _STEP = 160  # the difference quotient's, as a power of 1/2
 _RADIUS = Fraction(1, 8)  # of the polydisc of Cauchy's bound
 _TURNS = 12
 WITHIN = 10  # units of the last digit, for the order
+UNSEEN = Fraction(1, 10**13)  # a residue below it is lost in a float64 step
 
 
 @dataclass(frozen=True)
@@ -86,26 +88,26 @@ def _of(near: "_Near", order: int, highest: int) -> Judged:
     failing = min(wrong, key=lambda k: near.asked[k].order, default=None)
     allowed = highest if failing is None else near.asked[failing].order - 1
     largest = max((abs(near.at_print[k]) for k in own), default=Fraction(0))
-    if failing is not None and allowed < order:
-        size = near.at_print[failing]
+    condition = None if failing is None else near.asked[failing]
+    size = Fraction(0) if failing is None else near.at_print[failing]
+    if allowed < order and largest > UNSEEN:
         one = near.misprint(own)
-        condition = near.asked[failing]
         return Judged(
             Verdict.REFUTED, allowed, checked, condition, size, largest, digits=False, misprint=one
         )
-    condition = None if failing is None else near.asked[failing]
-    size = Fraction(0) if failing is None else near.at_print[failing]
     found = near.nearest(own)
     if found is None:
         return Judged(Verdict.MEASURED, allowed, checked, condition, size, largest)
     off, numbers = found
-    verdict, digits = Verdict.ENCLOSED, True if off <= 1 else None
-    if off > 1 and near.apart(own, 1):
-        digits = False
-    if off > WITHIN:
-        verdict = Verdict.REFUTED if near.apart(own, WITHIN) else Verdict.MEASURED
+    wrong_digits = off > 1 and (allowed < order or near.apart(own, 1))
+    digits = True if off <= 1 else False if wrong_digits else None
+    known = allowed >= order and off <= WITHIN
+    verdict = Verdict.ENCLOSED if known or largest <= UNSEEN else Verdict.MEASURED
+    if off > WITHIN and largest > UNSEEN and near.apart(own, WITHIN):
+        verdict = Verdict.REFUTED
+    order_found = max(allowed, order) if verdict is Verdict.ENCLOSED else allowed
     return Judged(
-        verdict, allowed, checked, condition, size, largest, off, numbers, digits
+        verdict, order_found, checked, condition, size, largest, off, numbers, digits
     )  # fmt: skip
 
 

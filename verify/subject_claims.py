@@ -10,6 +10,7 @@ from verify.printed_table import PrintedTable
 from verify.results import ClaimResult
 from verify.subject import Compared, ExactTableau, FloatStep, Subject
 from verify.subject_measured import finding
+from verify.tableau_repair import repair
 from verify.tableau_judged import WRONG, Symplecticity, TableauOrder, order_of, symplecticity
 from verify.verdict import Verdict
 
@@ -30,10 +31,10 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
             kind=what,
             source=subject.name,
             section=section,
-            statement=statement,
+            statement=f"{statement} ({subject.source})",
             scene="",
             verdict=verdict,
-            evidence=f"{evidence}. Driven: {subject.driven}. Claimed: {subject.source}",
+            evidence=f"{evidence}. Driven: {subject.driven}",
             details=details,
             reproduction=subject.reproduction if told else "",
         )
@@ -59,8 +60,11 @@ def _order(subject: Subject) -> _Found:
     if isinstance(subject.method, ExactTableau):
         table = subject.method
         order = order_of(table.tableau, subject.order, table.rounded)
+        repaired = ""
+        if order.order < subject.order and not table.rounded:
+            repaired = repair(table.tableau, subject.order)
         area = symplecticity(table.tableau, table.rounded)
-        return of_tableau(subject.order, order, area, table.rounded)
+        return of_tableau(subject.order, order, area, table.rounded, repaired)
     assert isinstance(subject.method, FloatStep)  # noqa: S101 - the one kind that is left
     return of_measured_order(subject.order, finding(subject.method), subject.area_preserving)
 
@@ -77,7 +81,9 @@ def _area(subject: Subject) -> _Found:
 # -- tableaux -------------------------------------------------------------------------------------
 
 
-def of_tableau(claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool) -> _Found:
+def of_tableau(
+    claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: str = ""
+) -> _Found:
     """Of exact coefficients by proof; of floats up to their rounding."""
     ends = f"; of h^{found.order + 1}, {found.next} fails by {found.residue:.3g}" if found.next else ""
     symplectic = {True: "it is symplectic", False: "it is not symplectic", None: ""}[area.holds]
@@ -96,7 +102,8 @@ def of_tableau(claimed: int, found: TableauOrder, area: Symplecticity, rounded: 
         )
         return Verdict.UNDECIDED, said, ()
     said = f"its order is {found.order}: of h^{found.order + 1}, {found.next} fails by"
-    return Verdict.REFUTED, f"{said} {found.residue:.5g}{beside}", ()
+    mend = f". {repaired}" if repaired else ""
+    return Verdict.REFUTED, f"{said} {found.residue:.5g}{mend}{beside}", ()
 
 
 # -- printed tables -------------------------------------------------------------------------------
@@ -111,7 +118,8 @@ def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
         assert found.off is not None  # noqa: S101 - of an enclosure it is known
         said = (
             f"exact coefficients that satisfy all {count} lie within {_units(found.off)} of the last "
-            f"printed digits; as printed, residues are up to {_short(found.largest)}"
+            f"printed digits, of {table.digits} decimals; as printed, residues are up to "
+            f"{_short(found.largest)}"
         )
         return found.verdict, said, ()
     if found.verdict is Verdict.MEASURED:

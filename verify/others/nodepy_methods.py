@@ -41,7 +41,7 @@ def subjects() -> Iterator[Subject]:
         yield Subject(
             f"{key}: {method.name}",
             f"the exact coefficients A and b of rk.loadRKM('{key}')",
-            f"its name, {method.name}, and its key, {key}",
+            _said(key, method.name),
             tableau_of(method.A, method.b),
             order,
             reproduction=_script(key, "b"),
@@ -73,6 +73,12 @@ def claimed(key: str, name: str) -> tuple[int | None, int | None]:
         return _ORDERS[key], None
     stages = _STAGES_ORDER.match(key)
     return (int(stages[2]), None) if stages else (None, None)
+
+
+def _said(key: str, name: str) -> str:
+    if _PAIR.search(name) or key in _ORDERS:
+        return f"its name, {name}"
+    return f"its key, {key}: stages and order, as of BuRK65, six stages and order 5"
 
 
 def _loaded() -> dict[str, Any]:

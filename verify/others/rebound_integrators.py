@@ -74,9 +74,12 @@ def subjects() -> Iterator[Subject]:
 def _subject(
     problem: _Problem, integrator: str, name: str, order: int, *settings: str
 ) -> Subject:
-    points, ladder = () if problem.softening else _AWAY, ()
+    points: tuple[Point, ...] = () if problem.softening else _AWAY
+    ladder: tuple[Fraction, ...] = ()
     if order >= 8:
         points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
+    elif order == 6 and problem is _FREE:
+        points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
     return Subject(
         name,
         f"one step of dt = h: {problem.said}",
