@@ -47,7 +47,7 @@ def make_integrators_report(command: str, told: _Told | None = None) -> Report:
         claims=tuple(claims),
         scenes=(),
         left_out=tuple(left_out),
-        preface=tuple(_preface(found, missing)),
+        preface=tuple(_preface(found, missing, claims)),
         provenance=Provenance(
             command=command,
             versions=versions() | found,
@@ -71,7 +71,9 @@ def _claims(module: Any, section: str) -> list[ClaimResult]:
 
 def _shears(section: str, prefix: str) -> ClaimResult:
     """What holds of all tables at once, whatever their coefficients are."""
-    conditions: Sequence[Condition] = Splitting((("kick", S.One), ("drift", S.One))).area_conditions()
+    conditions: Sequence[Condition] = Splitting(
+        (("kick", S.One), ("drift", S.One))
+    ).area_conditions()
     proved = all(c.holds for c in conditions)
     return ClaimResult(
         id=f"{prefix}/all/area",
@@ -81,14 +83,28 @@ def _shears(section: str, prefix: str) -> ClaimResult:
         statement="kicks and drifts are symplectic, whatever their coefficients are",
         scene="",
         verdict=Verdict.PROVED if proved else Verdict.UNDECIDED,
-        evidence="every kick and every drift has determinant 1 for all a h V'' and a h T'', so every "
-        "composition of them has; a wrong coefficient costs order, not area",
+        evidence="every kick and every drift has determinant 1, for all a h V″ and a h T″; so "
+        "every composition of them has; a wrong coefficient costs order, not area",
     )
 
 
-def _preface(found: dict[str, str], missing: Sequence[str]) -> list[str]:
+def _preface(
+    found: dict[str, str], missing: Sequence[str], claims: Sequence[ClaimResult]
+) -> list[str]:
     installed = ", ".join(f"{name} {version}" for name, version in found.items()) or "none"
     lines = [f"Installed here: {installed}; printed tables need no library."]
     if missing:
         lines.append(f"Left out, as not installed: {', '.join(missing)}.")
+    wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
+    sections = dict.fromkeys(c.section for c in wrong)
+    told = []
+    for section in sections:
+        own = [c for c in wrong if c.section == section]
+        digits = sum(c.kind == "digits" for c in own)
+        names = [c.source for c in own if c.kind != "digits"]
+        if digits:
+            names.append(f"the last digits of {digits} tables")
+        told.append(f"{section}: {', '.join(names)}")
+    if told:
+        lines.append(f"Not as claimed: {'; '.join(told)}.")
     return lines

@@ -4,21 +4,21 @@ Coefficients that stand for algebraic numbers are printed as decimals: taken exa
 order at all. What can be asked is whether numbers near the printed ones satisfy the conditions
 exactly: within ten units of their last digits for the order, within one for the digits.
 
-With F the residues, J their derivative at the printed numbers x₀, and B a bound of their second
+With F the residues, J their derivative at the printed numbers x₀, and B a bound of the second
 derivatives (Cauchy's, by a majorant that has all signs plus), F(x) is F(x₀) + J (x − x₀) up to
 B |x − x₀|²/2, the norm being the sum. So
 
-- some combination of residues may be enclosed away from 0 over the whole box: no such numbers exist;
+- some combination of residues may be enclosed away from 0 over the whole box: then none exist;
 - else, with P = U Jᵀ(J U Jᵀ)⁻¹, U the squared units, t ↦ t − F(x₀ + P t) may map a ball around
   −F(x₀) into itself: then, by Brouwer, a solution exists, and it is known where.
 
 J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All is done in balls.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy
@@ -120,3 +120,33 @@ def _unit(text: str) -> Fraction | None:
     if not point or not (whole + decimals).isdigit():
         return None
     return Fraction(10) ** (int(exponent or 0) - len(decimals))
+
+
+def evaluated(
+    expression: sympy.Expr, at: Mapping[str, Any], number: Callable[[Fraction], Any]
+) -> Any:
+    """A polynomial in the numbers, at `at`; `number` makes what its coefficients are there."""
+    total = number(Fraction(0))
+    for powers, coefficient in _terms(expression):
+        term = number(coefficient)
+        for name, n in powers:
+            term = term * power(at[name], n)
+        total = total + term
+    return total
+
+
+@lru_cache(maxsize=4096)
+def _terms(expression: sympy.Expr) -> tuple[tuple[tuple[tuple[str, int], ...], Fraction], ...]:
+    """((number, exponent), …) and the coefficient, of each term."""
+    if not expression.free_symbols:
+        return (((), _fraction(expression)),)
+    polynomial = sympy.Poly(expression)
+    names = [x.name for x in polynomial.gens]
+    return tuple(
+        (tuple((n, e) for n, e in zip(names, powers, strict=True) if e), _fraction(coefficient))
+        for powers, coefficient in polynomial.terms()
+    )
+
+
+def _fraction(x: sympy.Expr) -> Fraction:
+    return Fraction(int(x.p), int(x.q))

@@ -10,8 +10,8 @@ from verify.printed_table import PrintedTable
 from verify.results import ClaimResult
 from verify.subject import Compared, ExactTableau, FloatStep, Subject
 from verify.subject_measured import finding
-from verify.tableau_repair import repair
 from verify.tableau_judged import WRONG, Symplecticity, TableauOrder, order_of, symplecticity
+from verify.tableau_repair import repair
 from verify.verdict import Verdict
 
 _Found = tuple[Verdict, str, tuple[tuple[str, ...], ...]]
@@ -85,20 +85,24 @@ def of_tableau(
     claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: str = ""
 ) -> _Found:
     """Of exact coefficients by proof; of floats up to their rounding."""
-    ends = f"; of h^{found.order + 1}, {found.next} fails by {found.residue:.3g}" if found.next else ""
+    ends = (
+        f"; of h^{found.order + 1}, {found.next} fails by {found.residue:.3g}" if found.next else ""
+    )
     symplectic = {True: "it is symplectic", False: "it is not symplectic", None: ""}[area.holds]
     beside = f". {_NOT_CLAIMED}; {symplectic}: {area.said}" if symplectic else f". {_NOT_CLAIMED}"
     if found.order >= claimed:
         more = f", and even order {found.order}" if found.order > claimed else ""
         shown = f"order {claimed}{more} by {found.by}"
         if rounded:
-            shown += f", with residues up to {found.largest:.1e}, as its floats' rounding leaves them"
+            shown += (
+                f", with residues up to {found.largest:.1e}, as its floats' rounding leaves them"
+            )
         verdict = Verdict.MEASURED if rounded else Verdict.PROVED
         return verdict, f"{shown}{ends}{beside}", ()
     if rounded and found.residue < float(WRONG):
         said = (
-            f"its floats satisfy {found.next} but for {found.residue:.2e}, more than the rounding of "
-            "floats and less than a wrong method: digits are missing"
+            f"its floats satisfy {found.next} but for {found.residue:.2e}, more than rounding "
+            "and less than a wrong method: digits are missing"
         )
         return Verdict.UNDECIDED, said, ()
     said = f"its order is {found.order}: of h^{found.order + 1}, {found.next} fails by"
@@ -117,9 +121,8 @@ def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
     if found.verdict is Verdict.ENCLOSED:
         assert found.off is not None  # noqa: S101 - of an enclosure it is known
         said = (
-            f"exact coefficients that satisfy all {count} lie within {_units(found.off)} of the last "
-            f"printed digits, of {table.digits} decimals; as printed, residues are up to "
-            f"{_short(found.largest)}"
+            f"exact coefficients that satisfy all {count} lie within {_far(found, table)} of those "
+            f"printed to {table.digits} decimals, whose residues are up to {_short(found.largest)}"
         )
         return found.verdict, said, ()
     if found.verdict is Verdict.MEASURED:
@@ -133,7 +136,7 @@ def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
 
 def _excluded(found: Judged, claimed: int, table: PrintedTable) -> str:
     if found.order >= claimed:  # each condition alone could hold; together they cannot
-        far = f"; the nearest exact ones are {_units(found.off)} away" if found.off else ""
+        far = f"; the nearest exact ones are {_far(found, table)} away" if found.off else ""
         return (
             f"no coefficients within {WITHIN} units of the last printed digits satisfy all "
             f"{found.checked} conditions together{far}; residues are up to {_short(found.largest)}"
@@ -157,11 +160,11 @@ def of_digits(found: Judged, table: PrintedTable) -> _Found:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
         return Verdict.UNDECIDED, said, ()
     if found.digits:
-        said = f"exact coefficients lie within {_units(found.off)} of the last printed digits"
+        said = f"exact coefficients lie within {_far(found, table)} of the printed ones"
         return Verdict.ENCLOSED, said, ()
     said = (
         "no coefficients within one unit of the last printed digits satisfy all conditions; the "
-        f"nearest that do are up to {_units(found.off)} away"
+        f"nearest that do are up to {_far(found, table)} away"
     )
     return Verdict.REFUTED, said, _moved(found, table)
 
@@ -187,8 +190,14 @@ def _rounded(x: Fraction, unit: Fraction) -> str:
     return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
-def _units(off: Fraction) -> str:
-    return f"{float(off):.2g} units" if off < 1000 else f"{float(off):.0f} units"
+def _far(found: Judged, table: PrintedTable) -> str:
+    """How far the nearest exact coefficients are: in units, or, where it is far, absolutely."""
+    assert found.off is not None  # noqa: S101 - the callers have one
+    assert found.nearest is not None  # noqa: S101 - and so its numbers
+    if found.off < 100:
+        return f"{float(found.off):.2g} units of the last digit"
+    most = max(abs(table.values[n] - x) for n, x in found.nearest.items())
+    return f"{float(most):.1e}"
 
 
 def _short(x: Fraction) -> str:

@@ -36,7 +36,7 @@ _MOST_PAIR = 8  # vertices of two trees together
 @dataclass(frozen=True)
 class TableauOrder:
     """`order`: the highest that holds, of those looked at. `next`: the condition that ends it, with
-    its `residue`. `largest`: the largest residue that was taken for rounding. `by`: how it is shown.
+    its `residue`. `largest`: the largest residue that was taken for rounding. `by`: what shows it.
     """
 
     order: int
@@ -61,7 +61,9 @@ def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> Tabl
                 continue
             name = f"{written(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
             return TableauOrder(n - 1, name, size, largest, "the conditions of all rooted trees")
-    return TableauOrder(min(most + 1, MOST_ORDER), "", 0.0, largest, "the conditions of all rooted trees")
+    return TableauOrder(
+        min(most + 1, MOST_ORDER), "", 0.0, largest, "the conditions of all rooted trees"
+    )
 
 
 def value(numbers: Numbers, x: Any) -> float:

@@ -1,4 +1,4 @@
-"""Coefficient tables of splitting methods, as they are printed; the data are in `literature.toml`."""
+"""Coefficient tables of splitting methods, as they are printed; `literature.toml` has the data."""
 
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -35,9 +35,8 @@ def subjects() -> Iterator[Subject]:
 def table_of(entry: Mapping[str, Any]) -> PrintedTable:
     """The table of one entry of the file."""
     sizes = entry.get("sizes") or [*entry["half"], *entry["half"][-2::-1]]
-    return PrintedTable(
-        entry["kind"], tuple(zip(_names(entry, len(sizes)), sizes, strict=True)), entry.get("numbers", {})
-    )  # fmt: skip
+    parts = tuple(zip(_names(entry, len(sizes)), sizes, strict=True))
+    return PrintedTable(entry["kind"], parts, entry.get("numbers", {}))
 
 
 def _names(entry: Mapping[str, Any], count: int) -> list[str]:
@@ -50,9 +49,7 @@ def _names(entry: Mapping[str, Any], count: int) -> list[str]:
 def _script(entry: Mapping[str, Any]) -> str:
     """The step in plain Python, for the pendulum, and the slope of its error."""
     table = table_of(entry)
-    numbers = "\n".join(
-        f"{name} = {value.strip()}" for name, value in table.numbers.items()
-    )
+    numbers = "\n".join(f"{name} = {value.strip()}" for name, value in table.numbers.items())
     parts = ", ".join(f'("{kind}", {size})' for kind, size in table.parts)
     lines = [
         "from math import cos, log2, sin",

@@ -39,7 +39,7 @@ def subjects() -> Iterator[Subject]:
     for key, method in methods.items():
         order, embedded = claimed(key, method.name)
         yield Subject(
-            f"{key}: {method.name}",
+            _titled(key, method.name),
             f"the exact coefficients A and b of rk.loadRKM('{key}')",
             _said(key, method.name),
             tableau_of(method.A, method.b),
@@ -73,6 +73,10 @@ def claimed(key: str, name: str) -> tuple[int | None, int | None]:
         return _ORDERS[key], None
     stages = _STAGES_ORDER.match(key)
     return (int(stages[2]), None) if stages else (None, None)
+
+
+def _titled(key: str, name: str) -> str:
+    return key if name in key else f"{key} ({name})"
 
 
 def _said(key: str, name: str) -> str:

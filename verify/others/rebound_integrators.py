@@ -1,8 +1,8 @@
 """REBOUND's integrators, on one line: a particle without mass falls towards a star, which stays.
 
-With G = 1, a star of mass 8 and softening 2, that is H = p²/2 − 8/√(q² + 4). EOS takes no softening,
-and Wisdom–Holman integrators solve the problem of two bodies exactly: so for these the star has mass
-1, H = p²/2 − 1/q, and for the latter a second force −q/4 is an additional force.
+With G = 1, a star of mass 8 and softening 2, that is H = p²/2 − 8/√(q² + 4). EOS takes no
+softening, and Wisdom–Holman integrators solve the problem of two bodies exactly: so for these the
+star has mass 1, H = p²/2 − 1/q, and for the latter −q/4 is an additional force.
 """
 
 from collections.abc import Iterator
@@ -25,7 +25,8 @@ LEFT_OUT = (
     ),
 )
 _AWAY: tuple[Point, ...] = tuple(
-    (Fraction(a), Fraction(b)) for a, b in (("1/3", "2"), ("-1/4", "5/2"), ("1/5", "3"), ("0", "9/4"))
+    (Fraction(a), Fraction(b))
+    for a, b in (("1/3", "2"), ("-1/4", "5/2"), ("1/5", "3"), ("0", "9/4"))
 )
 _ONE: tuple[Point, ...] = ((Fraction(1, 3), Fraction(1, 2)),)
 _SOURCE = "the integrator's own documentation, Simulation.integrator.__doc__"
@@ -71,9 +72,7 @@ def subjects() -> Iterator[Subject]:
         yield _subject(_FORCED, "saba", title, 4, f"type = '{name}'")
 
 
-def _subject(
-    problem: _Problem, integrator: str, name: str, order: int, *settings: str
-) -> Subject:
+def _subject(problem: _Problem, integrator: str, name: str, order: int, *settings: str) -> Subject:
     points: tuple[Point, ...] = () if problem.softening else _AWAY
     ladder: tuple[Fraction, ...] = ()
     if order >= 8:
@@ -104,9 +103,7 @@ def _made(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
         simulation.integrator = integrator
         for setting in settings:
             name, _, value = setting.partition(" = ")
-            setattr(
-                simulation.integrator, name, value.strip("'") if "'" in value else int(value)
-            )
+            setattr(simulation.integrator, name, value.strip("'") if "'" in value else int(value))
         simulation.softening = problem.softening
         if problem.forced:
             simulation.additional_forces = _pull

@@ -106,8 +106,8 @@ def _radau() -> Map:
 
 
 def _tables(name: str, order: int, pair: int | None) -> Iterator[Subject]:
-    """The coefficients inside the solver: of RK23 and RK45 quotients, which round to scipy's floats;
-    of DOP853 decimals, taken as floats."""
+    """The coefficients inside the solver: of RK23 and RK45 quotients, which round to its floats; of
+    DOP853 decimals, taken as floats."""
     from scipy import integrate
 
     solver = getattr(integrate, name)
@@ -131,14 +131,16 @@ def _tables(name: str, order: int, pair: int | None) -> Iterator[Subject]:
 
 def _tableau(rows: Any, weights: Any, quotients: bool) -> ImplicitTableau:
     exact = _quotient if quotients else _binary
-    return ImplicitTableau.of([[exact(x) for x in row] for row in rows], [exact(x) for x in weights])
+    return ImplicitTableau.of(
+        [[exact(x) for x in row] for row in rows], [exact(x) for x in weights]
+    )
 
 
 def _quotient(x: float) -> sympy.Rational:
     """The quotient of the smallest denominator that is x but for rounding."""
     for most in (10, 100, 1000, 10**4, 10**5, 10**6):
         near = Fraction(x).limit_denominator(most)
-        if abs(near - Fraction(x)) <= Fraction(1, 2**51) * max(1, abs(Fraction(x))):
+        if abs(near - Fraction(x)) <= Fraction(1, 2**51) * max(Fraction(1), abs(Fraction(x))):
             return sympy.Rational(near.numerator, near.denominator)
     return _binary(x)
 
