@@ -1,6 +1,7 @@
 """The residues of a printed table near its numbers; the module `printed_table` has the argument."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -91,8 +92,42 @@ class Near:
         inverse = self._inverse(rows)
         if inverse is None:
             return False
-        combined = ([inverse[i, j] for j in range(len(rows))] for i in range(len(self.names)))
-        return any(self._excludes(dict(zip(rows, w, strict=True)), units) for w in combined)
+        count = len(rows)
+        combined = [
+            dict(zip(rows, (inverse[i, j] for j in range(count)), strict=True))
+            for i in range(len(self.names))
+        ]
+        if any(self._excludes(weights, units) for weights in combined):
+            return True
+        slopes = self._over_box(units)
+        return any(self._excludes_by(weights, slopes, units) for weights in combined)
+
+    def _excludes_by(
+        self, weights: Mapping[int, Any], slopes: Sequence[Sequence[Any]], units: int
+    ) -> bool:
+        """As `_excludes`, with the derivatives over the whole box, by the mean value theorem."""
+        total = sum((w * self.value[k] for k, w in weights.items()), flint.arb(0))
+        spread = flint.arb(0)
+        for i, u in enumerate(self.unit):
+            slope = sum((w * slopes[k][i] for k, w in weights.items()), flint.arb(0))
+            spread += abs(slope) * u * units
+        return bool(abs(total) > spread)
+
+    def _over_box(self, units: int) -> list[list[Any]]:
+        """The derivatives over the box: slower than `_slopes`, and sharper than their bound."""
+        box = [x + _around(u * units) for x, u in zip(self.start, self.unit, strict=True)]
+        columns = []
+        with series_of_two_terms():
+            for k in range(len(box)):
+                point = {
+                    n: flint.arb_series([x, int(i == k)], prec=2)
+                    for i, (n, x) in enumerate(zip(self.names, box, strict=True))
+                }
+                one = flint.arb_series([1], prec=2)
+                sizes = [evaluated(size, point, _constant) for size in self.table.sizes]
+                series = step(self.table.kind, self.table.letters(sizes), self.most, one)
+                columns.append([residue(series, c)[1] for c in self.asked])
+        return [list(row) for row in zip(*columns, strict=True)]
 
     def _inverse(self, rows: Sequence[int], slope: Sequence[Sequence[Any]] | None = None) -> Any:
         """U Jᵀ(J U Jᵀ)⁻¹, nearly."""
@@ -199,6 +234,20 @@ def _ball(x: Fraction) -> Any:
 def _upper(x: Any) -> Fraction:
     middle, radius = middle_and_radius(x)
     return abs(middle) + radius
+
+
+def _constant(x: Fraction) -> Any:
+    return flint.arb_series([_ball(x)], prec=2)
+
+
+@contextmanager
+def series_of_two_terms() -> Iterator[None]:
+    """A value and its derivative; leaves flint's length of series as it was."""
+    before, flint.ctx.cap = flint.ctx.cap, 2
+    try:
+        yield
+    finally:
+        flint.ctx.cap = before
 
 
 def _size(x: Fraction) -> Any:

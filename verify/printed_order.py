@@ -2,8 +2,9 @@
 
 - PROVED or REFUTED by exact algebra where no coefficient is rounded;
 - REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a residue
-  is larger than 10⁻¹³, so that float64 would see it;
-- ENCLOSED where exact ones are shown to exist there, or, with residues below that, nearby;
+  is larger than 10⁻⁹;
+- ENCLOSED where exact ones are shown to exist there, or nearby where residues are smaller: then it
+  is digits that are wrong, which is judged apart;
 - MEASURED where neither is shown: the residues are as small as the digits make them.
 """
 
@@ -28,7 +29,7 @@ from verify.verdict import Verdict
 
 _BITS = 320
 WITHIN = 10  # units of the last digit, for the order
-UNSEEN = Fraction(1, 10**13)  # a residue below it is lost in a float64 step
+OF_DIGITS = Fraction(1, 10**9)  # a residue below it is of wrong digits, and not of a wrong method
 
 
 @dataclass(frozen=True)
@@ -70,13 +71,15 @@ def _of(near: Near, order: int, highest: int) -> Judged:
     own = [k for k, c in enumerate(near.asked) if c.order <= order]
     checked = len(conditions(near.table.kind, order))
     wrong = near.excluded(range(len(near.asked)), WITHIN)
-    plain = [k for k in wrong if abs(near.at_print[k]) > UNSEEN]  # what ends the order, if any does
+    plain = [
+        k for k in wrong if abs(near.at_print[k]) > OF_DIGITS
+    ]  # what ends the order, if any does
     failing = min(plain or wrong, key=lambda k: near.asked[k].order, default=None)
     allowed = highest if failing is None else near.asked[failing].order - 1
     largest = max((abs(near.at_print[k]) for k in own), default=Fraction(0))
     condition = None if failing is None else near.asked[failing]
     size = Fraction(0) if failing is None else near.at_print[failing]
-    if allowed < order and largest > UNSEEN:
+    if allowed < order and largest > OF_DIGITS:
         one = near.misprint(own)
         return Judged(
             Verdict.REFUTED, allowed, checked, condition, size, largest, digits=False, misprint=one
@@ -86,14 +89,15 @@ def _of(near: Near, order: int, highest: int) -> Judged:
         return Judged(Verdict.MEASURED, allowed, checked, condition, size, largest)
     off, numbers = found
     wrong_digits = off > 1 and (allowed < order or near.apart(own, 1))
+    one = near.misprint(own) if wrong_digits and off > WITHIN else None
     digits = True if off <= 1 else False if wrong_digits else None
     known = allowed >= order and off <= WITHIN
-    verdict = Verdict.ENCLOSED if known or largest <= UNSEEN else Verdict.MEASURED
-    if off > WITHIN and largest > UNSEEN and near.apart(own, WITHIN):
+    verdict = Verdict.ENCLOSED if known or largest <= OF_DIGITS else Verdict.MEASURED
+    if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):
         verdict = Verdict.REFUTED
     order_found = max(allowed, order) if verdict is Verdict.ENCLOSED else allowed
     return Judged(
-        verdict, order_found, checked, condition, size, largest, off, numbers, digits
+        verdict, order_found, checked, condition, size, largest, off, numbers, digits, one
     )  # fmt: skip
 
 

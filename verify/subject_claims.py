@@ -23,7 +23,7 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
     one for the order and one for its digits. `prefix` begins the ids."""
     method = subject.method
 
-    def claim(what: str, statement: str, found: _Found) -> ClaimResult:
+    def claim(what: str, statement: str, found: _Found, code: str = "") -> ClaimResult:
         verdict, evidence, details = found
         told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or isinstance(method, Compared)
         return ClaimResult(
@@ -36,23 +36,25 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
             verdict=verdict,
             evidence=f"{evidence}. Driven: {subject.driven}",
             details=details,
-            reproduction=subject.reproduction if told else "",
+            reproduction=code if told else "",
         )
 
     if isinstance(method, Compared):
-        yield claim("agreement", method.statement, method.compare())
+        yield claim("agreement", method.statement, method.compare(), subject.reproduction)
         return
     if isinstance(method, PrintedTable):
         assert subject.order is not None  # noqa: S101 - of printed tables it is always claimed
         found = judged(method, subject.order)
-        yield claim("order", f"order {subject.order}", of_printed(found, subject.order, method))
+        said = of_printed(found, subject.order, method)
+        yield claim("order", f"order {subject.order}", said, subject.reproduction)
         if found.verdict is not Verdict.REFUTED and method.units:
-            yield claim("digits", "every printed digit is right", of_digits(found, method))
+            said = of_digits(found, method)
+            yield claim("digits", "every printed digit is right", said, _sums(method))
         return
     if subject.order is not None:
-        yield claim("order", f"order {subject.order}", _order(subject))
+        yield claim("order", f"order {subject.order}", _order(subject), subject.reproduction)
     if subject.area_preserving:
-        yield claim("area", "symplectic: det J ≡ 1", _area(subject))
+        yield claim("area", "symplectic: det J ≡ 1", _area(subject), subject.reproduction)
 
 
 def _order(subject: Subject) -> _Found:
@@ -147,11 +149,18 @@ def _excluded(found: Judged, claimed: int, table: PrintedTable) -> str:
         f"its order is {found.order}: of h^{found.failing.order}, {found.failing.name} fails by "
         f"{_short(found.residue)}{rounded if table.units else ''}"
     )
-    if found.misprint:
-        m = found.misprint
-        said += f". One number alone explains it: {m.name}, printed {m.printed.strip()}, would be "
-        said += _rounded(m.value, table.units[m.name])
-    return said
+    return said + _alone(found, table)
+
+
+def _alone(found: Judged, table: PrintedTable) -> str:
+    """The one misprinted number, where one alone explains what is found."""
+    m = found.misprint
+    if m is None:
+        return ""
+    would = _rounded(m.value, table.units[m.name])
+    return (
+        f". One number alone explains it: {m.name}, printed {m.printed.strip()}, would be {would}"
+    )
 
 
 def of_digits(found: Judged, table: PrintedTable) -> _Found:
@@ -164,7 +173,7 @@ def of_digits(found: Judged, table: PrintedTable) -> _Found:
         return Verdict.ENCLOSED, said, ()
     said = (
         "no coefficients within one unit of the last printed digits satisfy all conditions; the "
-        f"nearest that do are up to {_far(found, table)} away"
+        f"nearest that do are up to {_far(found, table)} away{_alone(found, table)}"
     )
     return Verdict.REFUTED, said, _moved(found, table)
 
@@ -188,6 +197,22 @@ def _rounded(x: Fraction, unit: Fraction) -> str:
     places = len(str(1 / unit)) - 1
     digits = str(abs(whole)).rjust(places + 1, "0")
     return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def _sums(table: PrintedTable) -> str:
+    """What shows wrong digits of a composition: two conditions in exact decimals."""
+    if table.kind != "composition":
+        return ""
+    sizes = ", ".join(size for _, size in table.parts)
+    return "\n".join(
+        [
+            "from fractions import Fraction as F",
+            "",
+            *(f'{name} = F("{text.strip()}")' for name, text in table.numbers.items()),
+            f"w = [{sizes}]",
+            "print(float(sum(w) - 1), float(sum(x**3 for x in w)), float(sum(x**5 for x in w)))",
+        ]
+    )
 
 
 def _far(found: Judged, table: PrintedTable) -> str:

@@ -51,7 +51,7 @@ def test_libraries_that_are_not_installed_are_left_out_and_named(
     assert len(ids) == len(set(ids))
     wrong = [c for c in report.claims if c.verdict is Verdict.REFUTED]
     assert wrong
-    assert all(c.reproduction for c in wrong)
+    assert all(c.reproduction for c in wrong if c.kind == "order")
 
 
 def test_an_installed_library_has_its_version_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,7 +114,7 @@ def test_heyokas_taylor_step_is_lie_eta() -> None:
 
 def test_nodepys_lambert_is_of_order_two_and_its_misprint_is_found() -> None:
     found = subjects("nodepy_methods")
-    (claim,) = claims_of(found["Lambert65 (Lambert)"], "nodepy", "nodepy")
+    (claim,) = claims_of(found["Lambert65"], "nodepy", "nodepy")
     assert claim.verdict is Verdict.REFUTED
     assert "3/16, 1/16 in place of 1/8, 1/8" in claim.evidence
 

@@ -65,11 +65,19 @@ def test_a_flipped_digit_is_refuted_and_found() -> None:
 
 def test_one_misprinted_number_is_named_with_what_it_would_be() -> None:
     own = table("Yoshida 6, solution A")
-    found = judged(replace(own, numbers={**own.numbers, "w2": "0.235573213859357E0"}), 6)
+    found = judged(replace(own, numbers={**own.numbers, "w2": "0.235578213359357E0"}), 6)
     assert found.verdict is Verdict.REFUTED
     assert found.misprint is not None
     assert found.misprint.name == "w2"
     assert abs(found.misprint.value - Fraction("0.235573213359357")) < Fraction(1, 10**13)
+
+
+def test_one_wrong_late_digit_costs_the_digits_and_is_named() -> None:
+    late = judged(printed(YOSHIDA, a1="0.2355732133593591336847931829785346016865"), 6)
+    assert late.verdict is Verdict.ENCLOSED
+    assert late.digits is False
+    assert late.misprint is not None
+    assert late.misprint.name == "a1"
 
 
 def test_a_wrong_last_digit_costs_the_digits_and_not_the_order() -> None:
@@ -87,6 +95,18 @@ def test_nearest_coefficients_satisfy_the_conditions() -> None:
     for name, value in exact.items():
         assert abs(found.nearest[name] - value) < Fraction(1, 10**38)
     assert found.digits is False, "Yoshida's 15 digits are off by up to 2.7 units of the last"
+
+
+def test_two_prints_of_one_method_lead_to_the_same_coefficients() -> None:
+    """Yoshida's 15 digits of solution A are wrong from the 13th; Principia's 21 are right."""
+    short, long = table("Yoshida 8, solution A"), table("Yoshida 8, solution A, as in Principia")
+    found, other = judged(short, 8), judged(long, 8)
+    assert found.digits is False
+    assert other.digits is True
+    assert found.nearest is not None
+    for k in range(1, 8):  # the one numbers them from the middle, the other from the end
+        assert abs(found.nearest[f"w{k}"] - long.values[f"w{8 - k}"]) < Fraction(2, 10**20)
+        assert abs(short.values[f"w{k}"] - long.values[f"w{8 - k}"]) < Fraction(1, 10**11)
 
 
 def test_a_table_for_quadratic_kinetic_energy_is_refuted_for_every_other() -> None:
