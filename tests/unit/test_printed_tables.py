@@ -215,12 +215,12 @@ def _slope(name: str) -> float:
     ("name", "order"),
     [
         ("McLachlan–Atela 5, for quadratic T", 5),
-        ("OrdinaryDiffEq McAte5, even for quadratic T", 3),
+        ("OrdinaryDiffEq McAte5 (quadratic T)", 3),
         ("McLachlan–Atela 4, for quadratic T", 4),
-        ("OrdinaryDiffEq McAte4, even for quadratic T", 3),
+        ("OrdinaryDiffEq McAte4 (quadratic T)", 3),
         ("Calvo–Sanz-Serna 4", 4),
-        ("OrdinaryDiffEq CalvoSanz4, even for quadratic T", 3),
-        ("OrdinaryDiffEq McAte42, even for quadratic T", 1),
+        ("OrdinaryDiffEq CalvoSanz4 (quadratic T)", 3),
+        ("OrdinaryDiffEq McAte42 (quadratic T)", 1),
     ],
 )
 def test_floats_show_the_orders_that_are_found(name: str, order: int) -> None:
