@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -18,13 +18,10 @@ from verify.cli_input import hamiltonian_of, target, with_system, writable
 from verify.cli_integrator import check_integrator
 from verify.cli_prove import certificate, prove
 from verify.cli_reference import reference
+from verify.cli_report import report
 from verify.cli_stability import stability
-from verify.cli_tasks import json_option, told, with_where
 from verify.errors import InputError, PlaceError
 from verify.show_plan import print_plan
-
-if TYPE_CHECKING:
-    from verify.executors import Where
 
 INTERRUPTED, TERMINATED = 130, 143
 BAD_INPUT = 2
@@ -61,6 +58,7 @@ cli.add_command(check)
 cli.add_command(check_integrator)
 cli.add_command(bench)
 cli.add_command(reference)
+cli.add_command(report)
 
 
 @cli.command()
@@ -192,72 +190,6 @@ def plan(scene: str, as_json: bool) -> None:
         show.print_json(planned)
     else:
         print_plan(planned)
-
-
-@cli.command()
-@click.argument("scene", metavar="SCENE")
-@click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
-@click.option(
-    "--format",
-    "formats",
-    type=click.Choice(["html", "md"]),
-    multiple=True,
-    default=["html"],
-    help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
-    "repository; given twice, both.",
-)
-@with_where
-@json_option
-def report(
-    scene: str, output: Path | None, formats: tuple[str, ...], where: "Where", as_json: bool
-) -> None:
-    """Verify SCENE and write DIR/index.html and DIR/results.json.
-
-    SCENE is a TOML file, `paper`, `stiff` or `extreme`.
-
-    What is finished is kept in DIR/kept; an interrupted report goes on from there.
-    """
-    from verify.claim_plan import add_claims
-    from verify.execute import Store
-    from verify.plan import plan_scenes
-    from verify.report import make_report
-
-    title, scenes, file = target(scene)
-    claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
-    folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
-    writable(folder)
-    asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
-    planned = plan_scenes(scenes)
-    add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
-    with told(planned.tasks, folder / "kept") as done:
-        made = make_report(
-            title,
-            scenes,
-            claims,
-            Store(folder / "kept"),
-            command=f"verify report {scene} -o {folder.name}{asked}",
-            claim_scenes=claim_scenes,
-            figures=file.figures if file else (),
-            plan=planned,
-            where=where,
-            done=done,
-        )
-    written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
-    if as_json:
-        show.print_json(made.model_dump(mode="json"))
-    else:
-        show.print_report(made, *written)
-
-
-def _writer(name: str) -> Any:
-    """What writes a report in that format; only what is asked for is imported."""
-    if name == "md":
-        from reports.markdown import write as write_markdown
-
-        return write_markdown
-    from reports.page import write as write_page
-
-    return write_page
 
 
 # -- entry ----------------------------------------------------------------------------------------

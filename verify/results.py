@@ -287,6 +287,7 @@ class ClaimResult(Frozen):
     `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
     such as "4.1 The Duffing system"; a report groups its claims by it.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
+    `reproduction`: a few lines of code that show what is said of someone else's code.
     """
 
     id: str
@@ -299,3 +300,4 @@ class ClaimResult(Frozen):
     evidence: str
     details: tuple[tuple[str, ...], ...] = ()
     proof: str = ""
+    reproduction: str = ""

@@ -65,7 +65,8 @@ class Provenance(Frozen):
 class Report(Frozen):
     """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
 
-    `gallery`: the worst scenes that a hunt found.
+    `gallery`: the worst scenes that a hunt found. `preface`: what is said before all else, such as
+    which libraries are installed.
     """
 
     title: str
@@ -74,6 +75,7 @@ class Report(Frozen):
     figures: tuple[PaperFigure, ...] = ()
     gallery: Gallery | None = None
     left_out: tuple[tuple[str, str], ...]
+    preface: tuple[str, ...] = ()
     provenance: Provenance
 
     def _repr_html_(self) -> str:

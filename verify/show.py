@@ -216,6 +216,8 @@ def _crossed(way: "CrossoverResult") -> str:
 
 
 def print_report(made: "Report", *pages: Path) -> None:
+    for line in made.preface:
+        click.echo(line)
     for claim in made.claims:
         click.echo(f"{claim.verdict:9}  {claim.source}: {claim.evidence}")
     for scene in made.scenes:

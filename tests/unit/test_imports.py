@@ -201,7 +201,8 @@ def test_what_carries_no_points_loads_no_numpy(
 @every_module
 def test_only_what_is_declared_is_imported(path: Path) -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
-                "llvmlite", "heyoka", "scipy", "matplotlib", "jinja2", "markupsafe", "hypothesis",
+                "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
+                "matplotlib", "jinja2", "markupsafe", "hypothesis",
                 "distributed",
                 "verify", "reports", "reference"}  # fmt: skip
     names = roots(imported(path, everywhere=True))

@@ -129,7 +129,7 @@ class TreeConditions:
 
 @lru_cache(maxsize=256)
 def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Condition, ...]:
-    gaps, weights = gaps_of(tableau, order), _Weights(tableau.numbers)
+    gaps, weights = gaps_of(tableau, order), Weights(tableau.numbers)
     found = {tree: weights.condition(tree, gap) for tree, gap in gaps.items()}
     wrong = [tree for tree in gaps if found[tree].holds is False]
     if not wrong:
@@ -146,7 +146,7 @@ def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Co
 @lru_cache(maxsize=256)
 def gaps_of(tableau: ImplicitTableau, order: int) -> Mapping[Tree, Poly]:
     """b·Φ(t) − 1/γ(t) for the trees of so many vertices, in the ring of the tableau's numbers."""
-    weights = _Weights(tableau.numbers)
+    weights = Weights(tableau.numbers)
     return {tree: weights.gap(tree) for tree in trees(order)}
 
 
@@ -202,16 +202,20 @@ class Differentials:
         return total
 
 
-class _Weights:
+class Weights:
     """Φ(t) of trees, each made once."""
 
     def __init__(self, numbers: Numbers) -> None:
         self.numbers, self.ring = numbers, numbers.ring
         self._summed: dict[Tree, Vector] = {}
 
+    def weight(self, tree: Tree) -> Poly:
+        """b·Φ(t)."""
+        return self._dot(self.numbers.b, self.vector(tree))
+
     def gap(self, tree: Tree) -> Poly:
         """b·Φ(t) − 1/γ(t)."""
-        return self._dot(self.numbers.b, self.vector(tree)) - self.ring.one / density(tree)
+        return self.weight(tree) - self.ring.one / density(tree)
 
     def condition(self, tree: Tree, gap: Poly) -> Condition:
         name = f"{written(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"

@@ -1,0 +1,135 @@
+"""The libraries of others: found by themselves, left out by name, and driven as they say."""
+
+from importlib.machinery import ModuleSpec
+from typing import Any
+
+import pytest
+
+from verify import others
+from verify.integrators_report import make_integrators_report
+from verify.others.nodepy_methods import claimed
+from verify.subject import Compared, FloatStep, Subject
+from verify.subject_claims import claims_of
+from verify.subject_measured import finding
+from verify.verdict import Verdict
+
+LIBRARIES = [name for name in others.names() if others.get(name).LIBRARY is not None]
+
+
+def hide(monkeypatch: pytest.MonkeyPatch, *kept: str) -> None:
+    """As if no library but those were installed."""
+
+    def find(name: str) -> ModuleSpec | None:
+        return ModuleSpec(name, None) if name in kept else None
+
+    monkeypatch.setattr(others, "find_spec", find)
+
+
+def test_every_file_says_what_it_is() -> None:
+    assert {"scipy_integrators", "rebound_integrators", "literature"} <= set(others.names())
+    assert others.get(others.names()[-1]).LIBRARY is None, "what needs no library comes last"
+    for name in others.names():
+        module = others.get(name)
+        assert module.TITLE
+        assert all(what and why for what, why in module.LEFT_OUT)
+
+
+def test_libraries_that_are_not_installed_are_left_out_and_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    hide(monkeypatch)
+    report = make_integrators_report("verify report integrators")
+    missing = dict(report.left_out)
+    for name in LIBRARIES:
+        title = others.get(name).TITLE
+        assert "not installed" in missing[title]
+        assert title in report.preface[1]
+        assert not any(claim.section.startswith(title) for claim in report.claims)
+    assert report.preface[0].startswith("Installed here: none")
+    assert report.claims, "printed tables need no library"
+    ids = [claim.id for claim in report.claims]
+    assert len(ids) == len(set(ids))
+    wrong = [c for c in report.claims if c.verdict is Verdict.REFUTED]
+    assert wrong
+    assert all(c.reproduction for c in wrong if c.kind == "order")
+
+
+def test_an_installed_library_has_its_version_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("scipy")
+    from importlib.metadata import version
+
+    assert others.installed("scipy_integrators") == version("scipy")
+    hide(monkeypatch)
+    assert others.installed("scipy_integrators") is None
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "orders"),
+    [
+        ("RK44", "Classical RK4", (4, None)),
+        ("SSP104", "SSPRK(10,4)", (4, None)),
+        ("BuRK65", "Butcher's RK65", (5, None)),
+        ("Fehlberg45", "Fehlberg RK5(4)6", (5, 4)),
+        ("PD8", "Prince-Dormand 8(7)", (8, 7)),
+        ("GL3", "Gauss-Legendre RK36", (6, None)),
+        ("Nothing", "of no number", (None, None)),
+    ],
+)
+def test_orders_are_read_from_the_names_of_nodepy(key: str, name: str, orders: Any) -> None:
+    assert claimed(key, name) == orders
+
+
+def subjects(name: str) -> dict[str, Subject]:
+    pytest.importorskip(others.get(name).LIBRARY)
+    return {subject.name: subject for subject in others.get(name).subjects()}
+
+
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_subjects_have_names_of_their_own_and_reproductions_that_compile(name: str) -> None:
+    pytest.importorskip(others.get(name).LIBRARY)
+    found = list(others.get(name).subjects())
+    assert len({subject.name for subject in found}) == len(found)
+    for subject in found:
+        compile(subject.reproduction, subject.name, "exec")
+        assert subject.source
+        assert subject.driven
+
+
+def test_tables_of_scipy_have_their_orders() -> None:
+    found = subjects("scipy_integrators")
+    for name in ("RK23, its table", "RK45, its table", "RK45, its error estimator"):
+        (claim,) = claims_of(found[name], "scipy", "scipy")
+        assert claim.verdict is Verdict.PROVED, claim.evidence
+    (claim,) = claims_of(found["DOP853, its table"], "scipy", "scipy")
+    assert claim.verdict is Verdict.MEASURED
+
+
+def test_heyokas_taylor_step_is_lie_eta() -> None:
+    found = subjects("heyoka_taylor")["Taylor and lieη"].method
+    assert isinstance(found, Compared)
+    verdict, evidence, rows = found.compare()
+    assert verdict is Verdict.MEASURED, evidence
+    assert len(rows) > 3
+
+
+def test_nodepys_lambert_is_of_order_two_and_its_misprint_is_found() -> None:
+    found = subjects("nodepy_methods")
+    (claim,) = claims_of(found["Lambert65"], "nodepy", "nodepy")
+    assert claim.verdict is Verdict.REFUTED
+    assert "3/16, 1/16 in place of 1/8, 1/8" in claim.evidence
+
+
+@pytest.mark.parametrize(
+    ("name", "subject", "order"),
+    [
+        ("galpy_integrators", "symplec4_c", 4),
+        ("rebound_integrators", "LEAPFROG, order 4", 4),
+        ("rebound_integrators", "WHFAST", 2),
+    ],
+)
+def test_symplectic_integrators_are_as_claimed(name: str, subject: str, order: int) -> None:
+    method = subjects(name)[subject].method
+    assert isinstance(method, FloatStep)
+    found = finding(method)
+    assert found.convergence_order == order
+    assert found.area_preserving is True

@@ -1,0 +1,191 @@
+"""Order conditions as numbers in the logarithm of a step, over any number system.
+
+A step S = Π exp(Σ c_l X_l) is a product of exponentials of letters that do not commute; log S is a
+Lie series, and S agrees with the flow up to h^r where log S is that of the flow up to weight r. A
+Lie element of the free algebra is known by its coefficients of the Lyndon words (Reutenauer, Free
+Lie Algebras, 1993, theorem 5.1). Three kinds of steps are written so:
+
+- `splitting`: kicks and drifts, letters K and D of weight 1, for H = T(p) + V(q);
+- `nystrom`: the same for H = p·M⁻¹p/2 + V(q), where [K, [K, [K, D]]] = 0. The ideal that it
+  generates is divided out: a condition is a combination of Lyndon words that vanishes on it;
+- `composition`: steps of sizes w of any symmetric method, exp(wY₁ + w³Y₃ + w⁵Y₅ + …), letters 1, 3,
+  5, … of those weights (Yoshida 1990; McLachlan 1995).
+
+A step that is the same read backwards has no even weights in log S, since S(h) S(−h) = 1; so its
+conditions of even order hold where those below do (Hairer, Lubich, Wanner, V.3 and III.5).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import gcd
+from typing import Any
+
+import flint
+
+KINDS = ("splitting", "nystrom", "composition")
+# Of nystrom steps fewer conditions would do from weight 8 on: forces of two kinds commute too.
+MOST_ORDER = {"splitting": 8, "nystrom": 7, "composition": 10}
+LETTERS = {"kick": "K", "drift": "D"}
+Part = Mapping[str, Any]  # letter to coefficient
+_ODD = "13579"
+
+
+@dataclass(frozen=True)
+class LogCondition:
+    """Σ weight · (coefficient of the word in log S) = `value`; `order`: the power of h."""
+
+    name: str
+    order: int
+    terms: tuple[tuple[int, str], ...]
+    value: int
+
+
+@cache
+def conditions(kind: str, order: int) -> tuple[LogCondition, ...]:
+    """All of orders 1 … `order` for the kind; `order` at most `MOST_ORDER[kind]`."""
+    found = []
+    for weight in range(1, order + 1):
+        words = lyndon(kind, weight)
+        if kind == "nystrom" and weight > 3:
+            found += [_combined(row, words, weight) for row in _modulo_ideal(words, weight)]
+            continue
+        found += [_single(kind, word, weight) for word in words]
+    return tuple(found)
+
+
+def _single(kind: str, word: str, weight: int) -> LogCondition:
+    value = int(weight == 1)
+    names = {"K": "Σ kicks = 1", "D": "Σ drifts = 1", "1": "Σ w = 1", "3": "Σ w³ = 0"}
+    spelled = "Y" + " Y".join(word) if kind == "composition" else word
+    return LogCondition(
+        names.get(word, f"coefficient of {spelled} in log S = {value}"), weight, ((1, word),), value
+    )
+
+
+def _combined(row: Sequence[int], words: Sequence[str], weight: int) -> LogCondition:
+    terms = tuple((n, word) for n, word in zip(row, words, strict=True) if n)
+    text = " + ".join(word if n == 1 else f"({n}) {word}" for n, word in terms)
+    return LogCondition(f"{text} in log S = 0", weight, terms, 0)
+
+
+def weight_of(word: str) -> int:
+    return sum(int(letter) if letter in _ODD else 1 for letter in word)
+
+
+@cache
+def words(kind: str, most: int) -> tuple[str, ...]:
+    """All words of weights 0 … most, shorter prefixes first."""
+    letters = _ODD if kind == "composition" else "DK"
+    found = [""]
+    for word in found:  # it grows while it is walked
+        found += [word + x for x in letters if weight_of(word + x) <= most]
+    return tuple(found)
+
+
+@cache
+def lyndon(kind: str, weight: int) -> tuple[str, ...]:
+    """The Lyndon words of that weight: smaller than each of their proper ends."""
+    own = (word for word in words(kind, weight) if weight_of(word) == weight)
+    return tuple(w for w in own if all(w < w[k:] for k in range(1, len(w))))
+
+
+# -- the step -------------------------------------------------------------------------------------
+
+
+def step(kind: str, parts: Sequence[Part], most: int, one: Any) -> dict[str, Any]:
+    """The coefficients of all words up to weight `most` in Π exp(part), in the ring of `one`."""
+    all_words = words(kind, most)
+    shares = [one / n for n in range(1, most + 1)]
+    series = {"": one}
+    for part in parts:
+        factor = _exponential(part, all_words, shares)
+        after = {}
+        for word in all_words:
+            total = series.get(word)
+            for length in range(1, len(word) + 1):
+                share = factor.get(word[-length:])
+                if share is None:
+                    break
+                before = series.get(word[:-length])
+                if before is not None:
+                    total = before * share if total is None else total + before * share
+            if total is not None:
+                after[word] = total
+        series = after
+    return {word: series.get(word, one * 0) for word in all_words}
+
+
+def _exponential(part: Part, all_words: Sequence[str], shares: Sequence[Any]) -> dict[str, Any]:
+    """The coefficients of exp(part) but for that of no letter, 1: Π c_l / n! of n letters."""
+    found: dict[str, Any] = {}
+    for word in all_words:
+        if word and word[-1] in part:
+            before = found.get(word[:-1])
+            if len(word) == 1:
+                found[word] = part[word]
+            elif before is not None:
+                found[word] = before * part[word[-1]] * shares[len(word) - 1]
+    return found
+
+
+def of_logarithm(series: Mapping[str, Any], word: str, sign: int = -1) -> Any:
+    """The word's coefficient in log S: Σ (−1)^(k+1)/k over its cuts into k pieces.
+
+    With `sign` 1 all signs are plus, as of a majorant.
+    """
+    size = len(word)
+    reached: list[Any] = [series[""], *[None] * size]
+    total = series[""] * 0
+    for pieces in range(1, size + 1):
+        after: list[Any] = [None] * (size + 1)
+        for end in range(pieces, size + 1):
+            cuts = [
+                reached[begin] * series[word[begin:end]]
+                for begin in range(end)
+                if reached[begin] is not None
+            ]
+            after[end] = sum(cuts[1:], cuts[0]) if cuts else None
+        reached = after
+        if reached[size] is not None:
+            total = total + reached[size] * (series[""] * sign ** (pieces + 1) / pieces)
+    return total
+
+
+def residue(series: Mapping[str, Any], condition: LogCondition) -> Any:
+    """Left side − right side of the condition."""
+    total = series[""] * -condition.value
+    for n, word in condition.terms:
+        total = total + of_logarithm(series, word) * n
+    return total
+
+
+# -- quadratic kinetic energy ---------------------------------------------------------------------
+
+
+def _modulo_ideal(words: Sequence[str], weight: int) -> Iterator[tuple[int, ...]]:
+    """A basis of the combinations of Lyndon words that vanish on the ideal's elements."""
+    rows = [[element.get(word, 0) for word in words] for element in _ideal(weight)]
+    space, count = flint.fmpz_mat(rows).nullspace()
+    for k in range(count):
+        column = [int(space[i, k]) for i in range(len(words))]
+        yield tuple(x // gcd(*column) for x in column)
+
+
+@cache
+def _ideal(weight: int) -> tuple[dict[str, int], ...]:
+    """Spans its part of that weight: brackets of letters with [K, [K, [K, D]]]."""
+    if weight == 4:
+        found = {"D": 1}
+        for _ in range(3):
+            found = _bracket("K", found)
+        return (found,)
+    return tuple(_bracket(x, element) for element in _ideal(weight - 1) for x in "DK")
+
+
+def _bracket(letter: str, element: Mapping[str, int]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for word, n in element.items():
+        for other, sign in ((letter + word, n), (word + letter, -n)):
+            found[other] = found.get(other, 0) + sign
+    return found
