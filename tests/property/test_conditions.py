@@ -4,14 +4,17 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.property.made_schemes import Made, conditions
 from tests.property.strategies import polynomials, rationals
+from verify.generators import embed
 from verify.generic import Stage, StageEquations
 from verify.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.splitting_conditions import decimal_of
 from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.schemes import get
 from verify.step_map import StepMap
@@ -58,6 +61,21 @@ def test_the_order_is_the_last_up_to_which_all_hold_and_the_verdict_says_what_is
         here = [holds for n, holds in generic.of_order if n == order + 1]
         assert f"of h^{order + 1}," in proof.checked[1]
         assert ("does not hold" in proof.checked[1]) == (False in here)
+
+
+@quick
+@given(rationals(), st.integers(-2000, 2000) | st.sampled_from([-(10**6), -200_000, 200_000]))
+def test_a_residue_is_a_decimal_of_twelve_digits_where_it_is_in_reach(
+    x: Fraction, power: int
+) -> None:
+    ring, _ = embed([sympy.S.One], ())
+    number = x * Fraction(2) ** power
+    shown = decimal_of(ring, ring.constant(number))
+    if abs(power) > 10**5:
+        assert shown == "unknown"
+    else:
+        assert abs(Fraction(shown) - number) <= abs(number) / 10**11
+        assert abs(number) >= abs(Fraction(shown)) * (1 - Fraction(1, 10**10)) > 0
 
 
 # -- symmetry -------------------------------------------------------------------------------------
