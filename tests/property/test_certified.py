@@ -1,6 +1,7 @@
 """What has a certificate: a proof and nothing less, and nested as deep as a checker can look."""
 
 import json
+import sys
 import tempfile
 from dataclasses import replace
 from fractions import Fraction
@@ -12,9 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.property.certificates import EVERY, Data, as_read
+from tests.property.made_schemes import made_of, proof_of
+from tests.property.strategies import rationals
 from verify.errors import InputError
+from verify.generic import RungeKutta
+from verify.proof import certificate
 from verify.proof.certificate import of_every
-from verify.proof.checker import check
+from verify.proof.checker import check, poly
 from verify.proof.checking import FORMAT, checked, statement
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
@@ -49,6 +54,8 @@ def test_what_is_not_proved_for_every_h_has_no_certificate(
         data = as_read(of_every(proof))
         check(data)
         assert (data["scheme"], data["format"]) == (name, FORMAT)
+        assert ("potential" in data) == bool(proof.telescopes)
+        assert ("T(p) + V(q)" in statement(data)) == proof.separable
     else:
         assert f"{verdict}: there is nothing to certify" in refused(proof)
 
@@ -62,6 +69,32 @@ def test_what_is_proved_by_irrational_coefficients_has_none_either(
     proved = verdict is Verdict.PROVED
     assert ("is proved by its coefficients" in said) == proved
     assert ("there is nothing to certify" in said) != proved
+
+
+@settings(deadline=None, max_examples=15)
+@given(rationals(4), st.booleans())
+def test_two_explicit_stages_of_order_2_have_a_potential_that_is_certified(
+    alpha: Fraction, separable: bool
+) -> None:
+    """L = X·G, G = (1 − α)/2 det Hess H, α the second node; it is 0 for Heun's, α = 1."""
+    generic = RungeKutta(((), (alpha,)), (1 - 1 / (2 * alpha), 1 / (2 * alpha)))
+    proof = proof_of(generic, 2, separable=separable)
+    assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, 2)
+    assert (proof.order, proof.telescopes) == ((4, False) if alpha == 1 else (3, True))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(certificate, "get", lambda _: made_of(generic, 2))
+        data = as_read(of_every(proof))
+    check(data)
+    assert ("T(p) + V(q)" in statement(data)) == separable
+    if alpha == 1:
+        assert "potential" not in data
+        return
+    size = (1 - alpha) / 2
+    wanted = [[str(size), "H_pp", "H_qq"], *[[str(-size), "H_pq", "H_pq"]] * (not separable)]
+    assert poly(data["potential"]) == poly(wanted)
+    data["potential"][0][0] = str(-size * 2)
+    with pytest.raises(ValueError, match="potential is not zero"):
+        check(data)
 
 
 def fraction_of(depth: int, first: int) -> Data:
@@ -83,21 +116,22 @@ def fraction_of(depth: int, first: int) -> Data:
     }
 
 
-@settings(deadline=None, max_examples=8)
-@given(st.integers(0, 30) | st.integers(3000, 4000), st.integers(1, 9), st.integers(1, 4))
+@settings(deadline=None, max_examples=6)
+@given(st.integers(0, 30), st.booleans(), st.integers(1, 9), st.integers(1, 4))
 def test_a_certificate_is_refused_that_is_nested_beyond_all_bounds(
-    depth: int, first: int, times: int
+    depth: int, beyond: bool, first: int, times: int
 ) -> None:
+    depth += sys.getrecursionlimit() * beyond
     data = fraction_of(depth, first)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "certificate.json"
         path.write_text(json.dumps(data), encoding="utf-8")
         holds, said = checked(path)
-        assert holds == (depth <= 30)
+        assert holds == (not beyond)
         assert said == (statement(data) if holds else "its functions are nested too deeply")
         data["leading"][0][0] = str(Fraction(times + 1, times))
         path.write_text(json.dumps(data), encoding="utf-8")
         assert not checked(path)[0], "another leading coefficient is none"
-        path.write_text("[" * (depth * 50), encoding="utf-8")
+        path.write_text("[" * (depth * 100), encoding="utf-8")
         with pytest.raises(InputError):
             checked(path)
