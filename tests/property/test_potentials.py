@@ -1,12 +1,13 @@
 """Whether a leading coefficient is a derivative along the flow, at equilibria of drawn H."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.property.strategies import P, Q, plain, rationals
+from tests.property.strategies import P, Q, plain, polynomials, rationals
 from verify.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.potential import Potential, potential_of
@@ -48,6 +49,8 @@ def test_no_equilibrium_rules_out_what_has_a_potential(q: str, a: Fraction, c: F
     found, h = potential(text, "lie2"), plain(text)
     assert (found.holds, found.reason) == (True, "by the formula for every H")
     assert found.potential is not None
+    assert found.text is not None
+    assert sympy.expand(plain(found.text) - found.potential) == 0
     along = h.diff(P) * found.potential.diff(Q) - h.diff(Q) * found.potential.diff(P)
     # −div(X² f)/3!, by plain sympy
     p, q_ = -h.diff(Q), h.diff(P)
@@ -71,3 +74,19 @@ def test_an_equilibrium_rules_nothing_out_where_l_is_zero_or_is_not_defined(
         assert f"equilibrium p = 0, q = {place}," in found.reason
     else:
         assert found.holds is True or found.element is None
+
+
+@few
+@given(polynomials("p", 3, 2), polynomials("q", 4, 2), st.sampled_from(["lie1", "lie2", "lie4"]))
+def test_what_has_no_leading_coefficient_has_the_potential_0_or_none_is_known(
+    kinetic: str, force: str, name: str
+) -> None:
+    """ΔJ ≡ 0 is the derivative of 0; of a ΔJ whose order is not decided nothing is said."""
+    hamiltonian = Hamiltonian.parse(f"{kinetic} + {force}")
+    found = potential(f"{kinetic} + {force}", "symplectic-euler")
+    assert (found.holds, found.potential, found.text) == (True, 0, "0")
+    scheme = get(name)
+    proof = prove(scheme.step_map(hamiltonian), scheme)
+    left = potential_of(replace(proof, order=None, area_preserving=None), scheme)
+    assert (left.holds, left.potential, left.text) == (None, None, None)
+    assert "not known" in left.reason
