@@ -1,6 +1,6 @@
 """What conditions on coefficients leave open: an H refutes it, or it stays open; no series lies."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 
@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.property.made_schemes import Made, conditions, made_of, proof_of
+from tests.property.strategies import H, P, Q, plain, rationals
 from verify.generic import StageEquations, TaylorSeries
 from verify.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
@@ -16,6 +17,7 @@ from verify.proof.counterexample import counterexample
 from verify.proof.jets import Jets, Series
 from verify.proof.order import prove
 from verify.schemes import get
+from verify.step_map import StepMap
 from verify.verdict import Verdict
 
 few = settings(deadline=None, max_examples=12)
@@ -81,6 +83,23 @@ def test_where_no_h_refutes_it_the_series_is_asked(
         right = eta >= claimed and not area
         assert proof.verdict is (Verdict.PROVED if right else Verdict.REFUTED)
         assert (proof.order, proof.convergence_order) == (eta + 1, eta)
+
+
+@few
+@given(st.booleans(), rationals(3))
+def test_an_h_that_the_scheme_is_not_asked_about_refutes_nothing(
+    separable: bool, size: Fraction
+) -> None:
+    """p' = p − h c H_q(p, q), q' = q + h H_p(p', q) preserves area for T(p) + V(q) alone."""
+
+    def build(hamiltonian: Hamiltonian) -> StepMap:
+        h = hamiltonian.exact
+        p_next = P - H * sympy.Rational(str(size)) * h.diff(Q)
+        return StepMap.from_expressions(hamiltonian, p_next, Q + H * h.diff(P).subs(P, p_next))
+
+    found = counterexample(replace(get("euler"), build=build), separable)
+    assert (found is None) == separable
+    assert found is None or sympy.expand(plain(found[0]).diff(P, Q)) != 0
 
 
 sizes = st.sampled_from([Fraction(x) for x in ("1", "1/2", "-1", "1/3", "2", "3/2")])
