@@ -20,8 +20,11 @@ Matrix = tuple[tuple[Poly, Poly], tuple[Poly, Poly]]
 
 
 @runtime_checkable
-class Generic(Protocol):
-    """`separable`: the scheme is for H = T(p) + V(q) only."""
+class BySeries(Protocol):
+    """A scheme for every H (`separable`: every H = T(p) + V(q)) that has a Taylor series.
+
+    Not to be named Generic: `typing` passes over a protocol of that name, and all would be one.
+    """
 
     @property
     def separable(self) -> bool: ...

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from verify.conditions import ByConditions
 from verify.drawn import drawn_by
-from verify.generic import Generic
+from verify.generic import BySeries
 from verify.hamiltonian import Hamiltonian
 from verify.step_map import StepMap
 
@@ -30,7 +30,7 @@ class Scheme:
     symmetric: bool
     source: str
     build: Callable[[Hamiltonian], StepMap]
-    generic: Generic | ByConditions | None = None
+    generic: BySeries | ByConditions | None = None
 
     @property
     def needs_separable(self) -> bool:

@@ -71,6 +71,7 @@ def of_drawn(draw: st.DrawFn) -> Data:
     potential = potential_of(proof, scheme)
     data = as_read(of_one(proof, potential))
     assert (data["order"], data["convergence_order"]) == (proof.order, proof.convergence_order)
+    assert all(data.get("cofactors", {}).values()), "what is zero as it stands has none"
     assert ("potential" in data) == (potential.potential is not None and proof.order is not None)
     needed = max(proof.order or 0, proof.convergence_order or 0) + 1
     assert proof.order is None or max(map(len, (data["p_next"], data["q_next"]))) <= needed

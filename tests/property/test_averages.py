@@ -112,6 +112,23 @@ def test_a_flow_is_followed_in_steps_as_long_as_its_accuracy_allows(
 
 
 @few
+@given(rates, st.integers(-900, 900), numbers, numbers, st.integers(-40, 40), digits_of)
+def test_a_quarter_turn_of_the_plane_turns_every_bit_of_a_step(
+    rate: int, c: int, p: Fraction, q: Fraction, part: int, digits: int
+) -> None:
+    """(p, q) → (−q, p) is canonical: a circle about (c, c) becomes one about (−c, c)."""
+    ends = []
+    for middle, z in ((c, (c + p, c + q)), (-c, (-c - q, c + p))):
+        text = f"{rate}*((p - ({middle}))**2 + (q - ({c}))**2)/2"
+        flow = Flow(Hamiltonian.parse(text).field()[0], digits)
+        time = flow.number(Fraction(part, 10 * rate))
+        end = flow.step((flow.number(z[0]), flow.number(z[1])), time)
+        ends.append(end and [flow.arithmetic.exact(x) for x in end])
+    one, turned_ = ends
+    assert turned_ == (one and [-one[1], one[0]])
+
+
+@few
 @given(polynomials("pq", 3, 3), numbers, numbers)
 def test_functions_at_a_point_are_what_they_are(text: str, p: Fraction, q: Fraction) -> None:
     field, _ = oscillator(1, 1, Fraction(0)).field()
@@ -169,6 +186,17 @@ def test_an_oscillators_averages_are_those_of_cosines(
     assert len(found.values) == len(found.orbit.points)
     inside = found.orbit.values(element(text))
     assert [float(x) for x in inside] == list(found.values)
+
+
+@few
+@given(rates, numbers, numbers, st.integers(-9, 9).filter(bool), st.integers(5, 30))
+def test_a_constants_average_is_itself_and_may_be_off_by_a_unit_of_ten_digits_more(
+    b: int, p: Fraction, q: Fraction, constant: int, digits: int
+) -> None:
+    assume(p or q)
+    found = average(oscillator(1, b, Fraction(0)), element(str(constant)), (p, q), digits)
+    assert found.value == constant
+    assert found.bound == Fraction(abs(constant), 10 ** (digits + 10))
 
 
 @few

@@ -1,6 +1,7 @@
 """What the checker of certificates works with, and the files that it reads."""
 
 import json
+import re
 import tempfile
 from fractions import Fraction
 from pathlib import Path
@@ -90,6 +91,26 @@ def test_the_checkers_derivatives_values_and_relations_are_those_of_its_function
         found = mpmath.mpf(middle.numerator) / middle.denominator
         assert abs(found - value) <= float(radius) + TINY
     assert radius < Fraction(1, 10**6)
+
+
+@settings(deadline=None, max_examples=6)
+@given(certificates, st.sampled_from(["sin", "exp", "inverse"]), st.sampled_from("qh"))
+def test_a_name_that_has_a_meaning_is_given_to_no_function(
+    data: Data, kind: str, other: str
+) -> None:
+    """p, q, h and the functions have theirs; "every H" has derivatives, and no function at all."""
+    if "stages" in data:
+        return
+    own = data.get("functions", [])
+    for name in ("p", other, *(f[0] for f in own)):
+        with pytest.raises(ValueError, match=f"{re.escape(name)} is a new name"):
+            Algebra({**data, "functions": [*own, [name, kind, [["2", "q"]]]]})
+    with_new = {**data, "functions": [*own, ["#new", "exp", [["1", "q"]]]]}
+    if data["hamiltonian"] == "every":
+        with pytest.raises(ValueError, match="#new is a new name"):
+            Algebra(with_new)
+    else:
+        assert "#new" in Algebra(with_new).made
 
 
 # -- its file -------------------------------------------------------------------------------------

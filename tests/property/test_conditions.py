@@ -1,17 +1,20 @@
 """What follows from conditions on coefficients, and which schemes are symmetric."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.property.made_schemes import Made, conditions
 from tests.property.strategies import polynomials, rationals
-from verify.conditions import Condition
+from verify.generators import embed
 from verify.generic import Stage, StageEquations
 from verify.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.splitting_conditions import decimal_of
 from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.schemes import get
 from verify.step_map import StepMap
@@ -22,38 +25,8 @@ quick = settings(deadline=None, max_examples=25)
 # -- verdicts -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Made:
-    """Conditions by hand: (order, whether it holds)."""
-
-    of_order: tuple[tuple[int, bool | None], ...]
-    of_area: tuple[bool | None, ...]
-    most_order: int
-    separable: bool = False
-
-    def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        assert order <= self.most_order
-        own = [(n, holds) for n, holds in self.of_order if n <= order]
-        return tuple(Condition(f"C{k}", n, f"r{k}", holds) for k, (n, holds) in enumerate(own))
-
-    def area_conditions(self) -> tuple[Condition, ...]:
-        return tuple(Condition(f"A{k}", 0, f"s{k}", holds) for k, holds in enumerate(self.of_area))
-
-
-holding = st.sampled_from([True, True, True, True, False, None])
-made = st.builds(
-    Made,
-    st.lists(st.tuples(st.integers(1, 6), holding), max_size=6).map(
-        lambda x: tuple(sorted(x, key=lambda c: c[0]))
-    ),
-    st.lists(holding, max_size=2).map(tuple),
-    st.integers(4, 8),
-    st.booleans(),
-)
-
-
 @settings(deadline=None, max_examples=100)
-@given(made, st.integers(1, 4))
+@given(conditions, st.integers(1, 4))
 def test_the_order_is_the_last_up_to_which_all_hold_and_the_verdict_says_what_is_known(
     generic: Made, claimed: int
 ) -> None:
@@ -88,6 +61,21 @@ def test_the_order_is_the_last_up_to_which_all_hold_and_the_verdict_says_what_is
         here = [holds for n, holds in generic.of_order if n == order + 1]
         assert f"of h^{order + 1}," in proof.checked[1]
         assert ("does not hold" in proof.checked[1]) == (False in here)
+
+
+@quick
+@given(rationals(), st.integers(-2000, 2000) | st.sampled_from([-(10**6), -200_000, 200_000]))
+def test_a_residue_is_a_decimal_of_twelve_digits_where_it_is_in_reach(
+    x: Fraction, power: int
+) -> None:
+    ring, _ = embed([sympy.S.One], ())
+    number = x * Fraction(2) ** power
+    shown = decimal_of(ring, ring.constant(number))
+    if abs(power) > 10**5:
+        assert shown == "unknown"
+    else:
+        assert abs(Fraction(shown) - number) <= abs(number) / 10**11
+        assert abs(number) >= abs(Fraction(shown)) * (1 - Fraction(1, 10**10)) > 0
 
 
 # -- symmetry -------------------------------------------------------------------------------------

@@ -2,18 +2,17 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.property.made_schemes import proof_of
 from tests.property.strategies import H, P, Q, plain, rationals
 from verify.errors import InputError
 from verify.generic import RungeKutta, Stage, StageEquations, TaylorSeries
 from verify.hamiltonian import Hamiltonian
-from verify.proof import every
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.counterexample import counterexample
 from verify.proof.every import prove_every
@@ -25,16 +24,6 @@ from verify.verdict import Verdict
 
 SEPARABLE = "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3"
 few = settings(deadline=None, max_examples=12)
-
-
-Patch = pytest.MonkeyPatch
-
-
-def proof_of(generic: Any, order: int, area: bool = False, separable: bool = False) -> Any:
-    scheme = replace(get("euler"), name="made", generic=generic, order=order, area_preserving=area)
-    with Patch.context() as patch:
-        patch.setattr(every, "get", lambda _: scheme)
-        return prove_every("made", separable)
 
 
 @few

@@ -23,7 +23,7 @@ from typing import Any
 from verify.errors import InputError
 from verify.exact import text
 from verify.generator import terms_of
-from verify.generic import Generic, StageEquations, TaylorSeries
+from verify.generic import BySeries, StageEquations, TaylorSeries
 from verify.proof.checking import FORMAT
 from verify.proof.every import EveryProof
 from verify.proof.jets import Jets
@@ -46,7 +46,7 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
     if isinstance(stages, StageEquations) and proof.area_preserving:
         rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in stages.stages)
         return data | {"stages": [[text(x) for x in row] for row in rows]}
-    if proof.order is None or not isinstance(generic, Generic):
+    if proof.order is None or not isinstance(generic, BySeries):
         problem = "is proved by its coefficients; the checker knows rational ones, of stages"
         raise InputError("scheme", proof.scheme, problem)
     jets = Jets(proof.order + 2, separable=proof.separable)
@@ -59,7 +59,7 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
     return data
 
 
-def _potential(jets: Jets, generic: Generic, leading: Poly) -> Poly:
+def _potential(jets: Jets, generic: BySeries, leading: Poly) -> Poly:
     if isinstance(generic, TaylorSeries):
         return telescopes_of_lie(jets, leading, generic.eta).potential
     return telescopes(jets, leading).potential

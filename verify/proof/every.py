@@ -25,7 +25,7 @@ from dataclasses import replace
 
 from verify.conditions import ByConditions
 from verify.errors import InputError
-from verify.generic import Generic, StageEquations, TaylorSeries
+from verify.generic import BySeries, StageEquations, TaylorSeries
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.counterexample import counterexample
 from verify.proof.every_proof import EveryProof as EveryProof
@@ -66,23 +66,24 @@ def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> Ev
         generic = replace(generic, separable=True)
     proof = prove_by_conditions(scheme, generic)
     if separable and not generic.separable:
+        proof = replace(proof, separable=True)
         if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
             reason = f"of every smooth H: {proof.reason}; of H = T(p) + V(q) alone nothing is said"
             return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
-        proof = replace(proof, separable=True)
-    if proof.verdict is Verdict.UNDECIDED and proof.convergence_order == scheme.order:
+    agreed = proof.convergence_order
+    if proof.verdict is Verdict.UNDECIDED and agreed is not None and agreed >= scheme.order:
         found = counterexample(scheme, separable)
         if found is not None:
             hamiltonian, order = found
             lost = f"not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
             reason = f"of order {scheme.order}, but {lost}"
             return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
-    if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, Generic):
+    if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, BySeries):
         return proof
     return replace(_of_series(scheme, generic, separable), conditions=proof.conditions)
 
 
-def _convergence(jets: Jets, generic: Generic, most: int) -> int:
+def _convergence(jets: Jets, generic: BySeries, most: int) -> int:
     """p', q' agree with the exact flow up to this power of h, looked at up to h^most."""
     agreed = -1
     series = generic.taylor(jets, most)
@@ -116,7 +117,7 @@ def _of_stages(scheme: Scheme, generic: StageEquations, separable: bool) -> Ever
     )
 
 
-def _of_series(scheme: Scheme, generic: Generic, separable: bool) -> EveryProof:
+def _of_series(scheme: Scheme, generic: BySeries, separable: bool) -> EveryProof:
     most = scheme.order + 1
     while True:
         jets = Jets(most + 2, separable=separable)
@@ -127,8 +128,11 @@ def _of_series(scheme: Scheme, generic: Generic, separable: bool) -> EveryProof:
         most += 1
     agreed = _convergence(jets, generic, most)
     if order is None:
+        verdict = Verdict.UNDECIDED
         reason = f"the coefficients of ΔJ up to h^{most} vanish; whether all do is not decided"
-        return EveryProof(scheme.name, separable, Verdict.UNDECIDED, reason, None, None, agreed)
+        if agreed < scheme.order:
+            verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
+        return EveryProof(scheme.name, separable, verdict, reason, None, None, agreed)
     leading = coefficients[order - 1]
     verdict, reason = _judged(scheme, order, agreed)
     found, formula, checked = _telescoping(jets, generic, leading, order)
@@ -172,7 +176,7 @@ def _missed(scheme: Scheme, agreed: int) -> str:
 
 
 def _telescoping(
-    jets: Jets, generic: Generic, leading: Poly, order: int
+    jets: Jets, generic: BySeries, leading: Poly, order: int
 ) -> tuple[Telescoping, str, tuple[str, ...]]:
     """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
     if not isinstance(generic, TaylorSeries):

@@ -13,7 +13,7 @@ from verify.balls import Ball
 from verify.enclosure import enclose
 from verify.example import Example
 from verify.generator import terms_of
-from verify.generic import Generic, RungeKutta, StageEquations, TaylorSeries
+from verify.generic import BySeries, RungeKutta, StageEquations, TaylorSeries
 from verify.precision import working_precision
 from verify.proof.jets import Jets, Poly
 from verify.property import Violation
@@ -55,7 +55,7 @@ def _known_for_every_h(scheme: Scheme) -> bool:
 def _of_every(scheme: Scheme, most: int) -> tuple[Jets, tuple[Poly, ...]]:
     """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
     generic = scheme.generic
-    assert isinstance(generic, Generic)  # noqa: S101 - the caller looks
+    assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
     jets = Jets(most + 2, separable=generic.separable)
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
 
