@@ -125,4 +125,4 @@ def is_single(value: Fraction, unit: Fraction) -> bool:
         near = struct.unpack("f", struct.pack("f", float(value)))[0]
     except OverflowError:
         return False
-    return abs(Fraction(near) - value) <= unit
+    return math.isfinite(near) and abs(Fraction(near) - value) <= unit

@@ -107,8 +107,9 @@ def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, i
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
+    last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
     for (step, name), cell in judge.cells.items():
-        if name == "lambda" and 0 < step <= _MOST_SEPARATED and cell.apart:
+        if name == "lambda" and 0 < step <= min(last, _MOST_SEPARATED) and cell.apart:
             yield cell.apart, step, judge.ours
 
 
