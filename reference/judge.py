@@ -269,8 +269,23 @@ class Judge:
                 return
 
     def _is(self, setting: Setting, right: Fit, names: list[str], unit: Fraction) -> bool:
+        if not self._near_there(setting, right, unit):
+            return False
         fit = self.fit(setting, names, unit, wholly=False)
         return fit.fits and self._nearer(fit, right, unit)
+
+    def _near_there(self, setting: Setting, right: Fit, unit: Fraction) -> bool:
+        """What `_nearer` asks for, before anything is scattered, which takes long."""
+        place = right.place
+        if place is None or place not in right.apart:
+            return True
+        step, name = place
+        known = self._known(setting, step, unit)
+        if name not in known:
+            return True
+        value, radius = known[name]
+        apart = replace(self.cells[place], ours=value, radius=radius).apart
+        return right.apart[place] >= _FARTHER * apart
 
     def _nearer(self, fit: Fit, right: Fit, unit: Fraction) -> bool:
         """Whether the right setting is off by many times more, where it is off first."""
