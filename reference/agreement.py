@@ -11,8 +11,9 @@ from verify.exact import magnitude, rational
 from verify.reference_results import Rounded
 
 _NOT_FINITE = {"nan", "inf", "infinity"}
-_DIGITS = re.compile(r"[+-]?([0-9]*)\.?([0-9]*)(?:[eE]([+-]?[0-9]+))?")
+_DIGITS = re.compile(r"[+-]?([0-9]*)\.?([0-9]*)(?:[eEdD]([+-]?[0-9]+))?")
 _ENOUGH, _LONG = 3, 7  # cells, and digits of one
+_FORTRAN = re.compile(r"[+-]?[0-9.]+[dD][+-]?[0-9]+")
 _HEXADECIMAL = re.compile(r"[+-]?0[xX].{1,60}")
 
 
@@ -56,7 +57,7 @@ def printing(texts: Iterable[str]) -> Printing:
 def number(text: str, what: str) -> Fraction | None:
     """The exact value of a cell; None where it is not finite, an InputError where it is no number.
 
-    Hexadecimal floats, as C prints them with %a, are numbers, too.
+    Hexadecimal floats, as C prints them with %a, are numbers, too, and Fortran's 1.5D+00.
     """
     bare = text.strip()
     if bare.lstrip("+-").casefold() in _NOT_FINITE:
@@ -66,7 +67,7 @@ def number(text: str, what: str) -> Fraction | None:
             return Fraction(float.fromhex(bare))
         except (ValueError, OverflowError):
             pass
-    return rational(bare, what)
+    return rational(bare.upper().replace("D", "E") if _FORTRAN.fullmatch(bare) else bare, what)
 
 
 @dataclass(frozen=True)
@@ -125,4 +126,4 @@ def is_single(value: Fraction, unit: Fraction) -> bool:
         near = struct.unpack("f", struct.pack("f", float(value)))[0]
     except OverflowError:
         return False
-    return abs(Fraction(near) - value) <= unit
+    return math.isfinite(near) and abs(Fraction(near) - value) <= unit

@@ -22,6 +22,10 @@ USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _FEW = 4  # roundings of p and q in a step
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
+_UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
+    (Fraction(1, 2**24), Fraction(1, 2**126)),
+    (Fraction(1, 2**53), Fraction(1, 2**1022)),
+)
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,7 @@ class Allowance:
     def __init__(self, case: Case, unit: Fraction, scatters: Scatters) -> None:
         self.case, self.unit, self._scatters = case, unit, scatters
         self._entries: dict[int, Fraction] = {}
+        self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
 
     def at_once(self, name: str, step: int, known: dict[str, Known]) -> Fraction:
         """What may be in any case; `known` are the run's numbers after the step, p and q among
@@ -45,7 +50,7 @@ class Allowance:
         many = Fraction(1 + math.isqrt(step))
         if name in ("p", "q"):
             size = max(abs(known[n][0]) for n in ("p", "q"))
-            return _FEW * self.unit * size * many
+            return (_FEW * self.unit * size + self._smallest) * many
         size, one = abs(known[name][0]), self._one(step, known)
         if name == "lambda":
             return one * (1 + size) * many

@@ -55,7 +55,8 @@ class Separated:
 @dataclass
 class Compared:
     """`runs` were compared in so many `rows`. `unexplained`: runs that differ by more than rounding
-    and no mistake fits. `lost`: steps from which rounding may have taken every digit, by run."""
+    and no mistake fits. `lost`: steps from which rounding may have taken every digit, by run;
+    `overflows`: the first ones with a number that is not finite where doubles may overflow."""
 
     rows: int = 0
     runs: int = 0
@@ -63,6 +64,7 @@ class Compared:
     diagnoses: list[Diagnosis] = field(default_factory=list)
     unexplained: list[str] = field(default_factory=list)
     lost: dict[str, int] = field(default_factory=dict)
+    overflows: dict[str, int] = field(default_factory=dict)
     separated: Separated | None = None
 
     @property
@@ -94,11 +96,14 @@ def compare(
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
+    if not judged:
+        raise InputError("table", "all cells", "are empty where the data have a number")
     names = [n for n in theirs.columns if any(n in x.columns for x in judged)]
     found.columns = [_column(name, judged) for name in names]
     found.diagnoses = _diagnoses(judged)
     found.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
     found.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
+    found.overflows = {x.label: x.overflow_from for x in judged if x.overflow_from is not None}
     found.separated = _separated(off)
     return found
 
@@ -107,8 +112,11 @@ def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, i
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
+    last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
     for (step, name), cell in judge.cells.items():
-        if name == "lambda" and 0 < step <= _MOST_SEPARATED and cell.apart:
+        if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
+            continue
+        if cell.apart:
             yield cell.apart, step, judge.ours
 
 

@@ -24,6 +24,7 @@ from reference.mistakes import (
     without_synonyms,
 )
 from reference.ours import OurRun
+from reference.overflow import may_overflow
 from reference.scatter import Scatters
 from reference.setting import Known, Points, Setting
 from reference.theirs import Row
@@ -64,13 +65,15 @@ class Of:
 class Judged:
     """What was found of one run. `mistakes`: those that fit; one, or several which nothing tells
     apart. `unit`: the unit roundoff that explains it, or would. `lost_from`: the step from which
-    rounding may have taken every digit, so that nothing can be said."""
+    rounding may have taken every digit, so that nothing can be said. `overflow_from`: the first
+    step of which a number is not finite where doubles may overflow."""
 
     label: str
     columns: dict[str, Of] = field(default_factory=dict)
     mistakes: list[list[Named]] = field(default_factory=list)
     unit: Fraction = DOUBLE
     lost_from: int | None = None
+    overflow_from: int | None = None
 
     @property
     def verdict(self) -> Verdict:
@@ -86,6 +89,7 @@ class Fit:
     parts: dict[str, int] = field(default_factory=dict)
     apart: dict[tuple[int, str], Fraction] = field(default_factory=dict)
     lost_from: int | None = None
+    overflow_from: int | None = None
 
     @property
     def fits(self) -> bool:
@@ -131,7 +135,7 @@ class Judge:
         fits = [(unit, self.fit(self.right, self.names, unit)) for unit in self.units()]
         unit, best = next(((u, f) for u, f in fits if f.fits), fits[-1])
         columns = {name: self._of(name, best) for name in self.names}
-        return Judged(self.ours.label, columns, [], unit, best.lost_from), best
+        return Judged(self.ours.label, columns, [], unit, best.lost_from, best.overflow_from), best
 
     def _of(self, name: str, fit: Fit) -> Of:
         cells = {step: cell for (step, n), cell in self.cells.items() if n == name}
@@ -177,6 +181,10 @@ class Judge:
             if name not in names or found.verdicts[name] is Verdict.MORE:
                 continue
             known = self._known(setting, step, unit)
+            if cell.theirs is None and may_overflow(setting.case, step + setting.late, known):
+                found.overflow_from = step if found.overflow_from is None else found.overflow_from
+                found.verdicts[name] = max(found.verdicts[name], Verdict.ROUNDING)
+                continue
             own = read(step) if read else Foretold(*known[name]) if name in known else None
             verdict = Verdict.MORE
             if own is not None and name in known and cell.theirs is not None:
@@ -261,8 +269,23 @@ class Judge:
                 return
 
     def _is(self, setting: Setting, right: Fit, names: list[str], unit: Fraction) -> bool:
+        if not self._near_there(setting, right, unit):
+            return False
         fit = self.fit(setting, names, unit, wholly=False)
         return fit.fits and self._nearer(fit, right, unit)
+
+    def _near_there(self, setting: Setting, right: Fit, unit: Fraction) -> bool:
+        """What `_nearer` asks for, before anything is scattered, which takes long."""
+        place = right.place
+        if place is None or place not in right.apart:
+            return True
+        step, name = place
+        known = self._known(setting, step, unit)
+        if name not in known:
+            return True
+        value, radius = known[name]
+        apart = replace(self.cells[place], ours=value, radius=radius).apart
+        return right.apart[place] >= _FARTHER * apart
 
     def _nearer(self, fit: Fit, right: Fit, unit: Fraction) -> bool:
         """Whether the right setting is off by many times more, where it is off first."""

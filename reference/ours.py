@@ -20,6 +20,7 @@ from verify.hamiltonian import Hamiltonian
 from verify.reference_results import OrbitPoint
 
 KEYS = ("scheme", "step_size", "q0", "p0")  # what a run of a scene is told by
+_EXPONENT_DIGITS = 6
 VALUES = ("p", "q", "delta_j", "mse", "lambda")
 Inputs = tuple[str, float, float, float]  # scheme, h, q0, p0: the numbers to the nearest double
 
@@ -122,4 +123,15 @@ def _runs(folder: Path, name: str) -> Iterator[OurRun]:
         raise InputError("file", name, f"is no reference data: {where}: {told['msg']}") from None
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
     for run in data.runs:
+        _check_exponents(run, name)
         yield OurRun(data.name, hamiltonian, run)
+
+
+def _check_exponents(run: Run, name: str) -> None:
+    """InputError for an exponent whose power of ten would fill the memory."""
+    for row in run.rows:
+        for known in (row.p, row.q, row.delta_j, row.mse, row.lam):
+            for text in (known.value, known.radius) if known else ():
+                exponent = text.partition("e")[2].lstrip("+-0")
+                if len(exponent) > _EXPONENT_DIGITS:
+                    raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")

@@ -1,11 +1,12 @@
 """How far rounding scatters runs: many copies of each, pushed a little in every step.
 
-Each copy starts with h, the parameters and the initial value off by a relative ξ·2⁻³⁰, and after
-every step p and q are multiplied by 1 + ξ·2⁻³⁰, |ξ| ≤ 1. What becomes of that, divided by 2⁻³⁰, is
-what an arithmetic's unit roundoff is multiplied with: as long as errors are small they add up. In
-half of the copies ξ is drawn for each step anew, as roundings behave; in the others it stays what
-it was at first, the worst that roundings do where they always fall to the same side. A program's
-operations are others than ours, but their results are of the size of p and q or smaller.
+Each copy starts with h, the parameters and the initial value off by a relative ξ·ε, and after every
+step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1. What becomes of that, divided by ε, is what an
+arithmetic's unit roundoff is multiplied with: as long as errors are small they add up, and so ε is
+small: an angle of 10⁸ is pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as
+roundings behave; in the others it stays what it was at first, the worst that roundings do where
+they always fall to the same side. A program's operations are others than ours, but their results
+are of the size of p and q or smaller.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -22,7 +23,7 @@ from verify.kernel import kernel_for
 from verify.number_system import UnsupportedError
 from verify.stepping import Job
 
-_PUSH = 2.0**-30
+_PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
 _COPIES = 16  # of each kind
 _ALL = 2 * _COPIES + 1  # and one in the middle that is not pushed
 _MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go on growing
@@ -160,7 +161,7 @@ class Scatters:
             if together not in self._made:
                 self._made[together] = Scatter(together, self._marks)
             return self._made[together].at(k, step)
-        except UnsupportedError:
+        except (UnsupportedError, OverflowError):  # OverflowError: of an input that is no double
             return {}
         except ValueError:  # it was passed
             self._place[case] = (case,), 0

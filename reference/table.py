@@ -20,9 +20,9 @@ _MOST_COLUMNS = 500
 @contextmanager
 def opened(path: Path) -> Iterator["Table"]:
     """The table in a file. InputError where it is no file, or cannot be read."""
-    if not path.is_file():
-        raise InputError("file", str(path), "is not there, or is no file")
     try:
+        if not path.is_file():
+            raise InputError("file", str(path), "is not there, or is no file")
         with path.open(encoding="utf-8-sig", newline="") as file:
             yield Table(file, path.name)
     except OSError as error:

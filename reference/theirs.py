@@ -3,6 +3,7 @@
 Only what is compared is kept, so that memory does not grow with the file (see `reference.table`).
 """
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from reference.table import Table, opened
 from verify.errors import InputError
 from verify.exact import rational
 
+_SHOWN = 60  # characters of a text
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _SAME_NUMBER = Fraction(1, 10**6)  # of a step, by which N·h may miss a time
 _ALIASES = {
@@ -24,6 +26,7 @@ _ALIASES = {
     "lambda": ("λ", "lam"),
 }
 _COUNTED = ("step", "time")
+_WHOLE = re.compile(r"[0-9]{1,40}")
 COLUMNS = ("scene", *KEYS, *_COUNTED, *VALUES)
 
 
@@ -111,7 +114,7 @@ def _header(lines: Table, names: Mapping[str, str], found: Theirs) -> dict[str, 
     for at, head in enumerate(lines.header):
         column = own.get(head) or known.get(head.casefold())
         if column is None or (column in own.values() and head not in own):
-            ignored.append(head)
+            ignored.append(printable(head))
         elif column in places:
             raise lines.error(f"has two columns for {column}; --column {column}=… says which")
         else:
@@ -123,6 +126,12 @@ def _header(lines: Table, names: Mapping[str, str], found: Theirs) -> dict[str, 
     found.columns = tuple(name for name in VALUES if name in places)
     found.ignored = tuple(ignored)
     return places
+
+
+def printable(text: str) -> str:
+    """A text of a file as it may be shown: short, and without control characters."""
+    short = text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in short)
 
 
 def _listed(names: tuple[str, ...]) -> str:
@@ -143,9 +152,10 @@ class _Keys:
         self._known: dict[tuple[str, ...], OurRun | None] = {}
 
     def told(self, row: list[str]) -> str:
-        return ", ".join(
-            f"{name} = {row[at].strip()}" for name, at in zip(self.named, self.at, strict=True)
-        )
+        """What is said of a row's run, by options and by its cells."""
+        named = {name: row[at].strip() for name, at in zip(self.named, self.at, strict=True)}
+        said = {**self.given, **named}
+        return ", ".join(f"{name} = {printable(said[name])}" for name in said)
 
     def run_of(self, row: list[str], lines: Table) -> OurRun | None:
         texts = tuple([row[at] for at in self.at])
@@ -159,10 +169,8 @@ class _Keys:
     def step_of(self, row: list[str], run: OurRun, lines: Table) -> int | None:
         if "step" in self.places:
             text = row[self.places["step"]]
-            try:
+            if _WHOLE.fullmatch(text):
                 return int(text)
-            except ValueError:
-                pass
             count = self._number(text, "step", lines)  # 1e3 and 1000.0 are whole numbers, too
             if count.denominator != 1:
                 raise lines.error(f"has the step {text[:40]!r}, which is not a whole number")

@@ -125,6 +125,7 @@ def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
         ],
         "unexplained": found.unexplained,
         "lost": found.lost,
+        "overflows": found.overflows,
         "separation": found.separated and _separation_json(found.separated),
     }
 
@@ -161,6 +162,8 @@ def _print(table: "Theirs", found: "Compared") -> None:
         click.echo(_separated(found.separated))
     for label, step in list(found.lost.items())[:_MOST_SHOWN]:
         click.echo(f"{label}: from step {step} on rounding may have taken every digit")
+    for label, step in list(found.overflows.items())[:_MOST_SHOWN]:
+        click.echo(f"{label}: not finite at step {step}, where doubles may overflow")
     for diagnosis in found.diagnoses:
         click.echo(_diagnosis(diagnosis))
     for label in found.unexplained[:_MOST_SHOWN]:

@@ -120,6 +120,11 @@ def test_thirty_digits_of_a_double_are_a_double(ours: Ours, tmp_path: Path) -> N
     assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
 
 
+def test_exponents_may_be_fortrans(ours: Ours, tmp_path: Path) -> None:
+    found = of(ours, tmp_path, CORNER.changed(number=lambda x: f"{x:.16e}".replace("e", "D")))
+    assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
+
+
 # -- mistakes --------------------------------------------------------------------------------------
 
 CONTEXT = mpmath.MPContext()

@@ -104,7 +104,15 @@ def test_rows_that_the_data_do_not_have_are_counted(table: Callable[..., Theirs]
     other = table(GOOD.replace("step,", "scheme,step,").replace("\n", "\nlie77,").rstrip("lie7,"),
                   **{name: x for name, x in GIVEN.items() if name != "scheme"})  # fmt: skip
     assert (other.other_steps, other.outside) == (0, 4)
-    assert other.first_outside == "line 2: scheme = lie77"
+    assert other.first_outside.startswith("line 2: scene = duffing, ")
+    assert other.first_outside.endswith(", scheme = lie77")
+
+
+def test_a_name_in_the_file_cannot_reach_the_terminal(table: Callable[..., Theirs]) -> None:
+    found = table(GOOD.replace("step,p,q", "step,p,\x1b[31mq"))
+    assert found.ignored == ("\N{REPLACEMENT CHARACTER}[31mq",)
+    long = table(GOOD.replace("step,p,q", f"step,p,{'q' * 500}"))
+    assert len(long.ignored[0]) == 60
 
 
 BAD = {
@@ -118,6 +126,8 @@ BAD = {
     "two steps": (b"step,n,p\n0,0,0\n", "two columns for step"),
     "a short line": (GOOD.encode() + b"1000,0.5", "line 6 has 2 cells"),
     "a step that is no number": (b"step,p\nten,1\n", "line 2 has the step 'ten'"),
+    "a step in other digits": ("step,p\n١,1\n".encode(), "has the step '١'"),
+    "a step with an underscore": (b"step,p\n1_0,1\n", "has the step '1_0'"),
     "half a step": (b"step,p\n1.5,1\n", "not a whole number"),
     "a huge step": (b"step,p\n1e999999999,1\n", "exponent beyond"),
     "a step twice, with other numbers": (GOOD.encode() + b"1,0,0\n", "other than line 3"),
