@@ -8,9 +8,10 @@ from typing import Any
 import mpmath
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.oscillators import digits_of, element, mpf, numbers, oscillator, rates, turned
 from tests.property.strategies import polynomials
 from verify.hamiltonian import Hamiltonian
@@ -18,7 +19,7 @@ from verify.proof.closed_orbit import Orbit
 from verify.proof.exact_flow import Flow, NoFlowError, functions_at
 from verify.proof.orbit_average import average, bounded_part, phase
 
-few = settings(deadline=None, max_examples=8)
+few = drawn(8)
 
 
 # -- the flow -------------------------------------------------------------------------------------
@@ -225,7 +226,7 @@ def test_the_bounded_part_is_the_integral_of_what_is_not_the_mean(
     assert abs(apart - round(apart)) < 1e-9
 
 
-@settings(deadline=None, max_examples=5)
+@drawn(5)
 @given(st.integers(1, 3), st.integers(3, 9), st.integers(-2, 3), st.integers(1, 9))
 def test_a_rotations_phase_is_the_same_a_turn_further(
     rate: int, p: int, turns: int, tenth: int

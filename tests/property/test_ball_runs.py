@@ -2,9 +2,10 @@
 
 from fractions import Fraction
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify import arithmetic as number_systems
 from verify.hamiltonian import Hamiltonian
 from verify.runs import run
@@ -12,7 +13,7 @@ from verify.runs import run
 sizes = st.builds(Fraction, st.integers(1, 20), st.sampled_from([3, 7, 11, 15]))
 
 
-@settings(deadline=None, max_examples=12)
+@drawn(12)
 @given(sizes, sizes, st.integers(1, 6), st.integers(1, 6), st.integers(3, 30))
 def test_an_orbit_of_balls_goes_on_from_where_it_is_zero(
     q: Fraction, h: Fraction, before: int, after: int, digits: int

@@ -6,9 +6,10 @@ there is no certificate nothing is claimed, and nothing is checked.
 
 from fractions import Fraction
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import polynomials, rationals, trigonometric
 from tests.unit.stepped import OBSERVABLES, Case, assert_contained, enclosed_finely
 from verify.arithmetic import fixed, mpfr, mpmath
@@ -56,12 +57,12 @@ floating = st.one_of(
 )
 
 
-def drawn(of: tuple[str, str], q: Fraction, p: Fraction, h: Fraction, steps: int) -> Case:
+def case_of(of: tuple[str, str], q: Fraction, p: Fraction, h: Fraction, steps: int) -> Case:
     return Case(*of, q, p, h, steps)
 
 
 orbits = st.builds(
-    drawn, maps, rationals(5), rationals(5), sizes, st.sampled_from([1, 2, 5, 20, 100])
+    case_of, maps, rationals(5), rationals(5), sizes, st.sampled_from([1, 2, 5, 20, 100])
 )
 
 
@@ -86,7 +87,7 @@ def check(case: Case, arithmetic: Arithmetic, observables: frozenset[str]) -> No
 some = st.sets(st.sampled_from(sorted(OBSERVABLES))).map(frozenset)
 
 
-@settings(max_examples=80, deadline=None)
+@drawn(80)
 @given(orbits, floating, some)
 def test_what_is_certified_of_floating_point_runs_contains_the_true_value(
     case: Case, arithmetic: Arithmetic, observables: frozenset[str]
@@ -94,7 +95,7 @@ def test_what_is_certified_of_floating_point_runs_contains_the_true_value(
     check(case, arithmetic, observables)
 
 
-@settings(max_examples=15, deadline=None)
+@drawn(15)
 @given(orbits, wide, some)
 def test_what_is_certified_of_fixed_point_runs_contains_the_true_value(
     case: Case, arithmetic: Arithmetic, observables: frozenset[str]
@@ -102,7 +103,7 @@ def test_what_is_certified_of_fixed_point_runs_contains_the_true_value(
     check(case, arithmetic, observables)
 
 
-@settings(max_examples=25, deadline=None)
+@drawn(25)
 @given(
     orbits,
     st.sampled_from(["mpfr", "mpmath", "auto", "float64", "ball"]),

@@ -9,9 +9,10 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.certificates import EVERY, Data, as_read
 from tests.property.made_schemes import made_of, proof_of
 from tests.property.strategies import rationals
@@ -29,7 +30,7 @@ OF_ONE_H = "p_next = p - h*q; q_next = q + h*p_next"
 proofs = cache(prove_every)
 names = st.sampled_from(EVERY)
 verdicts = st.sampled_from([Verdict.PROVED, *Verdict])
-quick = settings(deadline=None, max_examples=40)
+quick = drawn(40)
 
 
 def refused(proof: EveryProof) -> str:
@@ -71,7 +72,7 @@ def test_what_is_proved_by_irrational_coefficients_has_none_either(
     assert ("there is nothing to certify" in said) != proved
 
 
-@settings(deadline=None, max_examples=15)
+@drawn(15)
 @given(rationals(4), st.booleans())
 def test_two_explicit_stages_of_order_2_have_a_potential_that_is_certified(
     alpha: Fraction, separable: bool
@@ -116,7 +117,7 @@ def fraction_of(depth: int, first: int) -> Data:
     }
 
 
-@settings(deadline=None, max_examples=6)
+@drawn(6)
 @given(st.integers(0, 30), st.booleans(), st.integers(1, 9), st.integers(1, 4))
 def test_a_certificate_is_refused_that_is_nested_beyond_all_bounds(
     depth: int, beyond: bool, first: int, times: int

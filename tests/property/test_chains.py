@@ -6,9 +6,10 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.errors import InputError
 from verify.exact import magnitude
 from verify.hamiltonian import Hamiltonian
@@ -17,7 +18,7 @@ from verify.separation_chain import PARTS, QUANTITIES, Chain, Kind
 from verify.separation_growth import crossover, log_spaced
 from verify.separation_working import Link, marks_of
 
-quick = settings(deadline=None, max_examples=40)
+quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))
 sizes = st.builds(lambda n, k: Fraction(n) / 10**k, st.integers(1, 99), st.integers(0, 30))
 
@@ -136,7 +137,7 @@ def test_a_grid_gives_each_step_size_its_number_of_steps(
         grid([], size, None)
 
 
-@settings(deadline=None, max_examples=6)
+@drawn(6)
 @given(
     st.lists(
         st.sampled_from(["1/64", "1/100", "1e-3", "1e-5", "1e-7"]),

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import mpmath
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.certificates import (
     TINY,
     Data,
@@ -32,7 +33,7 @@ small = st.builds(Fraction, st.integers(-30, 30), st.integers(1, 8))
 radii = st.builds(Fraction, st.integers(0, 3), st.just(1000))
 
 
-@settings(deadline=None, max_examples=60)
+@drawn(60)
 @given(st.sampled_from(["sin", "cos", "exp", "inverse"]), small, radii, st.sampled_from([-1, 0, 1]))
 def test_a_functions_enclosure_holds_its_values_and_is_narrow(
     kind: str, x: Fraction, radius: Fraction, end: int
@@ -54,7 +55,7 @@ def test_a_functions_enclosure_holds_its_values_and_is_narrow(
         assert (width == 0) == (kind == "inverse" and radius == 0)
 
 
-@settings(deadline=None, max_examples=40)
+@drawn(40)
 @given(small, small, radii, radii, st.tuples(*[st.sampled_from([-1, 0, 1])] * 2))
 def test_a_product_of_balls_is_the_narrowest_about_its_middle(
     x: Fraction, y: Fraction, r: Fraction, s: Fraction, ends: tuple[int, int]
@@ -70,7 +71,7 @@ def shown(x: dict[tuple[str, ...], Fraction]) -> list[list[str]]:
     return [[str(c), *monomial] for monomial, c in x.items()]
 
 
-@settings(deadline=None, max_examples=8)
+@drawn(8)
 @given(of_drawn(), st.sampled_from("pq"))
 def test_the_checkers_derivatives_values_and_relations_are_those_of_its_functions(
     data: Data, by: str
@@ -93,7 +94,7 @@ def test_the_checkers_derivatives_values_and_relations_are_those_of_its_function
     assert radius < Fraction(1, 10**6)
 
 
-@settings(deadline=None, max_examples=6)
+@drawn(6)
 @given(certificates, st.sampled_from(["sin", "exp", "inverse"]), st.sampled_from("qh"))
 def test_a_name_that_has_a_meaning_is_given_to_no_function(
     data: Data, kind: str, other: str
@@ -116,7 +117,7 @@ def test_a_name_that_has_a_meaning_is_given_to_no_function(
 # -- its file -------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=6)
+@drawn(6)
 @given(certificates, st.data())
 def test_a_file_says_what_was_certified_and_not_what_is_malformed(
     data: Data, drawn: st.DataObject

@@ -11,9 +11,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import (
     H,
     P,
@@ -38,7 +39,7 @@ from verify.formula import to_text
 from verify.scene import Scene
 from verify.verdict import Verdict
 
-quick = settings(deadline=None, max_examples=25)
+quick = drawn(25)
 
 
 @dataclass(frozen=True)
@@ -203,7 +204,7 @@ def is_halfway(value: Fraction, printed: str) -> bool:
     return 2 * abs(value - Fraction(printed)) == Fraction(10) ** (int(exponent or 0) - places)
 
 
-@settings(deadline=None, max_examples=15)
+@drawn(15)
 @given(polynomials(degree=3, most_terms=2), st.integers(1, 2), st.integers(2, 9), st.data())
 def test_printed_numbers_are_enclosed_and_with_one_digit_changed_refuted(
     text: str, eta: int, digits: int, data: st.DataObject

@@ -5,9 +5,10 @@ from fractions import Fraction
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.made_schemes import Made, conditions
 from tests.property.strategies import polynomials, rationals
 from verify.generators import embed
@@ -20,12 +21,12 @@ from verify.schemes import get
 from verify.step_map import StepMap
 from verify.verdict import Verdict
 
-quick = settings(deadline=None, max_examples=25)
+quick = drawn(25)
 
 # -- verdicts -------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=100)
+@drawn(100)
 @given(conditions, st.integers(1, 4))
 def test_the_order_is_the_last_up_to_which_all_hold_and_the_verdict_says_what_is_known(
     generic: Made, claimed: int
@@ -103,7 +104,7 @@ def test_stages_are_symmetric_where_the_undoing_ones_in_reverse_are_the_same(
         assert prove_symmetry(scheme).verdict is Verdict.PROVED
 
 
-@settings(deadline=None, max_examples=20)
+@drawn(20)
 @given(polynomials("q", degree=3, most_terms=2), rationals(3), st.integers(2, 5), st.integers(2, 6))
 def test_the_first_power_of_h_that_a_step_back_leaves_is_found(
     force: str, size: Fraction, power: int, most: int

@@ -5,9 +5,10 @@ from fractions import Fraction
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.made_schemes import proof_of
 from tests.property.strategies import H, P, Q, plain, rationals
 from verify.errors import InputError
@@ -23,7 +24,7 @@ from verify.schemes import get, names
 from verify.verdict import Verdict
 
 SEPARABLE = "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3"
-few = settings(deadline=None, max_examples=12)
+few = drawn(12)
 
 
 @few

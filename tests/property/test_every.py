@@ -8,9 +8,10 @@ from fractions import Fraction
 
 import mpmath
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import (
     P,
     Q,
@@ -40,7 +41,7 @@ def at(jets: Jets, x: object, hamiltonian: sympy.Expr, point: dict[str, Fraction
     return total
 
 
-@settings(max_examples=40, deadline=None)
+@drawn(40)
 @given(
     text=polynomials(degree=4, most_terms=3) | trigonometric(),
     eta=st.integers(1, 4),

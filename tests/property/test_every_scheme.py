@@ -5,9 +5,10 @@ import re
 from importlib import import_module
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import H, P, Q, plain, polynomials, zero_there
 from verify.errors import InputError
 from verify.generic import TaylorSeries
@@ -21,7 +22,7 @@ from verify.verdict import Verdict
 
 SEPARABLE = "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3"
 MIXED = "p**2/2 + q**2/2 + p*q**2 + q**3/3"
-few = settings(deadline=None, max_examples=12)
+few = drawn(12)
 
 
 @pytest.mark.parametrize("separable", [False, True])

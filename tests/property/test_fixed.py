@@ -7,9 +7,10 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property import fixed_checks
 from tests.property.fixed_checks import HARD, WIDEST, WIDTHS, Near, Shape, format_of
 from verify.wide import translate
@@ -57,14 +58,14 @@ def test_operations_are_right_where_carries_run_through_all_limbs(
         fixed_checks.check_operations(form, x, y)
 
 
-@settings(max_examples=400, deadline=None)
+@drawn(400)
 @given(x=shapes, y=shapes)
 def test_operations_are_right(x: Shape, y: Shape) -> None:
     for form in ALL_FORMATS:
         fixed_checks.check_operations(form, x.raw(form.width), y.raw(form.width))
 
 
-@settings(max_examples=100, deadline=None)
+@drawn(100)
 @given(x=shapes, y=shapes, more=st.integers(-(2**63), 2**63 - 1))
 def test_sums_are_exact(x: Shape, y: Shape, more: int) -> None:
     for form in FORMATS:
@@ -72,7 +73,7 @@ def test_sums_are_exact(x: Shape, y: Shape, more: int) -> None:
         fixed_checks.check_sums(form, total, y.raw(form.width))
 
 
-@settings(max_examples=200, deadline=None)
+@drawn(200)
 @given(x=st.floats() | st.floats(-(2.0**15), 2.0**15))
 @example(x=-(2.0**-60) * (1 + 2.0**-52))
 @example(x=-(2.0**-110))
@@ -83,14 +84,14 @@ def test_a_float64_is_taken_exactly_or_refused(x: float) -> None:
         fixed_checks.check_wide(form, x)
 
 
-@settings(max_examples=200, deadline=None)
+@drawn(200)
 @given(x=shapes)
 def test_back_in_float64_a_number_is_as_near_as_is_promised(x: Shape) -> None:
     for form in FORMATS:
         fixed_checks.check_approx(form, x.raw(form.width))
 
 
-@settings(max_examples=100, deadline=None)
+@drawn(100)
 @given(x=st.fractions(min_value=-(2**15), max_value=2**15))
 def test_a_rational_is_rounded_to_the_nearest_number(x: Fraction) -> None:
     for form in ALL_FORMATS:
@@ -113,7 +114,7 @@ def test_every_function_that_is_compiled_is_checked() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=150, deadline=None)
+@drawn(150)
 @given(data=st.data())
 def test_functions_are_within_what_is_stated_or_refused(kind: str, data: st.DataObject) -> None:
     x = data.draw(POINTS.get(kind, shapes))

@@ -8,9 +8,10 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property import strategies
 from tests.property.fixed_checks import FRACTION_OF
 from verify import reach, stepping
@@ -78,7 +79,7 @@ starts = st.fixed_dictionaries(
 asked = st.sampled_from([CLOSED_FORM, ("lambda_plain",), ("mse", "lambda_plain")])
 
 
-@settings(max_examples=150, deadline=None)
+@drawn(150)
 @given(
     text=st.sampled_from(FAMILIES),
     a=sizes(-3, 6), b=sizes(-3, 6), start=starts, steps=st.sampled_from([1, 7, 120]),
@@ -92,7 +93,7 @@ def test_a_run_is_right_or_ends_and_says_so(
     check_job(job_of(Hamiltonian.parse(text, given), "lie2", start, steps, observables))
 
 
-@settings(max_examples=20, deadline=None)
+@drawn(20)
 @given(
     text=strategies.polynomials(degree=5, most_terms=3) | strategies.trigonometric(most_terms=1),
     scheme=st.sampled_from(["lie1", "lie2", "symplectic-euler"]),

@@ -2,9 +2,10 @@
 
 from fractions import Fraction
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import polynomials
 from tests.unit.carried import measured
 from verify.area_probe import Goal
@@ -30,7 +31,7 @@ def outlines(draw: st.DrawFn) -> tuple[Outline, tuple[float, float]]:
     return polygon(corners).outlines[0], (float(q), float(p))
 
 
-@settings(max_examples=16, deadline=None)
+@drawn(16)
 @given(polynomials(degree=4, most_terms=3), schemes, outlines(), st.integers(1, 6))
 def test_the_change_of_area_is_the_mean_of_lambda(
     formula: str, scheme: str, drawn: tuple[Outline, tuple[float, float]], steps: int

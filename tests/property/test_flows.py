@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import Q, plain, rationals
 from tests.unit.flow_checks import Case, energy_defect, group_defect, motion_defect
 from verify import systems
@@ -37,7 +38,7 @@ def time_in(case: Case, part: Fraction) -> Fraction:
     return part * min(LONGEST, end if end is not None else LONGEST)
 
 
-@settings(deadline=None, max_examples=120)
+@drawn(120)
 @given(cases(), PARTS)
 def test_h_is_constant_and_the_equation_of_motion_holds_to_50_digits(
     case: Case, part: Fraction
@@ -47,7 +48,7 @@ def test_h_is_constant_and_the_equation_of_motion_holds_to_50_digits(
     assert motion_defect(case, [time]) < 1e-50
 
 
-@settings(deadline=None, max_examples=120)
+@drawn(120)
 @given(cases(), PARTS, PARTS)
 def test_the_flow_is_a_group_to_45_digits(case: Case, first: Fraction, whole: Fraction) -> None:
     t, total = time_in(case, first), time_in(case, whole)
@@ -71,7 +72,7 @@ def rooted(draw: st.DrawFn) -> Case:
     return Case(system, {}, scale, q)
 
 
-@settings(deadline=None, max_examples=150)
+@drawn(150)
 @given(rooted(), PARTS)
 def test_motion_between_multiple_roots_satisfies_its_equation(case: Case, part: Fraction) -> None:
     time = time_in(case, part)
@@ -79,7 +80,7 @@ def test_motion_between_multiple_roots_satisfies_its_equation(case: Case, part: 
     assert motion_defect(case, [time]) < 1e-50
 
 
-@settings(deadline=None, max_examples=40)
+@drawn(40)
 @given(rooted())
 def test_an_end_in_finite_time_is_there_and_nowhere_else(case: Case) -> None:
     """Just before its end the solution is far away; without an end it can be followed on."""
@@ -97,7 +98,7 @@ def test_an_end_in_finite_time_is_there_and_nowhere_else(case: Case) -> None:
                 flow.follow(start, sign * end * Fraction(1001, 1000), 5000)
 
 
-@settings(deadline=None, max_examples=25)
+@drawn(25)
 @given(cases(), PARTS)
 def test_the_numerical_flow_agrees(case: Case, part: Fraction) -> None:
     hamiltonian = case.system.hamiltonian(case.values)

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.certificates import (
     Data,
     certificates,
@@ -73,7 +74,7 @@ def accepted(data: Data) -> bool:
     return True
 
 
-@settings(deadline=None, max_examples=9)
+@drawn(9)
 @given(certificates, st.data())
 def test_a_certificate_is_accepted_and_a_forgery_only_where_it_says_the_truth(
     data: Data, drawn: st.DataObject
@@ -86,7 +87,7 @@ def test_a_certificate_is_accepted_and_a_forgery_only_where_it_says_the_truth(
             assert true(wrong), wrong
 
 
-@settings(deadline=None, max_examples=12)
+@drawn(12)
 @given(certificates, st.data())
 def test_a_cofactor_or_a_number_that_is_needed_cannot_be_another(
     data: Data, drawn: st.DataObject
@@ -109,7 +110,7 @@ rows = st.lists(
 )
 
 
-@settings(deadline=None, max_examples=80)
+@drawn(80)
 @given(rows, st.booleans())
 def test_stages_are_accepted_exactly_where_their_determinants_are_one_polynomial(
     stages: list[list[str]], separable: bool

@@ -12,9 +12,10 @@ from typing import Any
 
 import mpmath
 import pytest
-from hypothesis import assume, event, given, settings
+from hypothesis import assume, event, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import monomial, rationals
 from verify import growth
 from verify.growth import average_of, predictions
@@ -97,13 +98,13 @@ def hold(case: Case) -> None:
     assert stays_bounded(gaps), (case, gaps)
 
 
-@settings(max_examples=20, deadline=None)
+@drawn(20)
 @given(case=cases(wells(), 8))
 def test_in_a_random_well_the_remainder_has_the_proved_order(case: Case) -> None:
     hold(case)
 
 
-@settings(max_examples=12, deadline=None)
+@drawn(12)
 @given(case=cases(pendulums(), 20))
 def test_swinging_or_going_round_the_remainder_has_the_proved_order(case: Case) -> None:
     hold(case)

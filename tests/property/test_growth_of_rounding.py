@@ -4,12 +4,13 @@ import math
 from fractions import Fraction
 from itertools import accumulate
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.separation_growth import crossover, envelope, growth, log, log_spaced
 
-quick = settings(deadline=None, max_examples=40)
+quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))
 sizes = st.builds(lambda n, k: Fraction(n) / 10**k, st.integers(1, 99), st.integers(0, 30))
 
@@ -126,7 +127,7 @@ def test_five_checkpoints_are_fitted_and_four_are_not() -> None:
 points = st.lists(st.tuples(sizes, sizes, sizes), max_size=6, unique_by=lambda x: x[0])
 
 
-@settings(deadline=None, max_examples=100)
+@drawn(100)
 @given(points, st.randoms(use_true_random=False))
 def test_a_crossover_lies_between_the_last_small_and_the_first_large_step(
     given_: list[tuple[Fraction, Fraction, Fraction]], mixed: object

@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import P, Q, plain, polynomials, trigonometric
 from tests.unit.implicit_steps import (
     RADAU,
@@ -29,7 +30,7 @@ STEP = Fraction(1, 400)
 DIGITS = 40
 
 
-@settings(max_examples=15, deadline=None)
+@drawn(15)
 @given(text=HAMILTONIANS, z=STATES, name=st.sampled_from(sorted(TABLEAUS)))
 def test_a_step_is_that_of_the_equations_solved_by_hand(
     text: str, z: tuple[Fraction, Fraction], name: str
@@ -50,7 +51,7 @@ def _tame(text: str, z: tuple[Fraction, Fraction]) -> bool:
     return all(abs(x) < 60 for x in second)
 
 
-@settings(max_examples=15, deadline=None)
+@drawn(15)
 @given(
     text=polynomials(degree=4, most_terms=3), name=st.sampled_from(["implicit-midpoint", "gauss4"])
 )
@@ -62,7 +63,7 @@ def test_order_and_area_are_proved(text: str, name: str) -> None:
     assert proof.convergence_order is None or proof.convergence_order >= scheme.order
 
 
-@settings(max_examples=25, deadline=None)
+@drawn(25)
 @given(
     text=polynomials(degree=4, most_terms=3),
     at=st.sampled_from(places(TABLEAUS["gauss4"])),
@@ -87,7 +88,7 @@ def test_a_planted_error_is_refuted(text: str) -> None:
         assert proof.verdict is Verdict.REFUTED
 
 
-@settings(max_examples=15, deadline=None)
+@drawn(15)
 @given(text=polynomials(degree=4, most_terms=3), z=STATES)
 def test_a_method_that_loses_area_has_the_determinant_that_its_proof_foretells(
     text: str, z: tuple[Fraction, Fraction]

@@ -12,9 +12,10 @@ from typing import Any
 import flint
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import P, Q, plain, polynomials, rationals
 from verify.proof.combination import combination
 from verify.proof.jets import Jets, multiplied, shown
@@ -22,7 +23,7 @@ from verify.proof.telescoping import potential_of_lie, telescopes, telescopes_of
 
 ORDER = 3
 T = sympy.Symbol("t")
-quick = settings(deadline=None, max_examples=10)
+quick = drawn(10)
 Poly = Any
 
 
@@ -90,7 +91,7 @@ def test_derivatives_of_jets_are_those_of_every_h(
     assert same(put_in(jets, jets.bracket(x, y), h), bracket)
 
 
-@settings(deadline=None, max_examples=8)
+@drawn(8)
 @given(cases(), cases(), st.integers(1, 3))
 def test_the_series_of_delta_j_is_that_of_the_determinant(
     one: tuple[bool, Poly, Poly, sympy.Expr], two: tuple[bool, Poly, Poly, sympy.Expr], most: int

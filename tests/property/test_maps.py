@@ -7,9 +7,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.drawn_maps import coefficients, determinant, order_of_flow, planted
 from tests.property.strategies import (
     H,
@@ -27,8 +28,8 @@ from verify.schemes import get
 from verify.step_map import StepMap, grouped
 from verify.verdict import Verdict
 
-quick = settings(deadline=None, max_examples=14)
-few = settings(deadline=None, max_examples=8)
+quick = drawn(14)
+few = drawn(8)
 
 
 @quick

@@ -12,9 +12,10 @@ from typing import Any
 
 import mpmath
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.unit import conformance
 from verify import arithmetic
 from verify.arithmetic import fixed, float64
@@ -23,7 +24,7 @@ from verify.number_system import ESCAPE_BITS, MOST_EXPONENT, Arithmetic
 from verify.runs import run
 
 FLOATING = ("mpfr", "mpmath", "ball")
-quick = settings(deadline=None, max_examples=30)
+quick = drawn(30)
 get = cache(arithmetic.get)
 systems = st.one_of(
     st.builds(get, st.sampled_from(FLOATING), st.integers(1, 120)),
@@ -172,7 +173,7 @@ def kernels(source: str) -> tuple[Callable[..., float], Callable[..., float]]:
 SOME = ("x / y", "exp(x)", "log(x)")
 
 
-@settings(deadline=None, max_examples=60)
+@drawn(60)
 @given(st.sampled_from(SOME), floats, floats)
 @example("x / y", 0.0, 0.0)
 @example("x / y", -1.0, 0.0)
@@ -187,7 +188,7 @@ def test_what_python_refuses_has_the_bits_of_the_compiled_kernel(
     assert bits(plain(1, x, y)) == bits(compiled(1, x, y))
 
 
-@settings(deadline=None, max_examples=60)
+@drawn(60)
 @given(st.sampled_from(sorted(SOURCES)), floats, floats)
 @example("sinh(x)", -711.0, 0.0)
 @example("sinh(x)", 711.0, 0.0)
@@ -243,7 +244,7 @@ def test_a_rational_beyond_float64_is_an_infinity_of_its_sign(x: Fraction) -> No
         assert abs(Fraction(found) - x) <= Fraction(math.ulp(found)) / 2
 
 
-@settings(deadline=None, max_examples=3)
+@drawn(3)
 @given(st.integers(1, 3))
 def test_a_kernel_is_compiled_once_it_repays_and_says_the_same(part: int) -> None:
     lines = [
@@ -281,7 +282,7 @@ def test_a_kernel_is_compiled_where_its_steps_would_pass_what_repays(
 # -- what runs make of them -----------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=8)
+@drawn(8)
 @given(st.sampled_from([*FLOATING, "float64"]), st.integers(3, 40), st.integers(1, 9))
 def test_an_orbit_that_escapes_is_told_from_one_that_does_not(
     name: str, steps: int, start: int

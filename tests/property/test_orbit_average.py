@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import mpmath
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import P, Q, plain
 from tests.property.test_growth_law import wells
 from verify.formula import parse
@@ -19,7 +20,7 @@ DIGITS = 20
 starts = st.integers(-8, 8).map(lambda n: Fraction(n, 10))
 
 
-@settings(max_examples=6, deadline=None)
+@drawn(6)
 @given(wells(), starts, starts)
 def test_after_one_period_the_flow_is_back_and_the_integral_is_that_of_the_average(
     formula: str, p: Fraction, q: Fraction

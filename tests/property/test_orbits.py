@@ -9,16 +9,17 @@ from fractions import Fraction
 
 import mpmath
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.oscillators import digits_of, element, mpf, numbers, oscillator, rates, turned
 from verify.hamiltonian import Hamiltonian
 from verify.proof.closed_orbit import at_rest, closed_orbit, shifts
 from verify.proof.exact_flow import NoFlowError
 from verify.proof.orbit_average import average, bounded_part
 
-few = settings(deadline=None, max_examples=8)
+few = drawn(8)
 
 
 @few

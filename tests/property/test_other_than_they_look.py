@@ -6,9 +6,10 @@ What a tableau's conditions do not show of them is not told as proved, nor as re
 from fractions import Fraction
 
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import rationals
 from verify.hamiltonian import Hamiltonian
 from verify.implicit_runge_kutta import implicit_map
@@ -18,7 +19,7 @@ from verify.proof.order import prove
 from verify.proof.tree_order import order_of
 from verify.verdict import Verdict
 
-few = settings(deadline=None, max_examples=12)
+few = drawn(12)
 entries = st.sampled_from([Fraction(x) for x in ("0", "1/3", "1/2", "-1", "2", "1/4", "3/2")])
 
 
@@ -29,7 +30,7 @@ def tableau(rows: list[list[Fraction]], weights: list[Fraction]) -> ImplicitTabl
     return ImplicitTableau.of([[exact(x) for x in r] for r in rows], [exact(x) for x in weights])
 
 
-@settings(deadline=None, max_examples=3)
+@drawn(3)
 @given(entries, entries, entries, st.sampled_from(["p**2/2 + 2*q", "q**2/2 - p/3"]), rationals(3))
 def test_a_delta_j_of_which_all_that_is_looked_at_vanishes_has_no_order(
     a: Fraction, b: Fraction, weight: Fraction, text: str, size: Fraction
@@ -90,7 +91,7 @@ def test_the_order_for_a_quadratic_h_is_that_of_the_stability_function(
     assert order_of(method, falling) == (None if order == 2 else 1)
 
 
-@settings(deadline=None, max_examples=20)
+@drawn(20)
 @given(st.integers(1, 3), entries, entries, rationals(4), rationals(3))
 def test_what_cancels_for_one_h_is_no_difference_for_it(
     k: int, x: Fraction, y: Fraction, weight: Fraction, change: Fraction

@@ -4,16 +4,17 @@ from dataclasses import replace
 from fractions import Fraction
 
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import P, Q, plain, polynomials, rationals
 from verify.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.potential import Potential, potential_of
 from verify.schemes import get
 
-few = settings(deadline=None, max_examples=12)
+few = drawn(12)
 places = st.sampled_from(["0", "1", "-1", "pi", "-pi"])
 factors = st.sampled_from(["1", "1", "1", "a", "1/a", "1/a"])
 
@@ -23,7 +24,7 @@ def potential(text: str, name: str) -> Potential:
     return potential_of(prove(scheme.step_map(Hamiltonian.parse(text)), scheme), scheme)
 
 
-@settings(deadline=None, max_examples=24)
+@drawn(24)
 @given(places, places, rationals(4), rationals(4), rationals(3), factors)
 def test_an_equilibrium_at_which_the_hessian_is_regular_rules_a_potential_out_for_lie1(
     p: str, q: str, a: Fraction, b: Fraction, c: Fraction, factor: str
@@ -62,7 +63,7 @@ def test_no_equilibrium_rules_out_what_has_a_potential(q: str, a: Fraction, c: F
 powers = st.sampled_from(["3/2", "4/3", "5/4", "2", "3", "5/2"])
 
 
-@settings(deadline=None, max_examples=24)
+@drawn(24)
 @given(places, powers, rationals(4), st.sampled_from(["lie1", "lie3"]))
 def test_an_equilibrium_rules_nothing_out_where_l_is_zero_or_is_not_defined(
     place: str, power: str, size: Fraction, name: str

@@ -7,9 +7,10 @@ import flint
 import mpmath
 import pytest
 import sympy
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import (
     H,
     P,
@@ -35,7 +36,7 @@ from verify.verdict import Verdict
 
 hamiltonians = polynomials() | trigonometric()
 orders = st.integers(1, 4)
-quick = settings(deadline=None, max_examples=30)
+quick = drawn(30)
 
 
 def proof_of(text: str, name: str) -> Proof:
@@ -114,7 +115,7 @@ def test_a_witness_is_a_point_where_the_leading_coefficient_is_not_zero(
 
 
 @given(hamiltonians)
-@settings(deadline=None, max_examples=10)
+@drawn(10)
 def test_a_proof_leaves_every_global_precision_as_it_was(text: str) -> None:
     before = flint.ctx.prec, mpmath.mp.prec
     proof_of(text, "lie2")
@@ -204,7 +205,7 @@ SLIPS = {
 }
 
 
-@settings(deadline=None, max_examples=40)
+@drawn(40)
 @given(hamiltonians, st.sampled_from(sorted(SLIPS)), st.data())
 def test_a_planted_error_is_found_at_the_very_power_of_h_where_it_was_planted(
     text: str, slip: str, data: st.DataObject
@@ -220,7 +221,7 @@ def test_a_planted_error_is_found_at_the_very_power_of_h_where_it_was_planted(
     assert proof.convergence_order == term.power - 1
 
 
-@settings(deadline=None, max_examples=20)
+@drawn(20)
 @given(hamiltonians)
 def test_without_a_planted_error_the_same_text_is_proved(text: str) -> None:
     proof = prove(step_map_of(text, lie2_terms(text)), schemes.get("lie2"))
@@ -267,7 +268,7 @@ REWRITTEN = [
 ]
 
 
-@settings(deadline=None, max_examples=40)
+@drawn(40)
 @given(hamiltonians, st.sampled_from(REWRITTEN), st.sampled_from(REWRITTEN))
 def test_equal_maps_written_differently_have_equal_proofs(text: str, f: str, g: str) -> None:
     p_next, q_next = (" + ".join(map(str, side)) for side in lie2_terms(text))

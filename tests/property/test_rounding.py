@@ -11,9 +11,10 @@ from typing import Any
 
 import flint
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import polynomials, rationals, trigonometric
 from verify.arithmetic import fixed, mpfr, mpmath
 from verify.balls import bounds, rational_ball
@@ -175,7 +176,7 @@ def check(text: str, scheme: str, arithmetic: Arithmetic, at: Any, width: Fracti
         assert error <= every[index], f"v{index}, {found.ops[index].kind}, is off more: {error}"
 
 
-@settings(max_examples=80, deadline=None)
+@drawn(80)
 @given(hamiltonians, schemes, st.integers(4, 200), st.booleans(), points, widths)
 def test_floating_point_rounds_no_more_than_is_counted(
     text: str, scheme: str, bits: int, other: bool, at: Any, width: Fraction
@@ -183,7 +184,7 @@ def test_floating_point_rounds_no_more_than_is_counted(
     check(text, scheme, (mpmath if other else mpfr).at_bits(bits), at, width)
 
 
-@settings(max_examples=10, deadline=None)
+@drawn(10)
 @given(hamiltonians, schemes, st.sampled_from([112, 176, 304]), points, widths)
 def test_fixed_point_rounds_no_more_than_is_counted(
     text: str, scheme: str, bits: int, at: Any, width: Fraction

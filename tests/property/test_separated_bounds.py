@@ -6,9 +6,10 @@ The oracle is in rationals (`tests.unit.separated`), or has more digits.
 from fractions import Fraction
 from typing import Any
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.drawn_separations import (
     DUFFING,
     FIXED,
@@ -30,8 +31,8 @@ from verify.separation_kernel import WORKING
 from verify.separation_working import Link, Stopped, WorkingRun, _accumulated, rounded_inputs
 from verify.stepping import Job
 
-few = settings(deadline=None, max_examples=10)
-some = settings(deadline=None, max_examples=14)
+few = drawn(10)
+some = drawn(14)
 
 
 # -- digits and bounds ----------------------------------------------------------------------------

@@ -2,9 +2,10 @@
 
 from fractions import Fraction
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.drawn_separations import (
     KNOWN,
     SHORT,
@@ -21,7 +22,7 @@ from verify.separation_kernel import WORKING, mixed_kernel
 from verify.separation_working import Stopped, WorkingRun, rounded_inputs
 from verify.stepping import Job
 
-few = settings(deadline=None, max_examples=10)
+few = drawn(10)
 
 
 @few
@@ -98,7 +99,7 @@ def test_an_input_part_far_below_the_others_is_known_to_as_many_digits(
     assert 0 < bound <= abs(value) / 10**digits / 2
 
 
-@settings(deadline=None, max_examples=4)
+@drawn(4)
 @given(st.sampled_from(KNOWN[1:]), st.integers(1, 2), starts, starts, step_sizes, st.integers(1, 6))
 def test_balls_in_exact_arithmetics_stead_give_what_mpfr_gives(
     text: str, eta: int, p: Fraction, q: Fraction, h: Fraction, steps: int

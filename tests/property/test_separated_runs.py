@@ -10,9 +10,10 @@ from functools import cache
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.drawn_separations import (
     KNOWN,
     separated,
@@ -30,8 +31,8 @@ from verify.separation_kernel import WORKING
 from verify.separation_working import Link, WorkingRun, rounded_inputs
 from verify.stepping import Job
 
-few = settings(deadline=None, max_examples=10)
-some = settings(deadline=None, max_examples=14)
+few = drawn(10)
+some = drawn(14)
 
 
 # -- what is not run ------------------------------------------------------------------------------

@@ -4,9 +4,10 @@ import math
 from fractions import Fraction
 from itertools import pairwise
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import monomial, polynomials, rationals
 from tests.unit.separated import links
 from verify.hamiltonian import Hamiltonian
@@ -16,7 +17,7 @@ from verify.separation_working import Stopped
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
 step_sizes = st.fractions(min_value="1/50", max_value="1/3", max_denominator=50)
 SHORT = Fraction(1, 2**3000)  # what the oracle rounds off
-quick = settings(deadline=None, max_examples=40)
+quick = drawn(40)
 
 
 def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> Chains:

@@ -5,9 +5,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.drawn_maps import determinant, order_of_flow
 from tests.property.strategies import (
     H,
@@ -31,8 +32,8 @@ from verify.step_map import StepMap
 from verify.substep import h_inside
 from verify.verdict import Verdict
 
-quick = settings(deadline=None, max_examples=14)
-few = settings(deadline=None, max_examples=8)
+quick = drawn(14)
+few = drawn(8)
 
 
 # -- maps that are no polynomials in h ------------------------------------------------------------
@@ -41,7 +42,7 @@ FREE = Hamiltonian.parse("p**2/2")
 INSIDE = ("1/(1 + ({})*h)", "exp(({})*h)", "1/(1 + ({})*h**2*q**2)", "cos(({})*h)", "exp(({})*h*q)")
 
 
-@settings(deadline=None, max_examples=5)
+@drawn(5)
 @given(st.sampled_from(INSIDE), rationals(3), st.integers(0, 3), polynomials("pq", 2, 1))
 def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     inside: str, size: Fraction, power: int, factor: str
@@ -79,7 +80,7 @@ def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     assert zero_there(parse(step_map.delta_j_text, ("p", "q", "h")) - delta_j)
 
 
-@settings(deadline=None, max_examples=3)
+@drawn(3)
 @given(st.integers(MOST_ORDERS + 2, MOST_ORDERS + 9))
 def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: int) -> None:
     p_next = f"p*(1 + h**{power})/(1 + 2*h**{power})"

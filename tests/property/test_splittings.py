@@ -10,9 +10,10 @@ from math import factorial
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.errors import InputError
 from verify.generators import embed
 from verify.proof.by_conditions import first_wrong, prove_by_conditions
@@ -28,7 +29,7 @@ LETTER = {"kick": "K", "drift": "D"}
 NOUGHT, ONE = (Fraction(0), Fraction(0)), (Fraction(1), Fraction(0))
 COUNTS = (2, 1, 2, 3, 6, 9, 18, 30)  # of Lyndon words of two letters
 ROOT = 2**0.5
-quick = settings(deadline=None, max_examples=30)
+quick = drawn(30)
 
 sizes = st.builds(Fraction, st.integers(-4, 4), st.integers(1, 4))
 surds = st.tuples(sizes, st.one_of(st.just(Fraction(0)), sizes))
@@ -206,7 +207,7 @@ def test_a_splitting_is_symmetric_where_what_is_left_of_it_is_a_palindrome(parts
         ]
 
 
-@settings(deadline=None, max_examples=12)
+@drawn(12)
 @given(st.one_of(consistent(), drawn_parts().map(mirrored)))
 def test_symmetry_is_proved_of_palindromes_and_refuted_of_what_a_step_back_does_not_undo(
     parts: Parts,

@@ -2,9 +2,10 @@
 
 from fractions import Fraction
 
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import formulas, rationals
 from verify.blame import judge
 from verify.errors import InputError
@@ -18,7 +19,7 @@ SYMPLECTIC = st.sampled_from(["symplectic-euler", "stormer-verlet"])
 HARMONIC = Hamiltonian.parse("p**2/2 + w**2*q**2/2", {"w": 1})
 
 
-@settings(max_examples=40, deadline=None)
+@drawn(40)
 @given(
     formulas(),
     st.sampled_from(["lie1", "lie2", "lie3", "stormer-verlet", "rk4"]),
@@ -41,7 +42,7 @@ def test_every_case_ends_in_a_verdict(
         assert 1 <= found.step <= steps
 
 
-@settings(max_examples=30, deadline=None)
+@drawn(30)
 @given(SYMPLECTIC, SIZES, SIZES, st.integers(1, 95))
 def test_below_their_limit_symplectic_schemes_are_stable_at_any_size_and_frequency(
     scheme: str, size: Fraction, omega: Fraction, percent: int
@@ -55,7 +56,7 @@ def test_below_their_limit_symplectic_schemes_are_stable_at_any_size_and_frequen
     assert found.kind == "stable" or not ordinary
 
 
-@settings(max_examples=30, deadline=None)
+@drawn(30)
 @given(SYMPLECTIC, SIZES, SIZES, st.integers(110, 1000))
 def test_beyond_it_the_scheme_is_to_blame_at_any_size_and_frequency(
     scheme: str, size: Fraction, omega: Fraction, percent: int

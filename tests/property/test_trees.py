@@ -7,9 +7,10 @@ from itertools import product
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import plain, polynomials
 from verify.errors import InputError
 from verify.generic import TaylorSeries
@@ -32,7 +33,7 @@ from verify.proof.tree_conditions import (
 from verify.proof.tree_order import order_of
 from verify.schemes import get
 
-quick = settings(deadline=None, max_examples=25)
+quick = drawn(25)
 
 
 def monotone(tree: Tree) -> Fraction:
@@ -187,7 +188,7 @@ QUADRATIC = ("p**2/2 + q**2/2", "p*q + q**2", "p + q", "p**2/2 + q**2/2 + q**3/3
 BENT = "p**2/2 + p*q**2/3 + {}"
 
 
-@settings(deadline=None, max_examples=15)
+@drawn(15)
 @given(
     tableaux(),
     st.sampled_from(QUADRATIC) | polynomials("pq", degree=4, most_terms=3).map(BENT.format),

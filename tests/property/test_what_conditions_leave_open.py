@@ -5,9 +5,10 @@ from fractions import Fraction
 from functools import cache
 
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.made_schemes import Made, conditions, made_of, proof_of
 from tests.property.strategies import H, P, Q, plain, rationals
 from verify.generic import StageEquations, TaylorSeries
@@ -20,7 +21,7 @@ from verify.schemes import get
 from verify.step_map import StepMap
 from verify.verdict import Verdict
 
-few = settings(deadline=None, max_examples=12)
+few = drawn(12)
 bases = st.sampled_from(["euler", "explicit-midpoint", "lie2", "stormer-verlet"])
 
 
@@ -34,7 +35,7 @@ def changed(base: str, separable: bool) -> tuple[str, int] | None:
     return found
 
 
-@settings(deadline=None, max_examples=80)
+@drawn(80)
 @given(conditions, st.integers(1, 4), st.booleans(), bases)
 def test_where_area_alone_is_open_an_h_refutes_it_or_it_stays_open(
     generic: Made, claimed: int, separable: bool, base: str
@@ -116,7 +117,7 @@ class SeriesAlone:
         return self.stages.taylor(jets, most)
 
 
-@settings(deadline=None, max_examples=6)
+@drawn(6)
 @given(sizes, st.booleans(), st.integers(1, 2))
 def test_a_delta_j_that_vanishes_as_far_as_it_is_looked_at_is_left_open(
     size: Fraction, area: bool, claimed: int

@@ -16,9 +16,10 @@ import flint
 import gmpy2
 import mpmath
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.unit import conformance
 from tests.unit.conformance import function
 from verify import arithmetic, cli
@@ -83,7 +84,7 @@ def test_an_arithmetic_knows_its_name_and_has_the_digits_asked_for(name: str, di
 
 
 @every_system
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(x=numbers)
 def test_a_rational_is_rounded_once_and_read_back_exactly(
     name: str, digits: int, x: Fraction
@@ -92,7 +93,7 @@ def test_a_rational_is_rounded_once_and_read_back_exactly(
 
 
 @every_system
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(m=st.integers(-(2**53), 2**53), e=st.integers(-300, 300))
 def test_what_the_working_precision_holds_is_kept_exactly(
     name: str, digits: int, m: int, e: int
@@ -116,14 +117,14 @@ def test_what_is_not_a_number_is_raised_or_not_finite(name: str, digits: int, so
 
 
 @every_system
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(x=middling, y=middling.filter(bool))
 def test_every_operation_is_rounded_once(name: str, digits: int, x: Fraction, y: Fraction) -> None:
     conformance.check_operations(get(name, digits), x, y)
 
 
 @every_system
-@settings(max_examples=30, deadline=None)
+@drawn(30)
 @given(x=middling, y=middling)
 def test_extremes_are_those_of_the_true_values(
     name: str, digits: int, x: Fraction, y: Fraction

@@ -14,9 +14,10 @@ from typing import Any
 
 import flint
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.unit.test_runs_range import duffing_steps
 from verify import arithmetic, ball_bounds
 from verify.arithmetic import ball
@@ -67,7 +68,7 @@ def test_the_vectors_are_enclosed_with_the_digits_asked_for(
 rationals = st.fractions(-2, 2, max_denominator=1000)
 
 
-@settings(max_examples=150, deadline=None)
+@drawn(150)
 @given(
     q=rationals,
     p=rationals,

@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.claims_file import load_claims
 from verify.errors import InputError
 from verify.toml_lines import lines_of
@@ -57,7 +58,7 @@ VALUES = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(
     st.lists(st.lists(st.tuples(st.sampled_from(["", "# [[t]]\n", "\n\n"]), VALUES), max_size=4))
 )

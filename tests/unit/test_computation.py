@@ -6,9 +6,10 @@ from itertools import permutations
 
 import flint
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.unit.test_program import STATE, VARIABLES, Polynomial, polynomials, program_of
 from verify import arithmetic, derivatives
 from verify.balls import rational_ball
@@ -39,7 +40,7 @@ def written(program: Program) -> tuple[object, ...]:
     return (*lists, program.cost, dict(program._known), dict(program._special))
 
 
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(st.booleans(), polynomials, polynomials)
 def test_what_is_taken_back_leaves_nothing_and_is_put_back_as_it_was(
     pipelined: bool, one: Polynomial, two: Polynomial
@@ -81,7 +82,7 @@ def test_what_is_live_is_found_anew_after_something_was_taken_back() -> None:
     assert program.live([second]) == [x, second]
 
 
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(st.booleans(), polynomials, polynomials)
 def test_a_copy_grows_on_its_own(pipelined: bool, one: Polynomial, two: Polynomial) -> None:
     program, _, evaluator, made = program_of(pipelined, one, two)
@@ -96,7 +97,7 @@ def test_a_copy_grows_on_its_own(pipelined: bool, one: Polynomial, two: Polynomi
     assert written(other.program) == written(program)
 
 
-@settings(max_examples=60, deadline=None)
+@drawn(60)
 @given(st.booleans(), polynomials)
 def test_no_other_way_to_sum_a_polynomial_is_cheaper(
     pipelined: bool, polynomial: Polynomial

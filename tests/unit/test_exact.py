@@ -7,13 +7,14 @@ from fractions import Fraction
 
 import numpy
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.errors import InputError
 from verify.exact import decimal, known_digits, magnitude, positive, rational, text, upper
 
-quick = settings(deadline=None, max_examples=150)
+quick = drawn(150)
 
 
 def scaled() -> st.SearchStrategy[Fraction]:

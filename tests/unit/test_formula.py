@@ -5,9 +5,10 @@ import warnings
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import (
     NAMES,
     evaluate,
@@ -243,7 +244,7 @@ def test_a_long_flat_sum_is_not_deeply_nested() -> None:
 
 
 @given(text=formulas(), point=points("p", "q", "a"))
-@settings(deadline=None, max_examples=80)
+@drawn(80)
 def test_a_formula_has_the_value_that_sympy_gives_it(text: str, point: dict) -> None:
     try:
         ours = parse(text)
@@ -254,7 +255,7 @@ def test_a_formula_has_the_value_that_sympy_gives_it(text: str, point: dict) -> 
 
 
 @given(text=formulas())
-@settings(deadline=None, max_examples=80)
+@drawn(80)
 def test_what_is_printed_reads_back_as_the_same_expression(text: str) -> None:
     try:
         expression = parse(text)
@@ -269,7 +270,7 @@ def test_what_is_printed_reads_back_as_the_same_expression(text: str) -> None:
 
 
 @given(text=st.text(alphabet="pq019.e+-*/^()sincoxlgqrt ,_[]:=#'\"\\\n", max_size=40))
-@settings(deadline=None, max_examples=200)
+@drawn(200)
 def test_any_text_is_a_formula_or_an_input_error(text: str) -> None:
     with contextlib.suppress(InputError):
         assert isinstance(parse(text), sympy.Expr)
@@ -298,7 +299,7 @@ _products = st.builds(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@drawn(300)
 @given(st.lists(st.tuples(st.sampled_from("+-"), _products), min_size=1, max_size=5))
 def test_a_sum_of_monomials_is_what_it_is_when_read_node_by_node(
     terms: list[tuple[str, str]],

@@ -6,8 +6,9 @@ from fractions import Fraction
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 
+from tests.examples import drawn
 from tests.property.strategies import P, Q, outcome, plain, polynomials, trigonometric
 from verify import systems
 from verify.errors import InputError
@@ -80,7 +81,7 @@ def test_separable_is_decided_by_the_mixed_derivative(text: str, expected: bool)
 
 
 @given(polynomials("p"), polynomials("q"), trigonometric("q"))
-@settings(deadline=None, max_examples=25)
+@drawn(25)
 def test_a_sum_of_one_function_each_is_separable_and_a_product_is_not(
     t: str, v: str, w: str
 ) -> None:

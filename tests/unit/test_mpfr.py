@@ -8,9 +8,10 @@ from typing import Any
 
 import gmpy2
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify import arithmetic
 from verify.arithmetic import mpfr, mpmath
 from verify.digits import measure
@@ -50,7 +51,7 @@ def test_a_rational_step_has_the_bits_that_mpmath_has(
     assert_the_same_bits(of, bits)
 
 
-@settings(max_examples=50, deadline=None)
+@drawn(50)
 @given(
     q=st.fractions(-2, 2, max_denominator=10**6),
     p=st.fractions(-2, 2, max_denominator=10**6),

@@ -14,9 +14,10 @@ from operator import add, mul, sub
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify import arithmetic
 from verify.formula import symbol
 from verify.generators import embed
@@ -85,7 +86,7 @@ def program_of(
     return program, [evaluator.evaluate(x) for x in elements], evaluator, elements
 
 
-@settings(max_examples=150, deadline=None)
+@drawn(150)
 @given(st.booleans(), polynomials, polynomials, points)
 def test_a_program_evaluates_to_its_polynomials_exactly(
     pipelined: bool, one: Polynomial, two: Polynomial, at: dict[str, Fraction]
@@ -96,7 +97,7 @@ def test_a_program_evaluates_to_its_polynomials_exactly(
     assert found[second] == value_of(two, at)
 
 
-@settings(max_examples=100, deadline=None)
+@drawn(100)
 @given(st.booleans(), polynomials, polynomials)
 def test_no_operation_occurs_twice(pipelined: bool, one: Polynomial, two: Polynomial) -> None:
     program, _, _, _ = program_of(pipelined, one, two)
@@ -122,7 +123,7 @@ def test_a_sum_and_a_product_are_one_operation_in_either_order() -> None:
     assert len(program.ops) == 2 + 2 + 2 + 2  # inputs, sum and product, negatives, differences
 
 
-@settings(max_examples=50, deadline=None)
+@drawn(50)
 @given(st.booleans(), polynomials)
 def test_a_polynomial_evaluated_again_adds_nothing(pipelined: bool, polynomial: Polynomial) -> None:
     program, (index,), evaluator, (element,) = program_of(pipelined, polynomial)
@@ -131,7 +132,7 @@ def test_a_polynomial_evaluated_again_adds_nothing(pipelined: bool, polynomial: 
     assert len(program.ops) == size
 
 
-@settings(max_examples=100, deadline=None)
+@drawn(100)
 @given(st.booleans(), polynomials)
 def test_what_is_static_is_what_does_not_depend_on_p_and_q(
     pipelined: bool, polynomial: Polynomial

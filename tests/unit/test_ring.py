@@ -8,9 +8,10 @@ import flint
 import mpmath
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import (
     ENTIRE,
     close,
@@ -203,7 +204,7 @@ def test_a_large_element_that_is_not_zero_is_decided_soon() -> None:
     assert outcome(work) == "done"
 
 
-quick = settings(deadline=None, max_examples=60)
+quick = drawn(60)
 
 
 def embedded(text: str) -> tuple[sympy.Expr, Ring, Any]:
@@ -283,7 +284,7 @@ def test_a_drawn_identity_with_a_slip_is_never_decided_zero(
 
 
 @given(formulas(ENTIRE, 4, division=False))
-@settings(deadline=None, max_examples=20)
+@drawn(20)
 def test_deciding_leaves_every_global_precision_as_it_was(text: str) -> None:
     before = flint.ctx.prec, mpmath.mp.prec
     _, ring, x = embedded(text)

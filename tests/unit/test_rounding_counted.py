@@ -5,9 +5,10 @@ from typing import Any
 
 import flint
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import polynomials
 from verify.arithmetic import mpfr
 from verify.balls import bounds, rational_ball
@@ -77,7 +78,7 @@ def delta_j(text: str) -> tuple[Program, int]:
     return writer.program, writer.made.outputs["dj"]
 
 
-@settings(deadline=None, max_examples=100)
+@drawn(100)
 @given(polynomials(degree=5), binary(-2, 2), binary(-2, 2), binary(-2, 2), binary(-2, 2))
 def test_the_bound_of_a_delta_j_holds_all_over_the_box(
     text: str, p: Fraction, q: Fraction, p2: Fraction, q2: Fraction
@@ -96,7 +97,7 @@ FUNCTIONS = ["sin", "cos", "exp", "sinh", "cosh", "atan", "log", "inverse", "roo
 
 
 @pytest.mark.parametrize("kind", FUNCTIONS)
-@settings(deadline=None, max_examples=60)
+@drawn(60)
 @given(x=binary(1, 3), y=binary(1, 3), width=binary(0, 1), sign=st.sampled_from([1, -1]))
 def test_the_bound_of_every_function_holds(
     kind: str, x: Fraction, y: Fraction, width: Fraction, sign: int

@@ -13,9 +13,10 @@ from typing import Any
 
 import gmpy2
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify import float_bounds
 from verify.errors import InputError
 from verify.float_bounds import DIRECT_STEPS
@@ -172,7 +173,7 @@ SYSTEMS = [DUFFING.with_values({"delta": "7/3"}), PENDULUM, Hamiltonian.parse("p
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
 
 
-@settings(max_examples=40, deadline=None)
+@drawn(40)
 @given(
     hamiltonian=st.sampled_from(SYSTEMS),
     scheme=st.sampled_from(["lie1", "lie2", "lie3"]),

@@ -11,9 +11,10 @@ from typing import Any
 import mpmath
 import pytest
 import sympy
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from tests.property.strategies import (
     H,
     P,
@@ -66,7 +67,7 @@ def assert_found(found: RunResult, true: dict[str, Any]) -> None:
 starts = st.tuples(rationals(5), rationals(5), st.sampled_from([Fraction(1, 7), Fraction(3, 100)]))
 
 
-@settings(max_examples=30, deadline=None)
+@drawn(30)
 @given(text=polynomials(degree=4), eta=st.sampled_from([1, 2, 3]), at=starts)
 def test_a_polynomial_h_is_stepped_as_mpmath_steps_it(
     text: str, eta: int, at: tuple[Fraction, Fraction, Fraction]
@@ -79,7 +80,7 @@ def test_a_polynomial_h_is_stepped_as_mpmath_steps_it(
     assert_found(found, true)
 
 
-@settings(max_examples=20, deadline=None)
+@drawn(20)
 @example(  # ΔJ ≡ 0, and its product is 1 but for rounding
     text="(-1/3)*q**1 + (1)*cos((2)*p + (2)*q)", eta=2,
     at=(Fraction(-1), Fraction(-3, 2), Fraction(1, 7)),
