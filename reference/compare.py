@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from reference.agreement import Printing, printing
-from reference.judge import Fit, Judge, Judged, Named, Verdict
+from reference.diagnosis import Diagnosis
+from reference.findings import Judged, Named, Verdict
+from reference.judge import Judge
 from reference.ours import OurRun, Ours
 from reference.scatter import Scatters
 from reference.setting import Points
@@ -35,7 +37,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Explained:
     """What fits in so many runs: one mistake, or several that the table does not tell apart."""
 
     mistakes: tuple[Named, ...]
@@ -61,7 +63,7 @@ class Compared:
     rows: int = 0
     runs: int = 0
     columns: list[Column] = field(default_factory=list)
-    diagnoses: list[Diagnosis] = field(default_factory=list)
+    diagnoses: list[Explained] = field(default_factory=list)
     unexplained: list[str] = field(default_factory=list)
     lost: dict[str, int] = field(default_factory=dict)
     overflows: dict[str, int] = field(default_factory=dict)
@@ -91,8 +93,8 @@ def compare(
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
         judge = Judge(run, rows, how, scatters, points)
         if judge.cells:
-            each, fit = judge.judged()
-            search.explain(judge, each, fit)
+            each = judge.judged()
+            search.explain(judge, each)
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
@@ -148,11 +150,11 @@ class _Search:
         self.known: set[str] = set()
         self.in_vain = 0
 
-    def explain(self, judge: Judge, judged: Judged, fit: Fit) -> None:
+    def explain(self, judge: Judge, judged: Judged) -> None:
         if self.known:
-            judge.explained(judged, fit, frozenset(self.known))
+            judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
         if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
-            judge.explained(judged, fit)
+            judged.mistakes = Diagnosis(judge, judged).mistakes()
             self.in_vain += judged.verdict is Verdict.MORE and not judged.mistakes
         self.known |= {name for group in judged.mistakes for name, _ in group}
 
@@ -174,9 +176,9 @@ def _column(name: str, judged: Iterable[Judged]) -> Column:
     )
 
 
-def _diagnoses(judged: Iterable[Judged]) -> list[Diagnosis]:
+def _diagnoses(judged: Iterable[Judged]) -> list[Explained]:
     counts: dict[tuple[Named, ...], int] = {}
     for each in judged:
         for group in each.mistakes:
             counts[tuple(group)] = counts.get(tuple(group), 0) + 1
-    return [Diagnosis(group, count) for group, count in counts.items()]
+    return [Explained(group, count) for group, count in counts.items()]

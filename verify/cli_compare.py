@@ -11,7 +11,7 @@ from verify.cli_tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from reference.compare import Column, Compared, Diagnosis, Separated
+    from reference.compare import Column, Compared, Explained, Separated
     from reference.theirs import Theirs
 
 DIFFERENT = 1  # exit status
@@ -202,7 +202,7 @@ def _separated(x: "Separated") -> str:
     )
 
 
-def _diagnosis(x: "Diagnosis") -> str:
+def _diagnosis(x: "Explained") -> str:
     many = _count(x.runs, "run")
     says = [says for _, says in x.mistakes]
     if len(says) == 1:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from reference.compare import Compared, compare
-from reference.judge import Verdict
+from reference.findings import Verdict
 from reference.make import COMMITTED
 from reference.ours import Ours, load
 from reference.theirs import read

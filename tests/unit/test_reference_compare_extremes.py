@@ -9,7 +9,7 @@ import pytest
 
 from reference.agreement import is_single
 from reference.compare import Compared, compare
-from reference.judge import Verdict
+from reference.findings import Verdict
 from reference.make import COMMITTED
 from reference.ours import OurRun, load
 from reference.overflow import may_overflow

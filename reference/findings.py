@@ -1,0 +1,77 @@
+"""What is found of a run of theirs: how each column differs, and which mistakes fit."""
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from fractions import Fraction
+
+Named = tuple[str, str]  # a mistake's name, and what it says
+DOUBLE, SINGLE = Fraction(1, 2**53), Fraction(1, 2**24)  # unit roundoffs
+
+
+class Verdict(IntEnum):
+    """Of a column, or of a run, from best to worst."""
+
+    AGREES = 0  # in all digits that are printed
+    ROUNDING = 1
+    PERHAPS = 2  # more than rounding usually does, and less than it may do
+    MORE = 3
+
+
+@dataclass(frozen=True)
+class Of:
+    """What was found of a column of one run: `digits` agree at least, the least of them at `step`.
+
+    `parts_at`: the first step at which it differs by more than rounding.
+    """
+
+    verdict: Verdict
+    rows: int
+    digits: float
+    step: int
+    parts_at: int | None
+
+
+@dataclass
+class Judged:
+    """What was found of one run. `mistakes`: those that fit; one, or several which nothing tells
+    apart. `unit`: the unit roundoff that explains it, or would. `lost_from`: the step from which
+    rounding may have taken every digit, so that nothing can be said. `overflow_from`: the first
+    step of which a number is not finite where doubles may overflow."""
+
+    label: str
+    columns: dict[str, Of] = field(default_factory=dict)
+    mistakes: list[list[Named]] = field(default_factory=list)
+    unit: Fraction = DOUBLE
+    lost_from: int | None = None
+    overflow_from: int | None = None
+
+    @property
+    def verdict(self) -> Verdict:
+        return max((x.verdict for x in self.columns.values()), default=Verdict.AGREES)
+
+
+@dataclass
+class Fit:
+    """How well a setting foretells some columns: a verdict of each, the first place of a column at
+    which it does not, and how far off it is at each place, as far as was looked."""
+
+    verdicts: dict[str, Verdict]
+    parts: dict[str, int] = field(default_factory=dict)
+    apart: dict[tuple[int, str], Fraction] = field(default_factory=dict)
+    lost_from: int | None = None
+    overflow_from: int | None = None
+
+    @property
+    def fits(self) -> bool:
+        return max(self.verdicts.values(), default=Verdict.AGREES) <= Verdict.ROUNDING
+
+    @property
+    def place(self) -> tuple[int, str] | None:
+        """The first place at which rounding does not usually explain it."""
+        return min(((step, name) for name, step in self.parts.items()), default=None)
+
+    def take(self, step: int, name: str, verdict: Verdict) -> None:
+        """A verdict on one number, in the order of steps."""
+        if verdict >= Verdict.PERHAPS:
+            self.parts.setdefault(name, step)
+        self.verdicts[name] = max(self.verdicts[name], verdict)
