@@ -1,6 +1,7 @@
 """Tasks on a Dask cluster of this machine: what is found is the same, whoever is lost meanwhile."""
 
 import os
+import re
 import signal
 import socket
 import time
@@ -198,7 +199,11 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
     before = {file: file.read_bytes() for file in kept(folder)}
     assert 1 <= len(before) < 11
     assert err.count("\n") == 1
-    assert f"{len(before)} of 11 tasks are kept" in err
+    told = re.search(r"(\d+) of 11 tasks are kept", err)
+    assert told
+    # The one that was being written as the interruption came may not have been counted.
+    assert int(told[1]) in (len(before) - 1, len(before))
+    assert int(told[1]) > 0
     assert {f.suffix for f in (folder / "kept").iterdir()} == {".json"}, "no checkpoint, no rest"
     status, _, err = here(capsys, *call)
     assert (status, err) == (0, "")
