@@ -63,7 +63,7 @@ def raised(x: Poly, separable: bool) -> Poly:
     )
 
 
-drawn = {
+elements = {
     True: st.tuples(polynomials("p", 3, 2), polynomials("q", 4, 2)).map(" + ".join),
     False: polynomials("pq", degree=4, most_terms=3),
 }
@@ -73,7 +73,7 @@ drawn = {
 def cases(draw: st.DrawFn) -> tuple[bool, Poly, Poly, sympy.Expr]:
     separable = draw(st.booleans())
     x, y = (raised(draw(in_jets(LOWER[separable])), separable) for _ in range(2))
-    return separable, x, y, plain(draw(drawn[separable]))
+    return separable, x, y, plain(draw(elements[separable]))
 
 
 @quick
@@ -116,7 +116,7 @@ def test_a_derivative_at_a_moved_point_is_taylors(separable: bool, data: st.Data
     )
     i, j = data.draw(st.sampled_from([(0, 1), (1, 0), (2, 0), (0, 2)]))
     found = jets.shifted(i, j, dp, dq)
-    h = plain(data.draw(drawn[separable]))
+    h = plain(data.draw(elements[separable]))
     u, v = (sum(put_in(jets, z, h) * T**n for n, z in enumerate(d)) for d in (dp, dq))
     true = sympy.Poly(
         sympy.expand(h.diff(P, i, Q, j).subs({P: P + u, Q: Q + v}, simultaneous=True)), T
