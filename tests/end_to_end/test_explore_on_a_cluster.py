@@ -16,7 +16,7 @@ from verify import hunting
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
          "--scheme", "lie2", "--degree", "3", "--seed", "5", "--json")  # fmt: skip
-HUNT = ("explore", "--maximise", "growth", "--examples", "60", "--steps", "10", "--degree", "2",
+HUNT = ("explore", "--maximise", "growth", "--examples", "30", "--steps", "10", "--degree", "2",
         "--kind", "polynomial", "--seed", "5", "--json")  # fmt: skip
 
 
@@ -67,7 +67,7 @@ def test_a_hunt_finds_the_same_on_a_cluster(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(hunting, "_ISLAND", 20)  # three islands, two of them at a time
+    monkeypatch.setattr(hunting, "_ISLAND", 10)  # three islands, two of them at a time
     with distributed.Client(cluster, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)
     address = str(cluster.scheduler_address)
