@@ -55,7 +55,7 @@ def kick_drift_kick(p: Any, q: Any, h: Any, d: Any) -> tuple[State, Entries]:
 
 @dataclass(frozen=True)
 class Areas:
-    """What a program has summed up before step `n`: det J of it and of those before."""
+    """What a program has summed up before step `n`, and det J of it and of those beside it."""
 
     n: int
     product: Any
@@ -64,6 +64,7 @@ class Areas:
     now: Any
     before: Any
     first: Any
+    after: Any
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,8 @@ class Program:
             now = a * d - b * c
             first = now if n == 0 else first
             if n - self.late in steps:
-                areas = Areas(n, product, squares, total, now, before, first)
+                e, f, g, i = self.step(*after, self.h, self.d)[1]
+                areas = Areas(n, product, squares, total, now, before, first, e * i - f * g)
                 values = [*self.shown(z), *(f(areas) for _, f in asked)]
                 cells = ("" if x is None else self.number(x) for x in values)
                 yield ",".join([str(n - self.late), *cells])

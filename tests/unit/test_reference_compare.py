@@ -12,7 +12,10 @@ import pytest
 from reference.compare import Compared, compare
 from reference.findings import Verdict
 from reference.make import COMMITTED
+from reference.mistakes import of_states
 from reference.ours import Ours, load
+from reference.readings import readings
+from reference.setting import Points, Setting
 from reference.theirs import read
 from tests.unit.others import (
     Areas,
@@ -164,6 +167,16 @@ MISTAKES = {
     "scheme lie3": CORNER.changed(step=lie3),
     "scheme stormer-verlet": CORNER.changed(step=kick_drift_kick),
 }
+
+
+def test_an_initial_value_that_is_a_double_is_named(ours: Ours, tmp_path: Path) -> None:
+    program = precise("1/100")
+    found = of(ours, tmp_path, program.changed(q=CONTEXT.mpf(0.1)), q0="0.1")
+    assert named(found) == [{"double-q0"}]
+    both = precise(0.01).changed(q=CONTEXT.mpf(0.1))
+    assert named(of(ours, tmp_path, both, q0="0.1")) == [{"double-h-q0"}]
+
+
 STARTS = {"swapped-start": "0", "swapped-throughout": "0", "negated-start": "1.5"}
 
 
@@ -206,7 +219,12 @@ OTHER_AREAS: dict[str, tuple[str, Callable[[Areas], Any]]] = {
         "mse", lambda x: (x.squares + (x.now - 1) ** 2 - (x.first - 1) ** 2) / x.n if x.n else None
     ),
     "mse+1": ("mse", lambda x: (x.squares + (x.now - 1) ** 2) / (x.n + 1) if x.n else None),
+    "mse-1": (
+        "mse", lambda x: (x.squares - (x.before - 1) ** 2) / (x.n - 1) if x.n > 1 else None
+    ),
     "determinant": ("delta_j", lambda x: x.now),
+    "delta_j inverse": ("delta_j", lambda x: 1 / x.now - 1),
+    "delta_j+1": ("delta_j", lambda x: x.after - 1),
     "negated": ("delta_j", lambda x: 1 - x.now),
     "delta_j-1": ("delta_j", lambda x: x.before - 1 if x.n else None),
 }  # fmt: skip
@@ -216,8 +234,19 @@ OTHER_AREAS: dict[str, tuple[str, Callable[[Areas], Any]]] = {
 def test_another_reading_of_an_area_error_is_named(ours: Ours, tmp_path: Path, name: str) -> None:
     column, reading = OTHER_AREAS[name]
     found = of(ours, tmp_path, CORNER.changed(**{column: reading}))
-    assert named(found) == [{name.removeprefix("mse ")}]
+    assert named(found) == [{name.removeprefix("mse ").removeprefix("delta_j ")}]
     assert [x.verdict for x in found.columns] == [Verdict.ROUNDING, Verdict.ROUNDING, Verdict.MORE]
+
+
+def test_every_mistake_has_its_table(ours: Ours) -> None:
+    run = next(x for x in ours.scene("duffing") if x.run.scheme == "lie2" and x.run.p == "1.5")
+    names = {x.name for x in of_states(Setting(run.case, Points({})))}
+    assert {n for n in names if not n.startswith("scheme ")} == {
+        n for n in MISTAKES if not n.startswith("scheme ") and n not in ("double-h", "single")
+    }
+    for column, field in (("lambda", "lam"), ("mse", "mse"), ("delta_j", "delta_j")):
+        tried = {n.split(" ")[-1] for n, (own, _) in OTHER_AREAS.items() if own == field}
+        assert {name for name, _, _ in readings(column)} == tried
 
 
 # -- what cannot be told ---------------------------------------------------------------------------
