@@ -38,6 +38,9 @@ def test_libraries_that_are_not_installed_are_left_out_and_named(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     hide(monkeypatch)
+    tables = others.get("literature")
+    few = [x for x in tables.subjects() if x.name.startswith(("Ruth", "OrdinaryDiffEq", "Kahan"))]
+    monkeypatch.setattr(tables, "subjects", lambda: few)
     report = make_integrators_report("verify report integrators")
     missing = dict(report.left_out)
     for name in LIBRARIES:
