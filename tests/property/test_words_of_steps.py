@@ -106,6 +106,8 @@ def test_there_are_as_many_conditions_as_are_known(kind: str) -> None:
     assert {x.order for x in found} <= set(range(1, MOST_ORDER[kind] + 1))
     assert [x.value for x in found] == [int(x.order == 1) for x in found]
     assert len({x.name for x in found}) == len(found)
+    spelled = [x.name for x in found if x.order > 3]
+    assert all(("Y" in name) == (kind == "composition") for name in spelled)
 
 
 @drawn(20)
