@@ -91,6 +91,18 @@ def test_the_logarithms_words_are_those_of_the_logarithm(kind: str, given_: list
         assert of_logarithm(series, word) == wanted.get(word, 0), word
 
 
+@drawn(10)
+@given(st.sampled_from(KINDS), st.lists(rationals(4), min_size=1, max_size=3))
+def test_a_residue_is_the_combination_of_the_logarithms_words_less_its_value(
+    kind: str, given_: list[Fraction]
+) -> None:
+    series = step(kind, parts_of(kind, given_), 6, Fraction(1))
+    wanted = logarithm(series, 6)
+    for condition in conditions(kind, 6):
+        total = sum(n * wanted.get(word, Fraction(0)) for n, word in condition.terms)
+        assert residue(series, condition) == total - condition.value
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("weight", range(1, 8))
 def test_lyndon_words_are_smaller_than_all_their_turns(kind: str, weight: int) -> None:
