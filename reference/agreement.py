@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.exact import magnitude, rational
-from verify.reference_results import Rounded
 
 _NOT_FINITE = {"nan", "inf", "infinity"}
 _DIGITS = re.compile(r"[+-]?([0-9]*)\.?([0-9]*)(?:[eEdD]([+-]?[0-9]+))?")
@@ -113,11 +112,11 @@ class Cell:
         return max(0.0, -(exponent + math.log10(float(ratio / Fraction(10) ** exponent))))
 
 
-def beside(theirs: str, ours: Rounded, how: Printing, what: str) -> Cell:
-    """The cell of a text. InputError where it is no number."""
+def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: str) -> Cell:
+    """The cell of a text; `ours`: a value and its radius. InputError where it is no number."""
     value = number(theirs, what)
     unit = Fraction(0) if value is None else how.unit(value)
-    return Cell(value, Fraction(ours.value), Fraction(ours.radius), unit)
+    return Cell(value, *ours, unit)
 
 
 def is_single(value: Fraction, unit: Fraction) -> bool:

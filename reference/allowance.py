@@ -11,6 +11,7 @@ from fractions import Fraction
 
 import flint
 
+from reference.findings import DOUBLE, SINGLE
 from reference.scatter import Scatters
 from reference.setting import Case, Known
 from verify.balls import around, in_reach, middle_and_radius, rational_ball
@@ -23,8 +24,8 @@ _FEW = 4  # roundings of p and q in a step
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
 _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
-    (Fraction(1, 2**24), Fraction(1, 2**126)),
-    (Fraction(1, 2**53), Fraction(1, 2**1022)),
+    (SINGLE, Fraction(1, 2**126)),
+    (DOUBLE, Fraction(1, 2**1022)),
 )
 
 

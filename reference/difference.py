@@ -2,6 +2,8 @@
 
 from dataclasses import asdict, dataclass, field
 
+from reference.reading import without_controls
+
 _MOST_SHOWN = 120
 
 
@@ -25,9 +27,7 @@ class Difference:
 
 def _short(text: str) -> str:
     shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
-    return (
-        "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in shown) or "nothing"
-    )
+    return without_controls(shown) or "nothing"
 
 
 @dataclass

@@ -16,7 +16,7 @@ from reference.ours import OurRun
 from reference.overflow import may_overflow
 from reference.readings import Foretold, value_of
 from reference.scatter import Scatters
-from reference.setting import Known, Points, Setting
+from reference.setting import Known, Points, Setting, known_of
 from reference.theirs import Row
 
 STATE, AREA = ("p", "q"), ("delta_j", "mse", "lambda")
@@ -45,9 +45,8 @@ class Judge:
         self.right = Setting(ours.case, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
-        point = self.ours.rows[step]
         for name, text in row.cells.items():
-            known = getattr(point, "lam" if name == "lambda" else name)
+            known = known_of(self.ours.rows[step], name)
             if known is not None and text.strip():
                 yield name, beside(text, known, self.how[name], f"line {row.line}, {name}")
 
@@ -129,9 +128,8 @@ class Judge:
 
     def _printed(self, step: int) -> dict[str, Known]:
         """What the reference data say."""
-        point = self.ours.rows[step]
-        found = {n: getattr(point, "lam" if n == "lambda" else n) for n in (*STATE, *AREA)}
-        return {n: (Fraction(x.value), Fraction(x.radius)) for n, x in found.items() if x}
+        found = {n: known_of(self.ours.rows[step], n) for n in (*STATE, *AREA)}
+        return {n: x for n, x in found.items() if x}
 
     def digits(self, unit: Fraction) -> int:
         """Those to which numbers are to be known that are judged with this unit roundoff."""

@@ -1,6 +1,5 @@
 """Reference data → what others' numbers are held against: each run by its scene and its inputs."""
 
-import math
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,19 +17,11 @@ from verify.errors import InputError
 from verify.exact import rational
 from verify.hamiltonian import Hamiltonian
 from verify.reference_results import OrbitPoint
+from verify.tangent import number as double
 
 KEYS = ("scheme", "step_size", "q0", "p0")  # what a run of a scene is told by
 _EXPONENT_DIGITS = 6
-VALUES = ("p", "q", "delta_j", "mse", "lambda")
 Inputs = tuple[str, float, float, float]  # scheme, h, q0, p0: the numbers to the nearest double
-
-
-def double(x: Fraction) -> float:
-    """The nearest double; infinite beyond them."""
-    try:
-        return float(x)
-    except OverflowError:
-        return math.inf if x > 0 else -math.inf
 
 
 @dataclass(frozen=True)

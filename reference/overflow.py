@@ -11,11 +11,11 @@ from functools import lru_cache
 import numpy as np
 
 from reference.allowance import products
+from reference.scatter import job_of
 from reference.setting import Case, Known
 from verify.float_context import FLOAT
 from verify.flow_of_many import arrays
 from verify.kernel import kernel_for
-from verify.stepping import Job
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
 _MOST_STEPS = 20_000  # stepped
@@ -33,8 +33,7 @@ def may_overflow(case: Case, step: int, known: dict[str, Known]) -> bool:
 
 @lru_cache(maxsize=4096)
 def _overflows(case: Case, step: int) -> bool:
-    start = {"p": case.p, "q": case.q, "h": case.step_size}
-    job = Job(case.hamiltonian, case.scheme, start, 1, frozenset({"mse", "lambda"}), 0)
+    job = job_of(case)
     if job.solved:
         return False
     arithmetic = replace(arrays(), bits=FLOAT.prec, number=FLOAT.rational)

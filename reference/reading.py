@@ -16,6 +16,11 @@ _MOST_PARTS = 8 * 2**20  # commas and brackets, each about an object of Python's
 _MOST_OPEN = 2**21
 
 
+def without_controls(text: str) -> str:
+    """A text of a file as a terminal may be given it."""
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
 def content_of(path: Path) -> bytes:
     """A regular file's content. InputError names the file and the problem."""
     try:

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import flint
 
-from reference.setting import Known, Setting
+from reference.setting import Known, Setting, known_of
 from verify.balls import in_reach, middle_and_radius, rational_ball
 
 _NEAR = Fraction(1, 10**9)
@@ -37,9 +37,7 @@ def readings(name: str) -> Iterator[tuple[str, str, Reading]]:
 
 
 def value_of(setting: Setting, name: str, step: int, digits: int) -> Known | None:
-    point = setting.point(step, digits)
-    found = getattr(point, "lam" if name == "lambda" else name, None)
-    return None if found is None else (Fraction(found.value), Fraction(found.radius))
+    return known_of(setting.point(step, digits), name)
 
 
 def _shifted(name: str, late: int) -> Reading:

@@ -49,7 +49,7 @@ class Scatter:
 
     def __init__(self, cases: Sequence[Case], marks: Sequence[int] = ()) -> None:
         """Raises UnsupportedError for a scheme that solves equations."""
-        jobs = [_job(case) for case in cases]
+        jobs = [job_of(case) for case in cases]
         if jobs[0].solved:
             raise UnsupportedError("equations are not solved for many points at once")
         self._random = np.random.default_rng(0)
@@ -133,7 +133,8 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def _job(case: Case) -> Job:
+def job_of(case: Case) -> Job:
+    """One step of the case, with MSE and Λ."""
     start = {"p": case.p, "q": case.q, "h": case.step_size}
     return Job(case.hamiltonian, case.scheme, start, 1, frozenset({"mse", "lambda"}), 0)
 

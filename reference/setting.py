@@ -30,6 +30,12 @@ class Case:
     p: Fraction
 
 
+def known_of(point: OrbitPoint | None, name: str) -> Known | None:
+    """A number of a point, by its column's name; None where there is none."""
+    found = getattr(point, "lam" if name == "lambda" else name, None)
+    return None if found is None else (Fraction(found.value), Fraction(found.radius))
+
+
 class Points:
     """Cases after some steps: from the reference data where they have them, else by a run."""
 
@@ -66,9 +72,9 @@ class Setting:
     def state(self, step: int, digits: int) -> dict[str, Known] | None:
         """p and q as row `step` of such a table has them; None where there is no such state."""
         point = self.point(step, digits)
-        if point is None or point.p is None or point.q is None:
+        p, q = known_of(point, "p"), known_of(point, "q")
+        if p is None or q is None:
             return None
-        p, q = ((Fraction(x.value), Fraction(x.radius)) for x in (point.p, point.q))
         if self.negated:
             p = -p[0], p[1]
         return {"p": q, "q": p} if self.swapped else {"p": p, "q": q}

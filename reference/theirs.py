@@ -10,10 +10,13 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-from reference.ours import KEYS, VALUES, OurRun, Ours, double
+from reference.ours import KEYS, OurRun, Ours
+from reference.reading import without_controls
 from reference.table import Table, opened
+from reference.writing import VALUES
 from verify.errors import InputError
 from verify.exact import rational
+from verify.tangent import number as double
 
 _SHOWN = 60  # characters of a text
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
@@ -131,7 +134,7 @@ def _header(lines: Table, names: Mapping[str, str], found: Theirs) -> dict[str, 
 def printable(text: str) -> str:
     """A text of a file as it may be shown: short, and without control characters."""
     short = text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"
-    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in short)
+    return without_controls(short)
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -18,7 +18,7 @@ SCHEMAS: dict[str, type[BaseModel]] = {
     "manifest.schema.json": Manifest,
 }
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-_VALUES = ("p", "q", "delta_j", "mse", "lambda")
+VALUES = ("p", "q", "delta_j", "mse", "lambda")
 Row = tuple[str, ...]
 
 
@@ -84,7 +84,7 @@ def _proof_rows(data: Data) -> Iterator[Row]:
 
 def _run_rows(runs: tuple[Run, ...]) -> Iterator[Row]:
     yield ("scheme", "step_size", "q0", "p0", "digits", "step", "status", "failed_step", "kind",
-           *_pairs(_VALUES))  # fmt: skip
+           *_pairs(VALUES))  # fmt: skip
     for run in runs:
         given = run.scheme, run.step_size, run.q, run.p, str(run.digits)
         for x in run.rows:

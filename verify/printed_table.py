@@ -25,7 +25,8 @@ import sympy
 
 from verify.errors import InputError
 from verify.formula import parse, symbol
-from verify.proof.words_of_steps import KINDS, LETTERS, LogCondition, conditions
+from verify.proof.splitting_conditions import LETTERS
+from verify.proof.words_of_steps import KINDS, LogCondition, conditions
 
 _ODD = (1, 3, 5, 7, 9)
 

@@ -74,13 +74,7 @@ def midpoint_to(tolerance: float, change: float = 0.0) -> Any:
     def step(p: Any, q: Any, h: Any) -> Any:
         p, q, h = math.fmod(p, 99), math.fmod(q, 99), math.fmod(h, 99)
         p *= 1 - change * h
-        x, y = p, q
-        for _ in range(200):
-            before = x, y
-            x, y = p + h * force((q + y) / 2), q + h * (p + x) / 2
-            if max(abs(x - before[0]), abs(y - before[1])) < tolerance:
-                break
-        return x, y
+        return midpoint_until(p, q, h, tolerance)
 
     return step
 

@@ -26,7 +26,6 @@ import flint
 KINDS = ("splitting", "nystrom", "composition")
 # Of nystrom steps fewer conditions would do from weight 8 on: forces of two kinds commute too.
 MOST_ORDER = {"splitting": 8, "nystrom": 7, "composition": 10}
-LETTERS = {"kick": "K", "drift": "D"}
 Part = Mapping[str, Any]  # letter to coefficient
 _ODD = "13579"
 
