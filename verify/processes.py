@@ -3,9 +3,12 @@
 import multiprocessing
 import os
 import signal
+import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import forkserver, resource_tracker
 from typing import Any
 
 
@@ -24,13 +27,15 @@ class Processes:
         self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        pool = self._idle.pop() if self._idle else _process()
-        try:
-            future = pool.submit(function, *arguments)
-        except BrokenExecutor:  # lost while it was idle
-            pool = _process()
-            future = pool.submit(function, *arguments)
-        self._busy[future] = pool
+        # A process that is half begun could not be ended.
+        with _held(signal.SIGINT, signal.SIGTERM):
+            pool = self._idle.pop() if self._idle else _process()
+            try:
+                future = pool.submit(function, *arguments)
+            except BrokenExecutor:  # lost while it was idle
+                pool = _process()
+                future = pool.submit(function, *arguments)
+            self._busy[future] = pool
         return future
 
     def release(self, future: "Future[Any]") -> None:
@@ -61,14 +66,40 @@ class Processes:
 
 
 def _process() -> ProcessPoolExecutor:
-    # Spawned, not forked: this process may have threads (the progress bar's, a kernel's).
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
+    return ProcessPoolExecutor(1, mp_context=_context(), initializer=_begin)
+
+
+def _context() -> Any:
+    """How a process comes to be: forked, but not from this one.
+
+    This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported
+    once what every worker needs, and ends with this one. Where there is none, each is spawned.
+    """
+    methods = multiprocessing.get_all_start_methods()
+    if sys.platform == "darwin" or "forkserver" not in methods:  # macOS's libraries start threads
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["verify.perform"])
+    with _held(signal.SIGINT):  # which it and the workers then never get
+        forkserver.ensure_running()
+    return context
+
+
+@contextmanager
+def _held(*signals: signal.Signals) -> Iterator[None]:
+    """Those signals come afterwards; a process that is begun meanwhile does not get them."""
+    resource_tracker.ensure_running()  # begun later, it would let them through
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin() -> None:
     # Ctrl-C reaches the whole process group; the parent alone answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})  # held where it was spawned
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

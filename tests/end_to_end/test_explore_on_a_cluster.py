@@ -16,7 +16,7 @@ from verify import hunting
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
          "--scheme", "lie2", "--degree", "3", "--seed", "5", "--json")  # fmt: skip
-HUNT = ("explore", "--maximise", "growth", "--examples", "30", "--steps", "10", "--degree", "2",
+HUNT = ("explore", "--maximise", "growth", "--examples", "12", "--steps", "10", "--degree", "2",
         "--kind", "polynomial", "--seed", "5", "--json")  # fmt: skip
 
 
@@ -45,19 +45,19 @@ def killed_when(folder: Path, files: int, pid: int) -> threading.Thread:
 def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
     cluster: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    asked = (*ASKED, "--examples", "400")
+    asked = (*ASKED, "--examples", "200")
     alone = here(capsys, *asked, "--workers", "1")
     folder = tmp_path / "kept"
     with distributed.Client(cluster, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)
         pids = list(client.run(os.getpid).values())
-    killer = killed_when(folder, 3, pids[0])
+    killer = killed_when(folder, 1, pids[0])
     address = str(cluster.scheduler_address)
     found = here(capsys, *asked, "--cluster", address, "--keep", str(folder))
     killer.join()
     assert found == alone
-    assert json_of(found[1])["examples"] == 400
-    assert len(list(folder.glob("*.json"))) == 8, "each stretch once"
+    assert json_of(found[1])["examples"] == 200
+    assert len(list(folder.glob("*.json"))) == 4, "each stretch once"
 
 
 def test_a_hunt_finds_the_same_on_a_cluster(
@@ -67,16 +67,16 @@ def test_a_hunt_finds_the_same_on_a_cluster(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(hunting, "_ISLAND", 10)  # three islands, two of them at a time
+    monkeypatch.setattr(hunting, "_ISLAND", 4)  # three islands, two of them at a time
     with distributed.Client(cluster, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)
     address = str(cluster.scheduler_address)
-    places = {"one": ("--workers", "1"), "two": ("--workers", "2"), "c": ("--cluster", address)}
+    places = {"one": ("--workers", "1"), "c": ("--cluster", address)}
     found = {}
     for name, where in places.items():
         status, out, _ = here(capsys, *HUNT, "-o", name, *where)
         assert status == 0
         shown = json_of(out)["gallery"]["scenes"]
         found[name] = [(each["value"], each["scene"]) for each in shown]
-    assert found["one"] == found["two"] == found["c"]
+    assert found["one"] == found["c"]
     assert found["one"]

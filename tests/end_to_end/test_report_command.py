@@ -18,10 +18,10 @@ from tests.end_to_end.test_command_line import RUN, SCENE, apart, arguments, her
 from verify.scene_results import Report
 
 VERIFY = Path(sys.executable).with_name("verify")
-# 9 tasks: six runs of a third of a second or more, a series, two proofs; symplectic Euler has none.
+# 9 tasks: six runs of a fifth of a second or more, a series, two proofs; symplectic Euler has none.
 LONG = SCENE.replace("p**2/2 + q**4/4", "p**2/2 - cos(q)").replace(
     'steps = 200\nstep_sizes = [0.01, "1/30", 0.05, 0.1]',
-    "steps = 800000\nstep_sizes = [0.001, 0.002, 0.003]",
+    "steps = 400000\nstep_sizes = [0.001, 0.002, 0.003]",
 )
 
 
@@ -216,6 +216,32 @@ def test_an_interrupted_report_goes_on_from_what_it_kept(
     assert {f.suffix for f in (folder / "kept").iterdir()} == {".json"}, "nor a checkpoint"
     assert provenance(folder).kept == finished
     assert findings(folder) == findings(uninterrupted)
+
+
+def test_an_interruption_while_workers_are_begun_is_told_in_a_line(tmp_path: Path) -> None:
+    """Those that are begun have imports to do, and say nothing of an interruption amid them."""
+    path, folder = tmp_path / "long.toml", tmp_path / "out"
+    path.write_text(LONG)
+    with started("report", str(path), "-o", str(folder), "--workers", "2") as process:
+        until = time.monotonic() + 60
+        while not any("forkserver" in name for name in group(process.pid)):
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        time.sleep(0.3)
+        status, out, err = interrupt(process)
+    assert (status, out) == (130, "")
+    assert err.startswith("interrupted: 0 of 9 tasks are kept")
+    assert err.count("\n") == 1
+
+
+def group(leader: int) -> list[str]:
+    """The command lines of the processes of a group."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            if os.getpgid(int(folder.name)) == leader:
+                found.append((folder / "cmdline").read_text())
+    return found
 
 
 @pytest.mark.parametrize("digits", [None, "30"], ids=["float64", "mpmath"])

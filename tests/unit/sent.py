@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import time
 from pathlib import Path
 
@@ -38,3 +39,8 @@ def wrong(seconds: float = 0.0) -> None:
 def process() -> int:
     time.sleep(0.05)
     return os.getpid()
+
+
+def loaded(name: str) -> bool:
+    """Whether the module is there, before anything here needs it."""
+    return name in sys.modules

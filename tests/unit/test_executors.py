@@ -1,5 +1,6 @@
 """Calls in this process and in others: each result once, as it comes; lost workers are replaced."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.unit.sent import killed, killed_once, process, square, wrong
+from tests.unit.sent import killed, killed_once, loaded, process, square, wrong
 from verify.errors import InputError, PlaceError
 from verify.executors import ANYWHERE, HERE, Call, Where, opened, performed, there
 from verify.keeping import fingerprint
@@ -191,6 +192,18 @@ def test_a_call_that_always_loses_its_worker_is_named_and_no_other_is_lost() -> 
     with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again"):
         collect(found, 2, calls)
     assert right(found, 2)
+
+
+@pytest.mark.parametrize(("methods", "begun"), [(None, "forkserver"), (["spawn"], "spawn_main")])
+def test_workers_are_forked_beside_this_process_from_one_that_has_imported_what_they_need(
+    methods: list[str] | None, begun: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if methods is not None:
+        monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: methods)
+    with opened(Where(2)) as place:
+        found = dict(performed(place, [Call("pid", process), Call("has", loaded, ("sympy",))]))
+        assert begun in Path(f"/proc/{found['pid']}/cmdline").read_text()
+    assert found["has"] is (methods is None)
 
 
 def test_workers_end_when_their_parent_is_killed() -> None:
