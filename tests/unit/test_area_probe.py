@@ -175,13 +175,19 @@ PLACES = [
     (PENDULUM, (1, "1/2", "3/4"), CHANGED),
     (PENDULUM, TINY, ROUNDED),
 ]
+# Each scheme at one place, and three of them at all.
+CARRIED = [
+    (place, stepped)
+    for k, place in enumerate(PLACES)
+    for n, stepped in enumerate(STEPPED)
+    if n % 3 == k or stepped[0] in ("lie3", "stormer-verlet", "explicit-midpoint")
+]
 
 
-@pytest.mark.parametrize(("scheme", "h", "steps"), STEPPED)
-@pytest.mark.parametrize(("hamiltonian", "where", "asked"), PLACES)
-def test_float64_lies_within_its_bound_of_33_digits(
-    hamiltonian: Hamiltonian, where: Any, asked: Goal, scheme: str, h: str, steps: int
-) -> None:
+@pytest.mark.parametrize(("place", "stepped"), CARRIED)
+def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) -> None:
+    hamiltonian, where, asked = place
+    scheme, h, steps = stepped
     outline = placed(CIRCLE, *where)
     found = measured(outline, floats(scheme, Fraction(h), steps, hamiltonian), asked)
     preserves = get(scheme).step_map(hamiltonian).preserves_area

@@ -57,7 +57,7 @@ def size(*arrays: Any) -> float:
 def test_a_cloud_about_each_example_is_carried_within_the_bound(name: str, regime: str) -> None:
     values, p0, q0 = ALL[name].regime(regime)
     h = ALL[name].hamiltonian(values)
-    p, q = cloud(float(p0), float(q0), 12 if ALL[name].flow else 4)
+    p, q = cloud(float(p0), float(q0), 6 if ALL[name].flow else 3)
     found = exact_points(h, p, q, TIMES)
     error = largest_error(h, p, q, TIMES, found)
     assert error <= found.bound
@@ -82,7 +82,7 @@ def test_long_times_cost_no_digits_away_from_separatrices(name: str, regime: str
     h = ALL[name].hamiltonian(values)
     closed = ALL[name].flow is not None
     times = LONG if closed else (Fraction(60),)
-    p, q = cloud(float(p0), float(q0), 6 if closed else 3)
+    p, q = cloud(float(p0), float(q0), 4 if closed else 2)
     found = exact_points(h, p, q, times)
     assert not found.alone
     assert largest_error(h, p, q, times, found) <= found.bound

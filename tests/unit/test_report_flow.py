@@ -1,9 +1,6 @@
 """Regions carried by maps, and the paper's figures made again: said and drawn as the data are."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +9,7 @@ from reports.flow_figure import draw_flow, grid_of
 from reports.page import render
 from reports.svg import styled
 from reports.typography import number
+from tests.unit.imported import imported_by
 from tests.unit.made_flows import EULER, FAILED, LONG, THREE, TWO, exact, flow, image
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_growth import text_of
@@ -43,12 +41,9 @@ def test_a_scene_without_regions_shows_nothing_of_them() -> None:
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
-    code = (
-        "import sys; from tests.unit.test_report_page import *;"
-        "from tests.unit.made_flows import FAILED, flow;"
-        f"render(report(({made},))); assert not {absent} & set(sys.modules)"
+    assert not absent & imported_by(
+        "from tests.unit.made_flows import FAILED, flow", f"render(report(({made},)))"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 def numbers_of(each: FlowImage) -> list[str]:

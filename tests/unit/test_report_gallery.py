@@ -1,9 +1,6 @@
 """The page's gallery says what the hunt found, in words that are right, and nothing without one."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +9,7 @@ from reports.gallery_figure import marks
 from reports.gallery_finding import power, told
 from reports.markdown import render as render_text
 from reports.page import render
+from tests.unit.imported import imported_by
 from tests.unit.made_gallery import CROSSED, KEPT, NOTHING, at, gallery, shown, split
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_markdown import (
@@ -49,12 +47,9 @@ def test_without_a_hunt_nothing_of_it_is_shown() -> None:
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
-    code = (
-        "import sys; from tests.unit.test_report_page import *;"
-        "from tests.unit.made_gallery import gallery;"
-        f"render({made}); assert not {absent} & set(sys.modules)"
+    assert not absent & imported_by(
+        "from tests.unit.made_gallery import gallery", f"render({made})"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 # -- the first screen -----------------------------------------------------------------------------

@@ -1,13 +1,11 @@
 """The page's part on the growth law says what the data say, and only where it was asked for."""
 
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from reports.page import render
+from tests.unit.imported import imported_by
 from tests.unit.made_growth import LOST, TWO, of, prediction
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_page import EVIL, Reader, proof, report, run, scene
@@ -34,12 +32,9 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
-    code = (
-        "import sys; from tests.unit.test_report_page import *;"
-        "from tests.unit.made_growth import LOST;"
-        f"render(report(({made},))); assert not {absent} & set(sys.modules)"
+    assert not absent & imported_by(
+        "from tests.unit.made_growth import LOST", f"render(report(({made},)))"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 def test_the_law_stands_with_its_orders_and_the_worst_difference_is_told() -> None:

@@ -3,8 +3,6 @@
 import base64
 import hashlib
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from functools import cache
 from html.parser import HTMLParser
@@ -17,6 +15,7 @@ import pytest
 import reports
 from reports.page import render, write
 from reports.typography import number
+from tests.unit.imported import imported_by
 from verify.claims import Claim, MonotoneClaim, TableClaim
 from verify.execute import Store
 from verify.executors import HERE
@@ -264,11 +263,7 @@ def test_what_a_report_lacks_is_not_shown() -> None:
 
 
 def test_a_proof_is_shown_without_matplotlib() -> None:
-    code = (
-        "import sys; from tests.unit.test_report_page import page_of; page_of('proof only');"
-        "assert not {'matplotlib', 'reports.figures'} & set(sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
+    assert not {"matplotlib", "reports.figures"} & imported_by("page_of('proof only')")
 
 
 # -- what the page says ---------------------------------------------------------------------------

@@ -1,15 +1,13 @@
 """The page's part on truncation against rounding says what the data say, and only where asked."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from reports.page import render
 from reports.typography import grouped, step
+from tests.unit.imported import imported_by
 from tests.unit.made_separations import BELOW, BOTH, CROSSING, PARTS, evaluation, grid, point
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_page import EVIL, SCRIPT, Reader, proof, report, run, scene
@@ -47,12 +45,9 @@ def test_a_page_without_runs_has_no_terms_of_runs() -> None:
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
-    code = (
-        "import sys; from tests.unit.test_report_page import *;"
-        "from tests.unit.made_separations import BELOW;"
-        f"render(report(({made},))); assert not {absent} & set(sys.modules)"
+    assert not absent & imported_by(
+        "from tests.unit.made_separations import BELOW", f"render(report(({made},)))"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 # -- what it says ---------------------------------------------------------------------------------

@@ -1,8 +1,5 @@
 """The page's part on error against run time says what the data say, and only where asked for."""
 
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -10,6 +7,7 @@ import pytest
 
 from reports.page import render
 from reports.work_precision_plots import standalone
+from tests.unit.imported import imported_by
 from tests.unit.made_work import ladder, line, point, result, system
 from tests.unit.test_report_figures import figures
 from tests.unit.test_report_growth import text_of
@@ -47,12 +45,9 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
     ],
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
-    code = (
-        "import sys; from tests.unit.test_report_page import *;"
-        "from tests.unit.made_work import result;"
-        f"render(report(({made},))); assert not {absent} & set(sys.modules)"
+    assert not absent & imported_by(
+        "from tests.unit.made_work import result", f"render(report(({made},)))"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 def test_orders_comparisons_and_costs_stand_on_the_page() -> None:
