@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from fractions import Fraction
 
+from verify import reproductions
+from verify.check_integrator import POINTS
 from verify.exact import decimal
 from verify.integrator_results import Finding
 from verify.printed_order import WITHIN, Judged, judged
@@ -49,12 +51,18 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
         yield claim("order", f"order {subject.order}", said, subject.reproduction)
         if found.verdict is not Verdict.REFUTED and method.units:
             said = of_digits(found, method)
-            yield claim("digits", "every printed digit is right", said, _sums(method))
+            exact = found.nearest or {}
+            code = reproductions.of_digits(method, exact, subject.order) if exact else ""
+            yield claim("digits", "every digit is right, to one unit of the last", said, code)
         return
+    code, driven = subject.reproduction, isinstance(method, FloatStep)
+    point = (isinstance(method, FloatStep) and method.points or POINTS)[0]
     if subject.order is not None:
-        yield claim("order", f"order {subject.order}", _order(subject), subject.reproduction)
+        shown = reproductions.of_order(code, point, subject.order) if driven else code
+        yield claim("order", f"order {subject.order}", _order(subject), shown)
     if subject.area_preserving:
-        yield claim("area", "symplectic: det J ≡ 1", _area(subject), subject.reproduction)
+        shown = reproductions.of_area(code, point) if driven else code
+        yield claim("area", "symplectic: det J ≡ 1", _area(subject), shown)
 
 
 def _order(subject: Subject) -> _Found:
@@ -197,22 +205,6 @@ def _rounded(x: Fraction, unit: Fraction) -> str:
     places = len(str(1 / unit)) - 1
     digits = str(abs(whole)).rjust(places + 1, "0")
     return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
-
-
-def _sums(table: PrintedTable) -> str:
-    """What shows wrong digits of a composition: two conditions in exact decimals."""
-    if table.kind != "composition":
-        return ""
-    sizes = ", ".join(size for _, size in table.parts)
-    return "\n".join(
-        [
-            "from fractions import Fraction as F",
-            "",
-            *(f'{name} = F("{text.strip()}")' for name, text in table.numbers.items()),
-            f"w = [{sizes}]",
-            "print(float(sum(w) - 1), float(sum(x**3 for x in w)), float(sum(x**5 for x in w)))",
-        ]
-    )
 
 
 def _far(found: Judged, table: PrintedTable) -> str:
