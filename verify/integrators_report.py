@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from typing import Any
 
 from sympy import S
@@ -15,6 +16,7 @@ from verify.results import ClaimResult
 from verify.scene_results import Provenance, Report
 from verify.subject import Subject
 from verify.subject_claims import claims_of
+from verify.subject_measured import FAILURES
 from verify.verdict import Verdict
 
 TITLE = "The integrators of others, verified"
@@ -74,7 +76,7 @@ def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[st
     for subject in _subjects(module, failed):
         try:
             claims += claims_of(subject, section, prefix)
-        except Exception as error:
+        except FAILURES as error:
             if module.LIBRARY is None:
                 raise  # no one else's code was run: it is ours that is wrong
             failed.append((f"{module.TITLE}: {subject.name}", f"fails: {last_line(error)}"))
@@ -86,8 +88,10 @@ def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[st
 def _subjects(module: Any, failed: list[tuple[str, str]]) -> Iterator[Subject]:
     """Its subjects, up to where the library fails: most fail when they are imported."""
     try:
+        if module.LIBRARY is not None:
+            import_module(module.LIBRARY)
         yield from module.subjects()
-    except Exception as error:
+    except FAILURES as error:
         if module.LIBRARY is None:
             raise
         failed.append((module.TITLE, f"is installed and fails: {last_line(error)}"))

@@ -10,7 +10,7 @@ from verify.printed_table import PrintedTable
 _DIGITS = 45
 _INTEGER = re.compile(r"(?<![\w.])\d+(?![\w.])")
 
-_SERIES = '''\
+_SERIES = """\
 
 
 def mul(x, y):  # of series in h, cut off after h^ORDER
@@ -48,9 +48,9 @@ def flow():
 
 # the largest coefficient of 1 … h^ORDER by which a step differs from the flow: 0 for exact numbers
 for name, numbers in (("printed", printed), ("nearest exact", nearest)):
-    print(name, float(max(abs(a - b) for a, b in zip(step(parts(*numbers)), flow()))))'''
+    print(name, float(max(abs(a - b) for a, b in zip(step(parts(*numbers)), flow()))))"""
 
-_ORDER = '''
+_ORDER = """
 
 
 def error(h):  # of one step, against 64 steps of h / 64
@@ -61,9 +61,9 @@ def error(h):  # of one step, against 64 steps of h / 64
 
 
 # the error of one step is O(h^r), r = order + 1; claimed: order {order}
-print([(h, math.log2(error(h) / error(h / 2))) for h in (1.0, 0.5, 0.25)])'''
+print([(h, math.log2(error(h) / error(h / 2))) for h in (1.0, 0.5, 0.25)])"""
 
-_AREA = '''
+_AREA = """
 
 
 def det_j(p, q, h, d=2.0**-10):  # by differences of the second order, so that d² is its error
@@ -73,7 +73,7 @@ def det_j(p, q, h, d=2.0**-10):  # by differences of the second order, so that d
 
 
 # claimed: 1
-print([(h, det_j({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])'''
+print([(h, det_j({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])"""
 
 
 def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction], order: int) -> str:

@@ -56,7 +56,7 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
             yield claim("digits", "every digit is right, to one unit of the last", said, code)
         return
     code, driven = subject.reproduction, isinstance(method, FloatStep)
-    point = (isinstance(method, FloatStep) and method.points or POINTS)[0]
+    point = ((isinstance(method, FloatStep) and method.points) or POINTS)[0]
     if subject.order is not None:
         shown = reproductions.of_order(code, point, subject.order) if driven else code
         yield claim("order", f"order {subject.order}", _order(subject), shown)

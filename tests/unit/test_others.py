@@ -1,5 +1,6 @@
 """The libraries of others: found by themselves, left out by name, and driven as they say."""
 
+import sys
 import tomllib
 from importlib.machinery import ModuleSpec
 from pathlib import Path
@@ -7,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from verify import others
+from verify import integrators_report, others
 from verify.integrators_report import make_integrators_report
 from verify.others.nodepy_methods import _of_own_orders, claimed
 from verify.subject import Compared, FloatStep, Subject
@@ -63,6 +64,10 @@ def fails() -> Any:
     raise RuntimeError("no shared object")
 
 
+def leaves() -> Any:
+    raise SystemExit(3)
+
+
 def breaks_off() -> Any:
     yield Subject("first", "by hand", "nowhere", Compared("it is itself", fails))
     yield from others.get("literature").subjects()
@@ -73,6 +78,7 @@ def breaks_off() -> Any:
     ("made", "said"),
     [
         (fails, {"scipy": "is installed and fails: RuntimeError: no shared object"}),
+        (leaves, {"scipy": "is installed and fails: SystemExit: 3"}),
         (
             breaks_off,
             {
@@ -90,6 +96,7 @@ def test_a_library_that_fails_is_named_with_its_error_and_does_not_end_the_repor
     one = [x for x in tables.subjects() if x.name == "Ruth 3"]
     monkeypatch.setattr(tables, "subjects", lambda: one)
     monkeypatch.setattr(others.get("scipy_integrators"), "subjects", made)
+    monkeypatch.setattr(integrators_report, "import_module", lambda name: None)
     report = make_integrators_report("verify report integrators")
     left_out = dict(report.left_out)
     assert said.items() <= left_out.items()
@@ -97,6 +104,23 @@ def test_a_library_that_fails_is_named_with_its_error_and_does_not_end_the_repor
     own = [claim.source for claim in report.claims if claim.section.startswith("scipy")]
     assert own == (["Ruth 3"] if made is breaks_off else []), "what was found before is kept"
     assert any(claim.section == "printed tables" for claim in report.claims)
+
+
+def test_a_library_that_cannot_be_imported_has_no_claims(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "galpy").mkdir()
+    (tmp_path / "galpy" / "__init__.py").write_text("import nothing_of_that_name\n")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "galpy"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    hide(monkeypatch, "galpy")
+    monkeypatch.setattr(others.get("literature"), "subjects", lambda: [])
+    report = make_integrators_report("verify report integrators")
+    said = dict(report.left_out)["galpy"]
+    assert said.startswith("is installed and fails: ModuleNotFoundError")
+    assert "nothing_of_that_name" in said
+    assert not any(claim.section.startswith("galpy") for claim in report.claims)
 
 
 def test_a_table_of_ours_that_fails_ends_the_report(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,8 +2,9 @@
 
 A claimed order is that of the method's name: the first number of a pair such as Fehlberg's RK5(4)6,
 the last digit of RK44 or SSPRK(10,4), p of the one-stage and collocation methods as nodepy's
-documentation lists them. What `order()` computes is held against what is proved as a whole: it takes
-conditions for met that hold to within its tolerance, and is not blamed where that is below rounding.
+documentation lists them. What `order()` computes is held against what is proved as a whole: it
+takes conditions for met that hold to within its tolerance, and is not blamed where rounding is
+larger.
 """
 
 import contextlib
