@@ -47,7 +47,7 @@ def flow():
 
 
 # the largest coefficient of 1 … h^ORDER by which a step differs from the flow: 0 for exact numbers
-for name, numbers in (("printed", printed), ("nearest exact", nearest)):
+for name, numbers in ({shown}):
     print(name, float(max(abs(a - b) for a, b in zip(step(parts(*numbers)), flow()))))"""
 
 _ORDER = """
@@ -76,21 +76,21 @@ def det_j(p, q, h, d=2.0**-10):  # by differences of the second order, so that d
 print([(h, det_j({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])"""
 
 
-def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction], order: int) -> str:
-    """By how much one step with the printed digits, and one with the nearest exact numbers, differ
-    from the flow of one H, in exact fractions."""
+def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order: int) -> str:
+    """By how much one step with the printed digits, and one with the nearest exact numbers where
+    they are known, differ from the flow of one H, in exact fractions."""
     quadratic = table.kind == "nystrom"
-    names = ", ".join(nearest)
-    printed = ", ".join(f'F("{table.numbers[name].strip()}")' for name in nearest)
-    exact = ",\n    ".join(f'F("{decimal(x, _DIGITS)}")' for x in nearest.values())
-    rest = [f"    {n} = {_exact(x)}" for n, x in table.numbers.items() if n not in nearest]
+    names = ", ".join(table.units)
+    printed = ", ".join(f'F("{table.numbers[name].strip()}")' for name in table.units)
+    exact = ",\n    ".join(f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.units if nearest)
+    rest = [f"    {n} = {_exact(x)}" for n, x in table.numbers.items() if n not in table.units]
     made = ",\n        ".join(_parts(table))
     lines = [
         "from fractions import Fraction as F",
         "",
         f"ORDER = {order}",
         f"printed = [{printed}]",
-        f"nearest = [\n    {exact},\n]",
+        *([f"nearest = [\n    {exact},\n]"] if nearest else []),
         "",
         "",
         f"def parts({names}):",
@@ -99,7 +99,10 @@ def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction], order: int) 
     ]
     kinetic = "p²/2" if quadratic else "p²/2 + p³/3"
     speed = "p" if quadratic else "[a + b for a, b in zip(p, mul(p, p))]"
-    return "\n".join(lines) + "\n" + _SERIES.format(kinetic=kinetic, speed=speed)
+    shown = (
+        '("printed", printed), ("nearest exact", nearest)' if nearest else '("printed", printed),'
+    )
+    return "\n".join(lines) + "\n" + _SERIES.format(kinetic=kinetic, speed=speed, shown=shown)
 
 
 def _parts(table: PrintedTable) -> list[str]:

@@ -51,8 +51,7 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
         yield claim("order", f"order {subject.order}", said, subject.reproduction)
         if found.verdict is not Verdict.REFUTED and method.units:
             said = of_digits(found, method)
-            exact = found.nearest or {}
-            code = reproductions.of_digits(method, exact, subject.order) if exact else ""
+            code = reproductions.of_digits(method, found.nearest, subject.order)
             yield claim("digits", "every digit is right, to one unit of the last", said, code)
         return
     code, driven = subject.reproduction, isinstance(method, FloatStep)
@@ -136,9 +135,10 @@ def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
         )
         return found.verdict, said, ()
     if found.verdict is Verdict.MEASURED:
+        small = "as small as the digits make them" if found.digits is None else "of wrong digits"
         said = (
-            f"all {count} hold but for residues up to {_short(found.largest)}, as small as the "
-            "digits make them; that exact ones exist there is not shown"
+            f"all {count} hold but for residues up to {_short(found.largest)}, {small}; "
+            "that exact ones exist nearby is not shown"
         )
         return found.verdict, said, ()
     return Verdict.REFUTED, _excluded(found, claimed, table), _moved(found, table)
@@ -173,9 +173,12 @@ def _alone(found: Judged, table: PrintedTable) -> str:
 
 def of_digits(found: Judged, table: PrintedTable) -> _Found:
     """Whether all digits are right to one unit of the last."""
-    if found.digits is None or found.off is None:
+    if found.digits is None:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
         return Verdict.UNDECIDED, said, ()
+    if found.off is None:
+        said = "no coefficients within one unit of the last printed digits satisfy all conditions"
+        return Verdict.REFUTED, f"{said}; the nearest are not known{_alone(found, table)}", ()
     if found.digits:
         said = f"exact coefficients lie within {_far(found, table)} of the printed ones"
         return Verdict.ENCLOSED, said, ()

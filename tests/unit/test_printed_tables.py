@@ -92,6 +92,27 @@ def test_a_wrong_last_digit_costs_the_digits_and_not_the_order() -> None:
     assert judged(table("Kahan–Li 6, nine stages"), 6).digits is True
 
 
+@pytest.mark.parametrize(
+    ("name", "number", "wrong"),
+    [
+        ("McLachlan–Atela 3, optimal", "a1", "0.9196615236173998571"),
+        ("McLachlan–Atela 3, optimal", "a1", "0.9196615230173998671"),
+        ("McLachlan SB3A 4", "a1", "0.18819521776883521787"),
+    ],
+)
+def test_wrong_digits_show_where_there_are_more_conditions_than_numbers(
+    name: str, number: str, wrong: str
+) -> None:
+    own = TABLES[name]
+    found = [c.verdict for c in claims_of(own, "tables", "tables")]
+    assert found == [Verdict.MEASURED, Verdict.UNDECIDED]
+    order, digits = claims_of(replace(own, method=printed(name, **{number: wrong})), "x", "x")
+    assert (order.verdict, digits.verdict) == (Verdict.MEASURED, Verdict.REFUTED)
+    assert "of wrong digits" in order.evidence
+    assert "nearest exact" not in digits.reproduction, "none is known"
+    compile(digits.reproduction, name, "exec")
+
+
 def test_a_zero_that_a_copy_appends_is_a_wrong_digit() -> None:
     """Of Calvo and Sanz-Serna's 18 decimals some print 14 and some 15, the last of these a 0."""
     own = table("Calvo–Sanz-Serna 4")
