@@ -208,6 +208,15 @@ def test_heyokas_taylor_step_is_lie_eta() -> None:
     assert len(rows) > 3
 
 
+@pytest.mark.parametrize(
+    ("units", "verdict"), [(0.9, "MEASURED"), (7.0, "UNDECIDED"), (1e6, "REFUTED")]
+)
+def test_a_rounding_that_is_a_little_worse_refutes_no_taylor_step(
+    units: float, verdict: str
+) -> None:
+    assert others.get("heyoka_taylor")._verdict(units).name == verdict
+
+
 def test_nodepys_lambert_is_of_order_two_and_its_misprint_is_found() -> None:
     found = subjects("nodepy_methods")
     (claim,) = claims_of(found["Lambert65"], "nodepy", "nodepy")
