@@ -1,13 +1,14 @@
 """A few lines of Python that show by themselves what was found of someone else's code or table."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from verify.exact import decimal
 from verify.printed_table import PrintedTable
 
 _DIGITS = 45
+_WIDTH = 88
 _INTEGER = re.compile(r"(?<![\w.])\d+(?![\w.])")
 
 _SERIES = """\
@@ -81,21 +82,20 @@ def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order
     they are known, differ from the flow of one H, in exact fractions."""
     quadratic = table.kind == "nystrom"
     names = ", ".join(table.units)
-    printed = ", ".join(f'F("{table.numbers[name].strip()}")' for name in table.units)
+    printed = _listed([f'F("{table.numbers[name].strip()}")' for name in table.units], "    ")
     exact = ",\n    ".join(f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.units if nearest)
     rest = [f"    {n} = {_exact(x)}" for n, x in table.numbers.items() if n not in table.units]
-    made = ",\n        ".join(_parts(table))
     lines = [
         "from fractions import Fraction as F",
         "",
         f"ORDER = {order}",
-        f"printed = [{printed}]",
+        f"printed = [\n{printed}\n]",
         *([f"nearest = [\n    {exact},\n]"] if nearest else []),
         "",
         "",
         f"def parts({names}):",
         *rest,
-        f"    return [\n        {made},\n    ]",
+        *_parts(table),
     ]
     kinetic = "p²/2" if quadratic else "p²/2 + p³/3"
     speed = "p" if quadratic else "[a + b for a, b in zip(p, mul(p, p))]"
@@ -108,12 +108,24 @@ def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order
 def _parts(table: PrintedTable) -> list[str]:
     """Kicks and drifts; a composition is one of kick–drift–kick."""
     if table.kind != "composition":
-        return [f'("{kind}", {_exact(size)})' for kind, size in table.parts]
+        made = _listed([f'("{kind}", {_exact(size)})' for kind, size in table.parts], " " * 8)
+        return [f"    return [\n{made}\n    ]"]
+    made = _listed([_exact(size) for _, size in table.parts], " " * 8)
     return [
-        f'("{kind}", ({_exact(size)}) * {share})'
-        for _, size in table.parts
-        for kind, share in (("kick", "F(1, 2)"), ("drift", "1"), ("kick", "F(1, 2)"))
+        f"    w = [\n{made}\n    ]",
+        '    kdk = ("kick", F(1, 2)), ("drift", F(1)), ("kick", F(1, 2))',
+        "    return [(kind, share * x) for x in w for kind, share in kdk]",
     ]
+
+
+def _listed(items: Sequence[str], indent: str) -> str:
+    """The items with commas, on lines that are not too long."""
+    lines = [indent]
+    for item in items:
+        if len(lines[-1]) + len(item) > _WIDTH and lines[-1] != indent:
+            lines.append(indent)
+        lines[-1] += f"{item}, "
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def _exact(size: str) -> str:
