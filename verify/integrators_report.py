@@ -1,7 +1,8 @@
 """The integrators of others → a Report: what each claims, held against what is found."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from typing import Any
 
 from sympy import S
@@ -9,10 +10,13 @@ from sympy import S
 from verify import others
 from verify.conditions import Condition
 from verify.keeping import machine, versions
+from verify.own_step import last_line, quiet
 from verify.proof.splitting_conditions import Splitting
 from verify.results import ClaimResult
 from verify.scene_results import Provenance, Report
+from verify.subject import Subject
 from verify.subject_claims import claims_of
+from verify.subject_measured import FAILURES
 from verify.verdict import Verdict
 
 TITLE = "The integrators of others, verified"
@@ -29,6 +33,7 @@ def make_integrators_report(command: str, told: _Told | None = None) -> Report:
     left_out: list[tuple[str, str]] = []
     found: dict[str, str] = {}
     missing: list[str] = []
+    broken: list[str] = []
     for name in others.names():
         module, version = others.get(name), others.installed(name)
         if version is None:
@@ -40,14 +45,17 @@ def make_integrators_report(command: str, told: _Told | None = None) -> Report:
         if module.LIBRARY is not None:
             found[module.TITLE] = version
         section = f"{module.TITLE} {version}".strip()
-        claims += _claims(module, section)
-        left_out += [(f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT]
+        with quiet():
+            own, failed = _claims(module, section)
+        claims += own
+        broken += [module.TITLE] if failed else []
+        left_out += [*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT)]
     return Report(
         title=TITLE,
         claims=tuple(claims),
         scenes=(),
         left_out=tuple(left_out),
-        preface=tuple(_preface(found, missing, claims)),
+        preface=tuple(_preface(found, missing, broken, claims)),
         provenance=Provenance(
             command=command,
             versions=versions() | found,
@@ -59,14 +67,34 @@ def make_integrators_report(command: str, told: _Told | None = None) -> Report:
     )
 
 
-def _claims(module: Any, section: str) -> list[ClaimResult]:
+def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[str, str]]]:
+    """The claims of one file; and what of it could not be looked at since the library fails, each
+    with its error: that refutes nothing, and does not end the report."""
     prefix = str(module.TITLE).replace(" ", "-")
+    failed: list[tuple[str, str]] = []
     claims: list[ClaimResult] = []
-    for subject in module.subjects():
-        claims += claims_of(subject, section, prefix)
+    for subject in _subjects(module, failed):
+        try:
+            claims += claims_of(subject, section, prefix)
+        except FAILURES as error:
+            if module.LIBRARY is None:
+                raise  # no one else's code was run: it is ours that is wrong
+            failed.append((f"{module.TITLE}: {subject.name}", f"fails: {last_line(error)}"))
     if module.LIBRARY is None:
         claims.append(_shears(section, prefix))
-    return claims
+    return claims, failed
+
+
+def _subjects(module: Any, failed: list[tuple[str, str]]) -> Iterator[Subject]:
+    """Its subjects, up to where the library fails: most fail when they are imported."""
+    try:
+        if module.LIBRARY is not None:
+            import_module(module.LIBRARY)
+        yield from module.subjects()
+    except FAILURES as error:
+        if module.LIBRARY is None:
+            raise
+        failed.append((module.TITLE, f"is installed and fails: {last_line(error)}"))
 
 
 def _shears(section: str, prefix: str) -> ClaimResult:
@@ -89,12 +117,17 @@ def _shears(section: str, prefix: str) -> ClaimResult:
 
 
 def _preface(
-    found: dict[str, str], missing: Sequence[str], claims: Sequence[ClaimResult]
+    found: dict[str, str],
+    missing: Sequence[str],
+    broken: Sequence[str],
+    claims: Sequence[ClaimResult],
 ) -> list[str]:
     installed = ", ".join(f"{name} {version}" for name, version in found.items()) or "none"
     lines = [f"Installed here: {installed}; printed tables need no library."]
     if missing:
         lines.append(f"Left out, as not installed: {', '.join(missing)}.")
+    if broken:
+        lines.append(f"Left out, all or in part, as they fail here: {', '.join(broken)}.")
     wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
     sections = dict.fromkeys(c.section for c in wrong)
     told = []

@@ -5,7 +5,7 @@
   is larger than 10⁻⁹;
 - ENCLOSED where exact ones are shown to exist there, or nearby where residues are smaller: then it
   is digits that are wrong, which is judged apart;
-- MEASURED where neither is shown: the residues are as small as the digits make them.
+- MEASURED where neither is shown: the residues are small.
 """
 
 from collections.abc import Mapping
@@ -85,8 +85,19 @@ def _of(near: Near, order: int, highest: int) -> Judged:
             Verdict.REFUTED, allowed, checked, condition, size, largest, digits=False, misprint=one
         )
     found = near.nearest(own)
-    if found is None:
-        return Judged(Verdict.MEASURED, allowed, checked, condition, size, largest)
+    if found is None:  # more conditions than numbers, of which some alone may show wrong digits
+        digits = False if near.excluded(own, 1) else None
+        one = near.misprint(own) if allowed < order else None
+        return Judged(
+            Verdict.MEASURED,
+            allowed,
+            checked,
+            condition,
+            size,
+            largest,
+            digits=digits,
+            misprint=one,
+        )
     off, numbers = found
     wrong_digits = off > 1 and (allowed < order or near.apart(own, 1))
     one = near.misprint(own) if wrong_digits and off > WITHIN else None

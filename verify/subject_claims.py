@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from fractions import Fraction
 
+from verify import reproductions
+from verify.check_integrator import POINTS
 from verify.exact import decimal
 from verify.integrator_results import Finding
 from verify.printed_order import WITHIN, Judged, judged
@@ -49,12 +51,17 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
         yield claim("order", f"order {subject.order}", said, subject.reproduction)
         if found.verdict is not Verdict.REFUTED and method.units:
             said = of_digits(found, method)
-            yield claim("digits", "every printed digit is right", said, _sums(method))
+            code = reproductions.of_digits(method, found.nearest, subject.order)
+            yield claim("digits", "every digit is right, to one unit of the last", said, code)
         return
+    code, driven = subject.reproduction, isinstance(method, FloatStep)
+    point = ((isinstance(method, FloatStep) and method.points) or POINTS)[0]
     if subject.order is not None:
-        yield claim("order", f"order {subject.order}", _order(subject), subject.reproduction)
+        shown = reproductions.of_order(code, point, subject.order) if driven else code
+        yield claim("order", f"order {subject.order}", _order(subject), shown)
     if subject.area_preserving:
-        yield claim("area", "symplectic: det J ≡ 1", _area(subject), subject.reproduction)
+        shown = reproductions.of_area(code, point) if driven else code
+        yield claim("area", "symplectic: det J ≡ 1", _area(subject), shown)
 
 
 def _order(subject: Subject) -> _Found:
@@ -128,9 +135,10 @@ def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
         )
         return found.verdict, said, ()
     if found.verdict is Verdict.MEASURED:
+        small = "as small as the digits make them" if found.digits is None else "of wrong digits"
         said = (
-            f"all {count} hold but for residues up to {_short(found.largest)}, as small as the "
-            "digits make them; that exact ones exist there is not shown"
+            f"all {count} hold but for residues up to {_short(found.largest)}, {small}; "
+            "that exact ones exist nearby is not shown"
         )
         return found.verdict, said, ()
     return Verdict.REFUTED, _excluded(found, claimed, table), _moved(found, table)
@@ -165,9 +173,12 @@ def _alone(found: Judged, table: PrintedTable) -> str:
 
 def of_digits(found: Judged, table: PrintedTable) -> _Found:
     """Whether all digits are right to one unit of the last."""
-    if found.digits is None or found.off is None:
+    if found.digits is None:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
         return Verdict.UNDECIDED, said, ()
+    if found.off is None:
+        said = "no coefficients within one unit of the last printed digits satisfy all conditions"
+        return Verdict.REFUTED, f"{said}; the nearest are not known{_alone(found, table)}", ()
     if found.digits:
         said = f"exact coefficients lie within {_far(found, table)} of the printed ones"
         return Verdict.ENCLOSED, said, ()
@@ -197,22 +208,6 @@ def _rounded(x: Fraction, unit: Fraction) -> str:
     places = len(str(1 / unit)) - 1
     digits = str(abs(whole)).rjust(places + 1, "0")
     return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
-
-
-def _sums(table: PrintedTable) -> str:
-    """What shows wrong digits of a composition: two conditions in exact decimals."""
-    if table.kind != "composition":
-        return ""
-    sizes = ", ".join(size for _, size in table.parts)
-    return "\n".join(
-        [
-            "from fractions import Fraction as F",
-            "",
-            *(f'{name} = F("{text.strip()}")' for name, text in table.numbers.items()),
-            f"w = [{sizes}]",
-            "print(float(sum(w) - 1), float(sum(x**3 for x in w)), float(sum(x**5 for x in w)))",
-        ]
-    )
 
 
 def _far(found: Judged, table: PrintedTable) -> str:

@@ -13,6 +13,8 @@ from verify.own_step import Step, StepError, last_line
 from verify.subject import FloatStep
 from verify.verdict import Verdict
 
+# A library may raise anything, and leave the program too.
+FAILURES = (Exception, SystemExit)
 _SECONDS = 60.0
 _SPAN = 1.9  # times the least step of a stretch its largest must be, for a power to count
 # Faults of the map itself; what raises is how it is driven, and says nothing of the method.
@@ -47,6 +49,6 @@ def finding(method: FloatStep) -> Finding:
         if seen.power is not None and seen.first < _SPAN * seen.last:
             return _not_known(told, seen.first, seen.last)
         return told
-    except Exception as error:  # the library may raise anything
+    except FAILURES as error:
         said = str(error) if isinstance(error, StepError) else last_line(error)
         return Finding(Verdict.UNDECIDED, f"it cannot be measured: {said}", "calls")

@@ -45,7 +45,7 @@ def test_the_first_lines_say_what_is_installed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tables = others.get("literature")
-    one = [x for x in tables.subjects() if "McAte42" in x.name]
+    one = [x for x in tables.subjects() if x.name == "OrdinaryDiffEq McAte4"]
     monkeypatch.setattr(tables, "subjects", lambda: one)
     assert run("-o", str(tmp_path / "out")) == 0
     lines = capsys.readouterr().out.splitlines()

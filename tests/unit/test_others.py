@@ -1,13 +1,16 @@
 """The libraries of others: found by themselves, left out by name, and driven as they say."""
 
+import sys
+import tomllib
 from importlib.machinery import ModuleSpec
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from verify import others
+from verify import integrators_report, others
 from verify.integrators_report import make_integrators_report
-from verify.others.nodepy_methods import claimed
+from verify.others.nodepy_methods import _of_own_orders, claimed
 from verify.subject import Compared, FloatStep, Subject
 from verify.subject_claims import claims_of
 from verify.subject_measured import finding
@@ -57,6 +60,84 @@ def test_libraries_that_are_not_installed_are_left_out_and_named(
     assert all(c.reproduction for c in wrong if c.kind == "order")
 
 
+def fails() -> Any:
+    raise RuntimeError("no shared object")
+
+
+def leaves() -> Any:
+    raise SystemExit(3)
+
+
+def breaks_off() -> Any:
+    yield Subject("first", "by hand", "nowhere", Compared("it is itself", fails))
+    yield from others.get("literature").subjects()
+    raise ValueError("cannot convert NaN to integer ratio")
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (fails, {"scipy": "is installed and fails: RuntimeError: no shared object"}),
+        (leaves, {"scipy": "is installed and fails: SystemExit: 3"}),
+        (
+            breaks_off,
+            {
+                "scipy: first": "fails: RuntimeError: no shared object",
+                "scipy": "is installed and fails: ValueError: cannot convert NaN to integer ratio",
+            },
+        ),
+    ],
+)
+def test_a_library_that_fails_is_named_with_its_error_and_does_not_end_the_report(
+    monkeypatch: pytest.MonkeyPatch, made: Any, said: dict[str, str]
+) -> None:
+    hide(monkeypatch, "scipy")
+    tables = others.get("literature")
+    one = [x for x in tables.subjects() if x.name == "Ruth 3"]
+    monkeypatch.setattr(tables, "subjects", lambda: one)
+    monkeypatch.setattr(others.get("scipy_integrators"), "subjects", made)
+    monkeypatch.setattr(integrators_report, "import_module", lambda name: None)
+    report = make_integrators_report("verify report integrators")
+    left_out = dict(report.left_out)
+    assert said.items() <= left_out.items()
+    assert any(line.endswith("as they fail here: scipy.") for line in report.preface)
+    own = [claim.source for claim in report.claims if claim.section.startswith("scipy")]
+    assert own == (["Ruth 3"] if made is breaks_off else []), "what was found before is kept"
+    assert any(claim.section == "printed tables" for claim in report.claims)
+
+
+def test_a_library_that_cannot_be_imported_has_no_claims(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "galpy").mkdir()
+    (tmp_path / "galpy" / "__init__.py").write_text("import nothing_of_that_name\n")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "galpy"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    hide(monkeypatch, "galpy")
+    monkeypatch.setattr(others.get("literature"), "subjects", lambda: [])
+    report = make_integrators_report("verify report integrators")
+    said = dict(report.left_out)["galpy"]
+    assert said.startswith("is installed and fails: ModuleNotFoundError")
+    assert "nothing_of_that_name" in said
+    assert not any(claim.section.startswith("galpy") for claim in report.claims)
+
+
+def test_a_table_of_ours_that_fails_ends_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    hide(monkeypatch)
+    monkeypatch.setattr(others.get("literature"), "subjects", fails)
+    with pytest.raises(RuntimeError):
+        make_integrators_report("verify report integrators")
+
+
+def test_the_extra_peers_installs_every_library() -> None:
+    text = (Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8")
+    peers = tomllib.loads(text)["project"]["optional-dependencies"]["peers"]
+    names = {entry.partition(">")[0] for entry in peers}
+    assert {others.get(name).LIBRARY for name in LIBRARIES} <= names
+    assert "six" in names, "nodepy imports it and does not ask for it"
+
+
 def test_an_installed_library_has_its_version_told(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("scipy")
     from importlib.metadata import version
@@ -80,6 +161,18 @@ def test_an_installed_library_has_its_version_told(monkeypatch: pytest.MonkeyPat
 )
 def test_orders_are_read_from_the_names_of_nodepy(key: str, name: str, orders: Any) -> None:
     assert claimed(key, name) == orders
+
+
+@pytest.mark.parametrize(
+    ("wrong", "coarse", "verdict"),
+    [([], [], "PROVED"), ([], ["A: 4"], "MEASURED"), (["B: 1, and it is 2"], ["A: 4"], "REFUTED")],
+)
+def test_order_of_nodepy_is_not_blamed_for_the_tolerance_that_it_tells(
+    wrong: list[str], coarse: list[str], verdict: str
+) -> None:
+    found, said, _ = _of_own_orders(3, wrong, coarse, (("method",),))
+    assert found.name == verdict
+    assert all(x in said for x in wrong or coarse)
 
 
 def subjects(name: str) -> dict[str, Subject]:
@@ -113,6 +206,15 @@ def test_heyokas_taylor_step_is_lie_eta() -> None:
     verdict, evidence, rows = found.compare()
     assert verdict is Verdict.MEASURED, evidence
     assert len(rows) > 3
+
+
+@pytest.mark.parametrize(
+    ("units", "verdict"), [(0.9, "MEASURED"), (7.0, "UNDECIDED"), (1e6, "REFUTED")]
+)
+def test_a_rounding_that_is_a_little_worse_refutes_no_taylor_step(
+    units: float, verdict: str
+) -> None:
+    assert others.get("heyoka_taylor")._verdict(units).name == verdict
 
 
 def test_nodepys_lambert_is_of_order_two_and_its_misprint_is_found() -> None:

@@ -2,13 +2,15 @@
 
 A claimed order is that of the method's name: the first number of a pair such as Fehlberg's RK5(4)6,
 the last digit of RK44 or SSPRK(10,4), p of the one-stage and collocation methods as nodepy's
-documentation lists them. What `order()` computes is held against what is proved as a whole.
+documentation lists them. What `order()` computes is held against what is proved as a whole: it
+takes conditions for met that hold to within its tolerance, and is not blamed where rounding is
+larger.
 """
 
 import contextlib
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import sympy
@@ -31,6 +33,7 @@ _ORDERS = {
     "TR-BDF2": 2, "SDIRK23": 3, "SDIRK34": 4, "SDIRK54": 4, "NSSP32": 2, "NSSP33": 3,
 }  # fmt: skip
 _PAIR = re.compile(r"(\d)\((\d)\)")
+_LOOSE = 1e-12  # above the rounding of a dozen floats, far below a wrong method's residues
 _STAGES_ORDER = re.compile(r"^[A-Za-z]+(\d+)(\d)$")
 
 
@@ -58,7 +61,7 @@ def subjects() -> Iterator[Subject]:
     yield Subject(
         "order()",
         "what it returns for each of these methods, by default",
-        "its documentation: the order of a Runge–Kutta method",
+        "its documentation: conditions are checked to within its tolerance, by default 1e-14",
         Compared("order() returns the order of each method that loadRKM loads", _own_orders),
         reproduction=_ORDER_SCRIPT,
     )
@@ -80,9 +83,14 @@ def _titled(key: str, name: str) -> str:
 
 
 def _said(key: str, name: str) -> str:
-    if _PAIR.search(name) or key in _ORDERS:
+    if _PAIR.search(name):
+        return f"its name, {name}: the order of b, then that of bhat"
+    if key in _ORDERS:
         return f"its name, {name}"
-    return f"its key, {key}: stages and order, as of BuRK65, six stages and order 5"
+    return (
+        f"its key, {key}, read as stages and order, as the documentation does where it says more: "
+        "BuRK65, 6-stage, 5th-order"
+    )
 
 
 def _loaded() -> dict[str, Any]:
@@ -115,19 +123,40 @@ def _number(x: Any) -> tuple[sympy.Expr, bool]:
 
 
 def _own_orders() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
-    rows, wrong = [("method", "order() returns", "proved or measured")], []
+    rows = [("method", "order() returns", "proved or measured")]
+    wrong, coarse = [], []
     methods = _loaded()
     for key, method in methods.items():
-        with contextlib.redirect_stdout(io.StringIO()):
-            own = int(method.order())
+        own = _own_order(method)
         table = tableau_of(method.A, method.b)
         found = order_of(table.tableau, own + 1, table.rounded).order
         rows.append((key, str(own), str(found)))
-        if own != found:
-            wrong.append(f"{key}: {own}, and it is {found}")
+        if own == found:
+            continue
+        told = f"{key}: {own}, and it is {found}"
+        if table.rounded and _own_order(method, tol=_LOOSE) == found:
+            coarse.append(f"{told}, which order(tol={_LOOSE}) returns")
+        else:
+            wrong.append(told)
+    return _of_own_orders(len(methods), wrong, coarse, tuple(rows))
+
+
+def _of_own_orders(
+    count: int, wrong: Sequence[str], coarse: Sequence[str], rows: tuple[tuple[str, ...], ...]
+) -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
+    """`coarse`: where its floats' rounding exceeds the default tolerance, and a larger one does."""
     if wrong:
-        return Verdict.REFUTED, f"of {len(methods)} methods, {'; '.join(wrong)}", tuple(rows)
-    return Verdict.PROVED, f"it is right for all {len(methods)} methods", tuple(rows)
+        return Verdict.REFUTED, f"of {count} methods, {'; '.join(wrong)}", rows
+    if coarse:
+        said = f"it is right for {count - len(coarse)} of {count} methods by default; for floats "
+        said += f"whose rounding exceeds that tolerance it is not: {'; '.join(coarse)}"
+        return Verdict.MEASURED, said, rows
+    return Verdict.PROVED, f"it is right for all {count} methods", rows
+
+
+def _own_order(method: Any, **options: float) -> int:
+    with contextlib.redirect_stdout(io.StringIO()):
+        return int(method.order(**options))
 
 
 def _script(key: str, weights: str) -> str:
