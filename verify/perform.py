@@ -173,7 +173,7 @@ def _proof(task: ProofTask, _: Keeper) -> ProofResult:
     step_map = get(scheme).step_map(hamiltonian)
     proof = prove(step_map, get(scheme))
     closed, p_next, q_next, jacobian = step_map.closed, None, None, None
-    if closed is not None:
+    if closed is not None and task.formulas:
         written = (closed.p_next, closed.q_next, *closed.jacobian)
         p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in written)
         jacobian = (a, b), (c, d)
@@ -184,7 +184,7 @@ def _proof(task: ProofTask, _: Keeper) -> ProofResult:
         reason=proof.reason,
         order=proof.order,
         leading=proof.first.text,
-        delta_j=step_map.delta_j_text,
+        delta_j=step_map.delta_j_text if task.formulas else None,
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
         witness={name: text(value) for name, value in proof.witness.items()},

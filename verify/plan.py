@@ -25,8 +25,8 @@ def plan_scenes(scenes: list[Scene]) -> Plan:
     return plan
 
 
-def proof_task(scene: Scene, scheme: str) -> ProofTask:
-    return ProofTask(**scene.given(), scheme=scheme)
+def proof_task(scene: Scene, scheme: str, *, formulas: bool = True) -> ProofTask:
+    return ProofTask(**scene.given(), scheme=scheme, formulas=formulas)
 
 
 def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:

@@ -31,7 +31,7 @@ def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
     """One a scheme that a section runs."""
     named = (name for section in scene.reference for name in schemes_of(scene, section))
     for name in dict.fromkeys(named):
-        yield proof_task(scene, name)
+        yield proof_task(scene, name, formulas=False)
 
 
 def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:

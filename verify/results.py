@@ -28,7 +28,7 @@ class Value(Frozen):
 
 
 class ProofResult(Frozen):
-    """A `verify.proof.order.Proof`; closed forms are None where they are too large."""
+    """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for."""
 
     hamiltonian: str
     parameters: dict[str, str]

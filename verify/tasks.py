@@ -34,9 +34,13 @@ class _FromPoint(_OfScheme):
 
 
 class ProofTask(_OfScheme):
-    """Prove the order of ΔJ and of the map for one H and one scheme."""
+    """Prove the order of ΔJ and of the map for one H and one scheme.
+
+    `formulas`: ΔJ, the map and its Jacobian are also written out, which may take longer.
+    """
 
     kind: Literal["proof"] = "proof"
+    formulas: bool = True
 
 
 class RunTask(_FromPoint):

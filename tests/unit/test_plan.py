@@ -9,12 +9,14 @@ import pytest
 
 from tests.unit.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
-from verify.perform import KINDS
+from verify.perform import KINDS, perform
 from verify.plan import plan_scenes
 from verify.planned import Plan
+from verify.reference_plan import plan_references
+from verify.results import ProofResult
 from verify.runs import CLOSED_FORM
 from verify.scene import load_scene
-from verify.tasks import GrowthTask, RunTask, Task, key
+from verify.tasks import GrowthTask, ProofTask, RunTask, Task, key
 
 
 def runs_of(plan: Plan) -> list[RunTask]:
@@ -140,3 +142,16 @@ def test_a_growth_law_without_lambda_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="wants lambda"):
         load(tmp_path, HEAD + GRID + 'observables = ["mse"]\ngrowth = true')
     load(tmp_path, HEAD + GRID + 'observables = ["mse"]')
+
+
+def test_a_proof_for_reference_data_writes_no_formulas_out(tmp_path: Path) -> None:
+    scene = load(tmp_path, HEAD + '[[reference]]\nstep_sizes = [0.1]\nsteps = [1]\n'
+                 'initial_values = [{ q = 1, p = 0 }]\n')  # fmt: skip
+    (short,) = (t for t in plan_references([scene]).tasks.values() if isinstance(t, ProofTask))
+    long = short.model_copy(update={"formulas": True})
+    brief, full = perform(short), perform(long)
+    assert isinstance(brief, ProofResult)
+    assert isinstance(full, ProofResult)
+    left = {"delta_j": None, "p_next": None, "q_next": None, "jacobian": None}
+    assert brief == full.model_copy(update=left | {"seconds": brief.seconds})
+    assert None not in (full.delta_j, full.p_next, full.q_next, full.jacobian)

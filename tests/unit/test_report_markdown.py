@@ -5,6 +5,7 @@ It is read by a parser of Markdown that shares nothing with what writes it.
 
 import re
 from collections.abc import Callable, Iterator
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -58,6 +59,12 @@ HOSTILE = [
     "    indented",
     "x\n===",
 ]
+
+
+@cache
+def written() -> tuple[str, dict[str, str]]:
+    """The report of `real`, and its figures."""
+    return render(real())
 
 
 def parsed(text: str) -> list[Token]:
@@ -174,7 +181,7 @@ def test_the_finding_and_every_claim_are_the_pages(name: str) -> None:
 
 
 def test_its_numbers_are_those_of_the_runs() -> None:
-    text = seen(render(real())[0])
+    text = seen(written()[0])
     for each in real().scenes[0].runs:
         bounds = [v.bound for n, v in each.values.items() if n not in "pq" and v.bound != "0"]
         for bound in bounds:
@@ -233,7 +240,7 @@ def test_the_outlines_differ_where_the_reports_do() -> None:
 
 
 def test_the_first_picture_stands_once_and_is_pointed_to() -> None:
-    text, figures = render(real())
+    text, figures = written()
     told = page_view(real()).first.plot
     assert told is not None
     assert text.count(f"![{escaped(told.lead)}]") == 1
@@ -298,7 +305,7 @@ def test_a_proof_is_written_without_matplotlib() -> None:
 
 
 def test_the_same_report_gives_the_same_text() -> None:
-    assert render(real()) == render(real())
+    assert render(real()) == written()
 
 
 # -- formulas -------------------------------------------------------------------------------------
@@ -320,7 +327,7 @@ def test_formulas_are_tex(formula: str, expected: str) -> None:
 
 
 def test_no_formula_holds_what_ends_it() -> None:
-    text, _ = render(real())
+    text, _ = written()
     for token in parsed(text):
         if token.type == "fence":
             assert token.info == "math"

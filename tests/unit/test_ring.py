@@ -24,11 +24,9 @@ from tests.property.strategies import (
 )
 from verify.enclosure import enclose
 from verify.errors import InputError
-from verify.formula import parse, symbol
+from verify.formula import parse
 from verify.generators import embed
-from verify.hamiltonian import Hamiltonian
 from verify.ring import Decision, Ring
-from verify.stages import Stages
 
 VARIABLES = ("p", "q", "h", "a", "b")
 
@@ -318,34 +316,3 @@ def test_a_polynomial_is_evaluated_exactly() -> None:
     assert ball.rad() == 0
     with pytest.raises(KeyError):
         enclose(ring, x, {"p": Fraction(1), "q": Fraction(1)}, 64)
-
-
-def test_what_is_too_long_to_be_factored_is_written_with_named_parts_spelled_out() -> None:
-    field = Hamiltonian.parse("p**3/3 + p**2*q**2 - cos(q)").field()[0]
-    stages = Stages(field, 1)
-    ring, (p, q) = stages.ring, stages.start
-    inner = ring.named(p**2 + stages.field.h_q)
-    long = ring.reduce((inner + p + 2 * q + 1) ** 12)
-    assert len(long) > 300
-    text = ring.text(long)
-    assert "None" not in text
-    at = {symbol("p"): sympy.Rational(1, 3), symbol("q"): sympy.Rational(-2, 7)}
-    value = (ring.expression(inner) + symbol("p") + 2 * symbol("q") + 1) ** 12
-    assert abs(
-        sympy.N(
-            sympy.sympify(text, {"p": symbol("p"), "q": symbol("q")}).subs(at) - value.subs(at), 30
-        )
-    ) < sympy.Rational(1, 10**20)
-
-
-def test_a_parameter_named_like_anything_keeps_its_name_in_a_long_text() -> None:
-    names = ("g5_", "a_1", "g_1")
-    formula = "+".join(f"{name}*p**{k}*q**{3 - k}" for k, name in enumerate(names)) + "+sin(q)"
-    field = Hamiltonian.parse(formula).field()[0]
-    long = field.ring.reduce((field.h_p + field.h_q + 1) ** 6)
-    assert len(long) > 300
-    text = field.ring.text(long)
-    at = {symbol(n): sympy.Rational(k + 2, 7) for k, n in enumerate(("p", "q", *names))}
-    value = (field.ring.expression(field.h_p) + field.ring.expression(field.h_q) + 1) ** 6
-    read = sympy.sympify(text, {str(x): x for x in at})
-    assert abs(sympy.N(read.subs(at) - value.subs(at), 30)) < sympy.Rational(1, 10**20)
