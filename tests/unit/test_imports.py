@@ -21,7 +21,6 @@ def name_of(path: Path) -> str:
 
 
 NAMES = {name_of(path): path for path in MODULES}
-every_module = pytest.mark.parametrize("path", MODULES, ids=map(name_of, MODULES))
 
 
 def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
@@ -64,12 +63,12 @@ def roots(names: Set[str]) -> set[str]:
 ABOVE = {"reports", "reference", "tests"}
 
 
-@every_module
-def test_verify_imports_nothing_that_stands_above_it(path: Path) -> None:
-    command = re.fullmatch(r"verify\.cli(_[a-z]+)?", name_of(path))
-    allowed = {"reports", "reference"} if command else set()
-    assert not roots(imported(path)) & ABOVE
-    assert roots(imported(path, everywhere=True)) & ABOVE <= allowed
+def test_verify_imports_nothing_that_stands_above_it() -> None:
+    for name, path in NAMES.items():
+        command = re.fullmatch(r"verify\.cli(_[a-z]+)?", name)
+        allowed = {"reports", "reference"} if command else set()
+        assert not roots(imported(path)) & ABOVE, name
+        assert roots(imported(path, everywhere=True)) & ABOVE <= allowed, name
 
 
 def test_the_reports_compute_nothing_themselves() -> None:
@@ -119,9 +118,9 @@ def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
             waiting += names
 
 
-@every_module
-def test_numba_and_matplotlib_are_imported_only_where_they_are_used(path: Path) -> None:
-    assert not roots(imported(path)) & {"numba", "matplotlib"}
+def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
+    for name, path in NAMES.items():
+        assert not roots(imported(path)) & {"numba", "matplotlib"}, name
 
 
 EXPLORING = {"verify.drawn_scenes", "verify.explore", "verify.gallery", "verify.hunting"}
@@ -198,12 +197,12 @@ def test_what_carries_no_points_loads_no_numpy(
     assert done.stderr.splitlines()[-1] == str(loaded)
 
 
-@every_module
-def test_only_what_is_declared_is_imported(path: Path) -> None:
+def test_only_what_is_declared_is_imported() -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
                 "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
                 "distributed",
                 "verify", "reports", "reference"}  # fmt: skip
-    names = roots(imported(path, everywhere=True))
-    assert names - set(sys.stdlib_module_names) <= declared
+    for name, path in NAMES.items():
+        others = roots(imported(path, everywhere=True)) - set(sys.stdlib_module_names)
+        assert others <= declared, name

@@ -46,7 +46,7 @@ def assert_the_same_bits(of: Job, bits: int) -> None:
 def test_a_rational_step_has_the_bits_that_mpmath_has(
     h: Hamiltonian, scheme: str, bits: int
 ) -> None:
-    of = job(h, scheme, Fraction(3, 2), Fraction(1, 3), 3000, Fraction(1, 70))
+    of = job(h, scheme, Fraction(3, 2), Fraction(1, 3), 1500, Fraction(1, 70))
     assert len(of.go(mpfr.at_bits(bits)).trail) > 10, "the whole state, at points on the way too"
     assert_the_same_bits(of, bits)
 

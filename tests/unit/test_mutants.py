@@ -124,7 +124,7 @@ def test_every_mutant_compiles_differs_and_has_its_own_key(module: str) -> None:
     found = mutants(module)
     assert len({m.key for m in found}) == len(found)
     sound = ast.dump(ast.parse(path_of(module).read_text(encoding="utf-8")))
-    for mutant in found[:: max(1, len(found) // 12)]:
+    for mutant in found[:: max(1, len(found) // 5)]:
         tree = mutated(module, mutant.index)
         compile(tree, module, "exec")
         assert ast.dump(tree) != sound, mutant.key

@@ -14,7 +14,7 @@ from reference.writing import MANIFEST, digest
 from tests.unit.made_reference import SCENES, changed, flipped, made, put, repaired
 from verify.errors import InputError
 
-FLIPS = 40  # of each kind of file
+FLIPS = 20  # of each kind of file
 
 
 @pytest.fixture(scope="module")

@@ -20,9 +20,9 @@ from verify.stepping import Job
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 SYSTEMS = {
-    "duffing-lie2": (DUFFING, "lie2", 20000),
-    "duffing-lie4": (DUFFING, "lie4", 3000),
-    "pendulum-lie2": (PENDULUM, "lie2", 20000),
+    "duffing-lie2": (DUFFING, "lie2", 8000),
+    "duffing-lie4": (DUFFING, "lie4", 1500),
+    "pendulum-lie2": (PENDULUM, "lie2", 8000),
     "pendulum-symplectic-euler": (PENDULUM, "symplectic-euler", 4000),
     "hyperbolic": (Hamiltonian.parse("p**2/2 + cosh(q) + exp(q/2)"), "symplectic-euler", 2000),
     "roots": (Hamiltonian.parse("p**2/2 + (1 + q**2 + p**2)**(1/3)"), "lie2", 500),
