@@ -6,6 +6,7 @@ Nothing is read that is larger than `MOST_BYTES`, and no JSON that would become 
 import csv
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from verify.errors import InputError
 MOST_BYTES = 64 * 2**20
 _MOST_PARTS = 8 * 2**20  # commas and brackets, each about an object of Python's
 _MOST_OPEN = 2**21
+_HALF = re.compile(r"(?<!\\)(?:\\\\)*\\u[dD][89a-fA-F]")  # a surrogate, which no UTF-8 text has
 
 
 def without_controls(text: str) -> str:
@@ -48,9 +50,12 @@ def json_of(content: bytes, name: str) -> Any:
     opened = content.count(b"[") + content.count(b"{")
     if opened > _MOST_OPEN or opened + content.count(b",") > _MOST_PARTS:
         raise InputError("file", name, "has too many parts")
+    text = text_of(content, name)
+    if _HALF.search(text):
+        raise InputError("file", name, "is not JSON in UTF-8: it has half a character, as \\ud800")
     try:
         return json.loads(
-            text_of(content, name),
+            text,
             object_pairs_hook=_unique,
             parse_float=_no_float,
             parse_constant=_no_float,
