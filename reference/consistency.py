@@ -44,7 +44,7 @@ def flow_label(flow: Flow, step: int) -> str:
 def of_data(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
     """What in the data is not what the scene asks for, or is not printed as it must be.
 
-    The rows are looked at only where their inputs are those of the scene, which are of bounded size.
+    The rows are looked at only where their inputs are those of the scene, and so of bounded size.
     """
     other = list(_inputs(data, file, scene))
     if other:
@@ -91,6 +91,8 @@ def _inputs(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
             if mine != theirs:
                 row = f"{name} no. {k + 1}" if lists else name
                 yield Difference(file, row, "what is asked for", str(mine), str(theirs))
+            if mine is None or theirs is None:
+                break
 
 
 def _proof(data: Data, file: str, proof: Any) -> Iterator[Difference]:

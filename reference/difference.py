@@ -22,7 +22,7 @@ class Difference:
         return f"{where}: should be {_short(self.wanted)}, is {_short(self.found)}"
 
     def as_json(self) -> dict[str, str]:
-        """The same for JSON; a file's name that is no UTF-8 with marks in the place of its bytes."""
+        """The same for JSON, with marks for what in a file's name is no UTF-8."""
         return {k: v.encode(errors="replace").decode() for k, v in asdict(self).items()}
 
 
