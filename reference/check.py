@@ -9,6 +9,7 @@ import re
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,16 +18,18 @@ from pydantic import BaseModel, ValidationError
 from reference import consistency
 from reference.difference import Difference, Found
 from reference.models import Data, Manifest
-from reference.reading import content_of, json_of, rows_of, text_of
+from reference.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
 from reference.recompute import recomputed
-from reference.writing import MANIFEST, SCHEMAS, digest, json_text, schema_text, tables
+from reference.writing import MANIFEST, SCHEMAS, digest, json_text, names_of, schema_text, tables
 from verify.errors import InputError
 from verify.executors import ANYWHERE, HERE, Call, Where, opened, performed
 from verify.keeping import versions
+from verify.reference_plan import size_of
 from verify.scene import Scene, scene_from_toml
 
 M = TypeVar("M", bound=BaseModel)
 Unit = tuple[Data, str, str, int]  # what `recomputed` takes
+_MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
 _WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
 _VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
 
@@ -50,12 +53,14 @@ def check(
     share: float,
     seed: int,
     own: Path | None = None,
+    most_steps: int | None = None,
     where: Where = ANYWHERE,
     done: Callable[[int, int], None] | None = None,
 ) -> Checked:
     """Everything of the folder by itself, and a random share of its data computed again.
 
-    `own`: the folder of the scenes that it must have been made from, where that is known. `done`
+    `own`: the folder of the scenes that it must have been made from, where that is known.
+    `most_steps`: how many are done again at most; the runs that want more are named. `done`
     is called with how many recomputations are finished, of how many. InputError where a file cannot
     be read: it is missing, too large, no UTF-8, no JSON, no CSV.
     """
@@ -67,7 +72,7 @@ def check(
         units += [(data, file, kind, k) for kind, items in kinds for k in range(len(items))]
     if found.differences:  # what is asked for may not even be known
         return found
-    chosen = _chosen(units, share, seed)
+    chosen = _affordable(_chosen(units, share, seed), most_steps, found)
     calls = [Call(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, Found] = {}
     few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
@@ -91,6 +96,24 @@ def _chosen(units: Sequence[Unit], share: float, seed: int) -> list[Unit]:
     return [units[k] for k in sorted(chosen)]
 
 
+def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -> list[Unit]:
+    """The units without the runs that would make more steps than that, which are named."""
+    left, kept = most_steps, []
+    for unit in units:
+        data, file, kind, index = unit
+        if left is not None and kind == "run":
+            run = data.runs[index]
+            steps = run.rows[-1].step
+            if steps > left:
+                label = consistency.run_label(run, steps)
+                why = f"with it, more than {most_steps} steps"
+                found.not_recomputed.append(f"{file}: {label}: {why}; see --most-steps")
+                continue
+            left -= steps
+        kept.append(unit)
+    return kept
+
+
 # -- by itself ------------------------------------------------------------------------------------
 
 
@@ -100,9 +123,11 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
     manifest = _model(Manifest, content_of(folder / MANIFEST), MANIFEST, found)
     if manifest is None:
         return
-    contents = {}
+    contents: dict[str, bytes] = {}
     for listed in _listed(folder, manifest, found):
         contents[listed] = content_of(folder / listed)
+        if sum(map(len, contents.values())) > _MOST_BYTES_OF_ALL:
+            raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
     read = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
@@ -118,7 +143,7 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
         text = text_of(contents[name], name)
         found.differences += consistency.of_text(schema_text(name), text, name)
     scenes = _scenes(manifest, own, found)
-    _told(manifest, found)
+    _told(manifest, scenes, found)
     _complete(manifest, scenes, found)
     for name, scene in scenes.items():
         data = read.get(f"{name}.json")
@@ -139,7 +164,7 @@ def _of_scene(
             from reference.parquet import installed, parquet_rows
 
             if installed():
-                again = parquet_rows(content)
+                again = parquet_rows(content, f"{name}.parquet")
                 found.differences += consistency.of_table(rows, again, f"{name}.parquet")
             else:
                 found.not_compared.append(f"{name}.parquet: pyarrow is not installed")
@@ -192,9 +217,15 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
         if each.sha256 != actual:
             found.differences.append(Difference(*where, "sha256", actual, each.sha256))
         try:
-            scenes[each.name] = scene_from_toml(each.toml, each.name)
+            scene = scene_from_toml(each.toml, each.name)
         except InputError as error:
             found.differences.append(Difference(*where, "toml", "a scene", str(error)))
+            continue
+        if size_of(scene) > MOST_BYTES:  # what it asks for is listed, and would fill all memory
+            wanted = "a scene whose data can be read"
+            found.differences.append(Difference(*where, "toml", wanted, each.toml))
+            continue
+        scenes[each.name] = scene
     if own is not None:
         wanted = {path.stem: path.read_text(encoding="utf-8") for path in own.glob("*.toml")}
         given = {each.name: each.toml for each in manifest.scenes}
@@ -204,16 +235,25 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
     return scenes
 
 
-def _told(manifest: Manifest, found: Checked) -> None:
+def _told(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
     """The command and the versions, as far as they can be told to be wrong."""
     try:
         words = shlex.split(manifest.command)
     except ValueError:
         words = []
+    files = [x for x in words[3:] if x != "--parquet"]
     made = words[:3] == ["verify", "reference", "make"]
-    if not made or not all(x.endswith(".toml") or x == "--parquet" for x in words[3:]):
+    if not made or not all(x.endswith(".toml") for x in files):
         wanted = "verify reference make, and scenes"
         found.differences.append(Difference(MANIFEST, "command", "", wanted, manifest.command))
+    elif files and len(scenes) == len(manifest.scenes):
+        for file, each in zip_longest(files, manifest.scenes):
+            stem = (file or "").removesuffix(".toml")
+            if each is None or scene_from_toml(each.toml, stem).name != each.name:
+                wanted = " ".join(f"{name}.toml" for name in scenes)
+                given = manifest.command
+                found.differences.append(Difference(MANIFEST, "command", "", wanted, given))
+                break
     if list(manifest.versions) != list(versions()):
         wanted = ", ".join(versions())
         given = ", ".join(manifest.versions)
@@ -225,11 +265,7 @@ def _told(manifest: Manifest, found: Checked) -> None:
 
 def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
     """Whether each scene has its files, and each file its scene."""
-    wanted = set(SCHEMAS)
-    tables_of = [f"{name}-{what}" for name in scenes for what in ("proofs", "runs", "flow")]
-    wanted |= {f"{name}.json" for name in scenes} | {f"{name}.csv" for name in tables_of}
-    if "--parquet" in manifest.command.split():
-        wanted |= {f"{name}.parquet" for name in tables_of}
+    wanted = names_of(scenes, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
     if len(scenes) < len(manifest.scenes):
         found.differences.append(Difference(MANIFEST, "scenes", "", "one of each name", "two"))

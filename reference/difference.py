@@ -18,11 +18,12 @@ class Difference:
     found: str
 
     def __str__(self) -> str:
-        where = ": ".join(filter(None, (self.file, self.row, self.column)))
+        where = ": ".join(filter(None, map(without_controls, (self.file, self.row, self.column))))
         return f"{where}: should be {_short(self.wanted)}, is {_short(self.found)}"
 
     def as_json(self) -> dict[str, str]:
-        return asdict(self)
+        """The same for JSON, with marks for what in a file's name is no UTF-8."""
+        return {k: v.encode(errors="replace").decode() for k, v in asdict(self).items()}
 
 
 def _short(text: str) -> str:

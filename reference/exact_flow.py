@@ -14,6 +14,7 @@ import flint
 
 from reference.taylor import Number, number
 from reference.textbook import Field, flow_series
+from verify.exact import short
 
 _MORE = 8  # digits, and orders, of the second integration
 _MOST_STEPS = 5_000
@@ -31,14 +32,15 @@ class BlowsUpError(NotFollowedError):
 
 def states_at(
     field: Field, p: Fraction, q: Fraction, times: Sequence[Fraction], digits: int
-) -> list[State]:
-    """Balls of (p, q) at the times, which ascend from 0. Raises NotFollowedError."""
+) -> tuple[list[State], NotFollowedError | None]:
+    """Balls of (p, q) at the times, which ascend from 0, and why not at all of them, if so."""
     bits = math.ceil(3.33 * (digits + _MORE)) + 64
     with flint.ctx.workprec(bits):
         start = flint.arb(number(p)), flint.arb(number(q))
-        rough = _followed(field, start, times, digits)
-        fine = _followed(field, start, times, digits + _MORE)
-        return [_around(*pair, digits) for pair in zip(rough, fine, strict=True)]
+        rough, why = _followed(field, start, times, digits)
+        fine, also = _followed(field, start, times, digits + _MORE)
+        both = [_around(*pair, digits) for pair in zip(rough, fine, strict=False)]
+        return both, why or also
 
 
 def _around(rough: State, fine: State, digits: int) -> State:
@@ -49,7 +51,9 @@ def _around(rough: State, fine: State, digits: int) -> State:
     return p, q
 
 
-def _followed(field: Field, start: State, times: Sequence[Fraction], digits: int) -> list[State]:
+def _followed(
+    field: Field, start: State, times: Sequence[Fraction], digits: int
+) -> tuple[list[State], NotFollowedError | None]:
     order = digits + digits // 4 + 10
     p, q = start
     first, done, found = _largest(start), Fraction(0), []
@@ -60,21 +64,21 @@ def _followed(field: Field, start: State, times: Sequence[Fraction], digits: int
             found.append((p, q))
             waiting.pop(0)
         if not waiting:
-            return found
+            return found, None
         ps, qs = flow_series(field, p, q, order)
         reach = _reach(ps, qs, digits)
         if not all(x.is_finite() for x in (*ps, *qs)):
-            raise NotFollowedError("H is not defined there")
+            return found, NotFollowedError("H is not defined there")
         shortest = reach if shortest is None else shortest
         if _largest((p, q)) > first + _BURST and reach < shortest - _STOPPED:
-            raise BlowsUpError
+            return found, BlowsUpError("the solution blows up before")
         after = done + _power_of_two(reach)
         while waiting and waiting[0] <= after:
             at = flint.arb(number(waiting.pop(0) - done))
             found.append((_sum(ps, at), _sum(qs, at)))
         h = flint.arb(number(after - done))
         p, q, done = _sum(ps, h), _sum(qs, h), after
-    raise NotFollowedError(f"{_MOST_STEPS} steps lead only to t = {float(done):.6g}")
+    return found, NotFollowedError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
 
 
 def _reach(ps: list[Number], qs: list[Number], digits: int) -> float:

@@ -16,6 +16,7 @@ from reference.models import (
     Run,
     SceneFile,
 )
+from reference.reading import MOST_BYTES
 from reference.writing import (
     MANIFEST,
     SCHEMAS,
@@ -23,6 +24,7 @@ from reference.writing import (
     digest,
     json_text,
     listed,
+    names_of,
     schema_text,
     tables,
 )
@@ -30,7 +32,7 @@ from verify.errors import InputError
 from verify.exact import text
 from verify.keeping import versions, write_atomically
 from verify.perform import Result
-from verify.reference_plan import orbit_tasks, proof_tasks, solution_tasks
+from verify.reference_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference_results import OrbitResult, SolutionResult
 from verify.results import ProofResult
 from verify.scene import Scene, load_scene
@@ -56,6 +58,9 @@ def load(paths: Sequence[Path]) -> list[Asked]:
     for path, asked in zip(paths, found, strict=True):
         if not asked.scene.reference:
             raise InputError("SCENE", str(path), "asks for no [[reference]]")
+        if (size := size_of(asked.scene)) > MOST_BYTES:
+            problem = f"makes a file of about {size} bytes; allowed: {MOST_BYTES}"
+            raise InputError("SCENE", str(path), problem)
     names = [asked.scene.name for asked in found]
     for name in names:
         if not _NAME.fullmatch(name) or f"{name}.json" == MANIFEST:
@@ -97,6 +102,17 @@ def data_of(scene: Scene, results: Mapping[str, Result]) -> Data:
         runs=tuple(runs),
         flow=tuple(flows),
     )
+
+
+def alone(folder: Path, asked: Sequence[Asked], *, parquet: bool) -> None:
+    """InputError where the folder holds what is not made again, and would be extra in a check."""
+    made = {MANIFEST, *names_of((each.scene.name for each in asked), parquet=parquet)}
+    other = sorted({path.name for path in folder.iterdir()} - made)
+    if other:
+        problem = (
+            f"holds {other[0]!r}, which does not belong to these data; give a folder of its own"
+        )
+        raise InputError("--output", str(folder), problem)
 
 
 def files_of(data: Sequence[Data], *, parquet: bool = False) -> dict[str, bytes]:

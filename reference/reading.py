@@ -6,14 +6,16 @@ Nothing is read that is larger than `MOST_BYTES`, and no JSON that would become 
 import csv
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 from verify.errors import InputError
 
 MOST_BYTES = 64 * 2**20
-_MOST_PARTS = 8 * 2**20  # commas and brackets, each about an object of Python's
+MOST_CELLS = 8 * 2**20  # or commas and brackets, each about an object of Python's
 _MOST_OPEN = 2**21
+_HALF = re.compile(r"(?<!\\)(?:\\\\)*\\u[dD][89a-fA-F]")  # a surrogate, which no UTF-8 text has
 
 
 def without_controls(text: str) -> str:
@@ -46,11 +48,14 @@ def text_of(content: bytes, name: str) -> str:
 def json_of(content: bytes, name: str) -> Any:
     """The JSON in it, in which no number is a float. InputError for what is not such JSON."""
     opened = content.count(b"[") + content.count(b"{")
-    if opened > _MOST_OPEN or opened + content.count(b",") > _MOST_PARTS:
+    if opened > _MOST_OPEN or opened + content.count(b",") > MOST_CELLS:
         raise InputError("file", name, "has too many parts")
+    text = text_of(content, name)
+    if _HALF.search(text):
+        raise InputError("file", name, "is not JSON in UTF-8: it has half a character, as \\ud800")
     try:
         return json.loads(
-            text_of(content, name),
+            text,
             object_pairs_hook=_unique,
             parse_float=_no_float,
             parse_constant=_no_float,
@@ -77,7 +82,7 @@ def _no_float(text: str) -> None:
 def rows_of(content: bytes, name: str) -> list[tuple[str, ...]]:
     """The rows of a CSV file. InputError for what is not CSV."""
     source = text_of(content, name)
-    if content.count(b",") > _MOST_PARTS or content.count(b"\n") > _MOST_PARTS:
+    if content.count(b",") > MOST_CELLS or content.count(b"\n") > MOST_CELLS:
         raise InputError("file", name, "has too many cells")
     try:
         return [tuple(row) for row in csv.reader(io.StringIO(source, newline=""), strict=True)]

@@ -6,20 +6,21 @@ system is flint's balls, so that what is recomputed of a scheme's orbit is rigor
 """
 
 from fractions import Fraction
+from itertools import zip_longest
 from typing import Any
 
 import flint
 
 from reference.consistency import flow_label, run_label
 from reference.difference import Difference, Found
-from reference.exact_flow import BlowsUpError, NotFollowedError, states_at
+from reference.exact_flow import BlowsUpError, State, states_at
 from reference.models import Data, Flow, Run
 from reference.recompute_proof import proof_again, shown
 from reference.tape import NotReadError
 from reference.taylor import Number, number
 from reference.textbook import Field, Step, UnknownSchemeError, step_of
 from verify.exact import magnitude
-from verify.reference_results import OrbitPoint, Rounded
+from verify.reference_results import FlowPoint, OrbitPoint, Rounded
 
 _FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
 _SHARP = 5  # digits beyond those printed to which an exact value must be met
@@ -186,15 +187,16 @@ def _compare(
     if cell is None:
         found.differences.append(Difference(*where, shown(ball, digits), "null"))
         return
-    value, radius = Fraction(cell.value), Fraction(cell.radius)
-    low, high = (flint.arb(number(value + sign * radius)) for sign in (-1, 1))
+    value, radius = flint.arb(cell.value), flint.arb(cell.radius)  # no rationals: 1e+999999999
+    low, high = value - radius, value + radius
     if ball < low or ball > high:
         found.differences.append(Difference(*where, shown(ball, digits), cell.value))
         return
     if radius == 0:
-        near = abs(value) if value else Fraction(10) ** (magnitude(size) if size else 0)
-        places = places or (digits + _SHARP if value else 2 * digits)
-        sharp = flint.arb(number(near / Fraction(10) ** places))
+        ten, exact_zero = flint.arb(10), bool(value == 0)
+        near = ten ** (magnitude(size) if size else 0) if exact_zero else abs(value)
+        places = places or (2 * digits if exact_zero else digits + _SHARP)
+        sharp = near / ten**places
         inside = ball.rad() <= sharp
     else:
         inside = ball >= low and ball <= high
@@ -206,50 +208,61 @@ def _compare(
 
 
 def _flow(known: Field, flow: Flow, file: str, found: Found) -> None:
-    rows = []
+    rows = [row for row in flow.rows if row.status != "not followed"]
     for row in flow.rows:
         if row.status == "not followed":
-            label = flow_label(flow, row.step)
-            found.not_recomputed.append(f"{file}: {label}: has no values")
-        else:
-            rows.append(row)
-    times = [row.step * Fraction(flow.step_size) for row in rows if row.status == "finished"]
-    p, q = Fraction(flow.p), Fraction(flow.q)
-    size = max(abs(p), abs(q))
+            found.not_recomputed.append(f"{file}: {flow_label(flow, row.step)}: has no values")
+    times = [row.step * Fraction(flow.step_size) for row in rows]
     for more in _FLOW_DIGITS:
-        again = Found()
+        again, digits = Found(), flow.digits + more
+        states, why = states_at(known, Fraction(flow.p), Fraction(flow.q), times, digits)
         try:
-            states = states_at(known, p, q, times, flow.digits + more)
-            with flint.ctx.workprec(_MORE_PER_DIGIT * (flow.digits + more) + _FIRST_BITS):
-                _flow_rows(flow, states, file, size, again)
-            for row in rows[len(times) :]:
-                _burst(known, flow, row.step, file, again)
+            with flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
+                for row, state in zip_longest(rows, states):
+                    where = file, flow_label(flow, row.step)
+                    if state is None:
+                        _not_reached(known, flow, row, why, where, again)
+                    else:
+                        _reached(flow, row, state, where, again)
         except _TooWide:
             continue
-        except NotFollowedError as error:
-            again.not_recomputed.append(f"{file}: {flow_label(flow, rows[-1].step)}: {error}")
         found.add(again)
         return
     label = flow_label(flow, flow.rows[-1].step)
     found.not_recomputed.append(f"{file}: {label}: more digits do not tell")
 
 
-def _flow_rows(flow: Flow, states: list[Any], file: str, size: Fraction, found: Found) -> None:
-    finished = (row for row in flow.rows if row.status == "finished")
-    for row, state in zip(finished, states, strict=True):
-        found.rows += 1
-        for name, ball in zip(("p", "q"), state, strict=True):
-            where, places = (file, flow_label(flow, row.step), name), flow.digits + _SHARP
-            _compare(getattr(row, name), ball, flow.digits, size, where, found, places)
+def _reached(
+    flow: Flow, row: FlowPoint, state: State, where: tuple[str, str], found: Found
+) -> None:
+    """A row whose time was reached."""
+    found.rows += 1
+    if row.status == "blows up":
+        found.differences.append(Difference(*where, "status", "finished", row.status))
+        return
+    size, places = max(abs(Fraction(flow.p)), abs(Fraction(flow.q))), flow.digits + _SHARP
+    for name, ball in zip(("p", "q"), state, strict=True):
+        cell = getattr(row, name)
+        _compare(cell, ball, flow.digits, size, (*where, name), found, places)
 
 
-def _burst(known: Field, flow: Flow, step: int, file: str, found: Found) -> None:
-    """That the solution does grow beyond every bound before that step's time."""
-    try:
-        time = step * Fraction(flow.step_size)
-        states_at(known, Fraction(flow.p), Fraction(flow.q), [time], flow.digits)
-    except BlowsUpError:
+def _not_reached(
+    known: Field,
+    flow: Flow,
+    row: FlowPoint,
+    why: Exception | None,
+    where: tuple[str, str],
+    found: Found,
+) -> None:
+    """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
+    if row.status == "blows up" and isinstance(why, BlowsUpError):
         found.rows += 1
-    else:
-        where = file, flow_label(flow, step), "status"
-        found.differences.append(Difference(*where, "finished", "blows up"))
+        return
+    found.not_recomputed.append(f"{': '.join(where)}: {why}")
+    if row.p is not None and row.q is not None:
+        start = (flint.arb(number(Fraction(x))) for x in (flow.p, flow.q))
+        ends = (flint.arb(x.value) + flint.arb(0, 1) * flint.arb(x.radius) for x in (row.p, row.q))
+        first, last = known.energy(*start), known.energy(*ends)
+        if first < last or first > last:
+            told = f"p and q where H is {shown(first, flow.digits)}"
+            found.differences.append(Difference(*where, "p, q", told, shown(last, flow.digits)))

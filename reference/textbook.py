@@ -31,15 +31,21 @@ class Field:
 
     def __init__(self, formula: str, parameters: dict[str, Fraction]) -> None:
         self.tape = Tape(parameters)
-        h = self.tape.read(formula)
+        self.h = h = self.tape.read(formula)
         self.h_p, self.h_q = (self.tape.diff(h, name) for name in ("p", "q"))
         self.h_pp, self.h_pq = (self.tape.diff(self.h_p, name) for name in ("p", "q"))
         self.h_qq = self.tape.diff(self.h_q, "q")
         self.separable = self.tape.value(self.h_pq) == 0
         self.first = Expansion(self.tape, (self.h_p, self.h_q))
         self.both = Expansion(self.tape, (self.h_p, self.h_q, self.h_pp, self.h_pq, self.h_qq))
+        self.alone = Expansion(self.tape, (h,))
         self.of_p = Expansion(self.tape, (self.h_p, self.h_pp))
         self.of_q = Expansion(self.tape, (self.h_q, self.h_qq))
+
+    def energy(self, p: Number, q: Number) -> Number:
+        """H there."""
+        self.alone.begin(p, q)
+        return self.alone.value(self.h)
 
     def at(self, p: Number, q: Number) -> tuple[State, Matrix]:
         """f and A there."""

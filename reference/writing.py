@@ -4,7 +4,7 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from pydantic import BaseModel
@@ -65,6 +65,16 @@ def tables(data: Data) -> dict[str, list[Row]]:
         f"{data.name}-runs": list(_run_rows(data.runs)),
         f"{data.name}-flow": list(_flow_rows(data.flow)),
     }
+
+
+def names_of(scenes: Iterable[str], *, parquet: bool) -> set[str]:
+    """The files that scenes of these names have, with the schemas and without the manifest."""
+    found = set(SCHEMAS)
+    for name in scenes:
+        found.add(f"{name}.json")
+        for ending in ("csv", "parquet") if parquet else ("csv",):
+            found |= {f"{name}-{what}.{ending}" for what in ("proofs", "runs", "flow")}
+    return found
 
 
 def csv_text(rows: list[Row]) -> str:

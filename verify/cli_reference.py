@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 DIFFERENT = 1  # exit status
 _SHARE = 0.05
+_MOST_STEPS = 10**6  # a minute or two
 
 
 @click.group()
@@ -64,6 +65,7 @@ def make(
     asked = making.load([Path(x) for x in scenes] or making.committed_scenes())
     folder = output or Path(f"{asked[0].scene.name}-reference" if scenes else "reference-data")
     writable(folder)
+    making.alone(folder, asked, parquet=parquet)
     if keep is not None:
         writable(keep, "--keep")
     plan = plan_references([x.scene for x in asked])
@@ -86,6 +88,12 @@ def make(
 @click.argument("folder", required=False, type=click.Path(path_type=Path), metavar="[DIR]")
 @click.option("--share", default=_SHARE, metavar="X", help="Of the data, recomputed; 0.05.")
 @click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
+@click.option(
+    "--most-steps",
+    type=click.IntRange(1),
+    metavar="N",
+    help=f"Of all runs recomputed; the others are named. {_MOST_STEPS:,}; none with --all.",
+)
 @click.option("--seed", type=click.IntRange(0), help="Of the random sample; without it, any.")
 @with_where
 @json_option
@@ -93,6 +101,7 @@ def check(
     folder: Path | None,
     share: float,
     everything: bool,
+    most_steps: int | None,
     seed: int | None,
     where: "Where",
     as_json: bool,
@@ -113,6 +122,8 @@ def check(
         raise InputError("--share", share, "must be 0 … 1")
     if everything and share != _SHARE:
         raise InputError("--all", "", "goes without --share")
+    if most_steps is None and not everything:
+        most_steps = _MOST_STEPS
     seed = SystemRandom().randrange(10**6) if seed is None else seed
     with progress_bar("recomputed", 1000, unit="") as advance:
         before = 0
@@ -128,6 +139,7 @@ def check(
             share=1.0 if everything else share,
             seed=seed,
             own=SCENES if folder is None else None,
+            most_steps=most_steps,
             where=where,
             done=done,
         )
@@ -153,8 +165,10 @@ def _as_json(found: "Checked") -> dict[str, Any]:
 
 
 def _print(found: "Checked") -> None:
+    from reference.reading import without_controls
+
     for line in (*found.not_recomputed, *found.not_compared):
-        click.echo(f"not looked at: {line}")
+        click.echo(f"not looked at: {without_controls(line)}")
     again = f"{found.recomputed:,} computed again (--seed {found.seed})"
     if found.differences:
         more = len(found.differences) - 1

@@ -5,6 +5,7 @@ reports, with a rigorous bound wherever one can be had. ΔJ at the state is encl
 all states within that bound. More digits are asked for until all numbers round to one decimal.
 """
 
+from contextlib import suppress
 from fractions import Fraction
 from typing import Literal
 
@@ -16,7 +17,7 @@ from verify.correct_rounding import correctly_rounded, near_zero
 from verify.enclosure import enclose_all
 from verify.errors import InputError
 from verify.exact import text
-from verify.exact_solution import exact_solution, leaves_by_algebra
+from verify.exact_solution import Solution, exact_solution, leaves_by_algebra
 from verify.hamiltonian import Hamiltonian
 from verify.precision import working_precision
 from verify.proof.exact_flow import NoFlowError
@@ -139,7 +140,10 @@ def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> Flow
     try:
         for guard in _GUARDS:
             digits = task.digits + guard
-            at = exact_solution(hamiltonian, **start, time=time, digits=digits)
+            if step == 0:  # the initial value itself, also where H is not defined
+                at = Solution(task.p, task.q, Fraction(0), "the initial value itself")
+            else:
+                at = exact_solution(hamiltonian, **start, time=time, digits=digits)
             last = guard == _GUARDS[-1]
             size = _size(task, "p")
             p, q = (_rounded((x, at.bound), task.digits, last, size) for x in (at.p, at.q))
@@ -150,9 +154,10 @@ def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> Flow
         if error.name != "digits":
             raise
     except NoFlowError:
-        told = leaves_by_algebra(hamiltonian, **start, time=time)
-        if told is not None and told.startswith("it blows up"):
-            return _nothing(step, time, "blows up")
+        with suppress(NoFlowError):  # H may not even be defined at the initial value
+            told = leaves_by_algebra(hamiltonian, **start, time=time)
+            if told is not None and told.startswith("it blows up"):
+                return _nothing(step, time, "blows up")
     return _nothing(step, time, "not followed")
 
 

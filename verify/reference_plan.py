@@ -23,6 +23,16 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
     return plan
 
 
+def size_of(scene: Scene) -> int:
+    """About how many bytes the file of its data will have, without listing what it asks for."""
+    size = 0
+    for section in scene.reference:
+        rows = len(section.initial_values) * len(section.step_sizes) * len(section.steps)
+        size += rows * len(schemes_of(scene, section)) * (5 * section.digits + 300)
+        size += rows * section.flow * (2 * section.digits + 200)
+    return size
+
+
 def schemes_of(scene: Scene, section: Reference) -> tuple[str, ...]:
     return section.schemes or scene.schemes
 

@@ -191,7 +191,7 @@ def test_parquet_is_the_same_tables_or_one_line_says_what_is_missing(
     status, out, _ = here(capsys, "reference", "check", str(folder), "--share", "0", "--json")
     assert (status, json_of(out)["not_compared"]) == (0, [])
     path = folder / "mine-runs.parquet"
-    rows = parquet_rows(path.read_bytes())
+    rows = parquet_rows(path.read_bytes(), path.name)
     planted = [*rows[:4], (*rows[4][:9], "1.25e+00", *rows[4][10:]), *rows[5:]]
     path.write_bytes(parquet_bytes(planted))
     repaired(folder, path.name)

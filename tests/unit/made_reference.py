@@ -5,7 +5,7 @@ import random
 from pathlib import Path
 from typing import Any
 
-from reference.make import Asked, data_of, files_of, manifest_of, write
+from reference.make import Asked, command_of, data_of, files_of, manifest_of, write
 from reference.models import Data
 from reference.writing import MANIFEST, digest
 from verify.execute import Store, execute
@@ -51,7 +51,8 @@ def put(folder: Path, data: list[Data], scenes: dict[str, str] | None = None) ->
     folder.mkdir(parents=True, exist_ok=True)
     asked = [Asked(scene_from_toml(x, name), x) for name, x in (scenes or SCENES).items()]
     files = files_of(data)
-    write(folder, files, manifest_of(asked, files, "verify reference make mine.toml"))
+    command = command_of([f"{name}.toml" for name in scenes or SCENES], parquet=False)
+    write(folder, files, manifest_of(asked, files, command))
 
 
 def repaired(folder: Path, name: str) -> None:

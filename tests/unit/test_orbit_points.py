@@ -116,3 +116,8 @@ def test_the_flow_of_an_oscillator_is_the_cosine() -> None:
 def test_a_solution_that_blows_up_says_so() -> None:
     statuses = [status for status, _ in flow("p**2/2 - q**4/4", steps=(0, 5, 3000))]
     assert statuses == ["finished", "finished", "blows up"]
+
+
+def test_where_h_is_not_defined_the_solution_is_not_followed_and_at_0_it_is_the_start() -> None:
+    statuses = flow("p**2/2 - log(q - 2)", steps=(0, 5))
+    assert statuses == [("finished", "1e+00"), ("not followed", None)]
