@@ -23,8 +23,8 @@ _SEPARATED_DIGITS = 3
 
 @dataclass(frozen=True)
 class Column:
-    """A column of all runs together; `digits` agree at least, in `run` at `step`, and it parts
-    there first where a run differs by more than rounding."""
+    """A column of all runs together; in its `rows`, but for those where a run is lost, `digits`
+    agree at least, in `run` at `step`. In `parts_run` a run first differs by more than rounding."""
 
     name: str
     verdict: Verdict
@@ -144,15 +144,15 @@ def _printings(theirs: Theirs) -> dict[str, Printing]:
 
 
 class _Search:
-    """Looks for mistakes: in the first runs among all, in the others among those found before."""
+    """Looks for mistakes: in the first runs among all, in the others among those found before, and
+    single precision, which costs nothing to see."""
 
     def __init__(self) -> None:
         self.known: set[str] = set()
         self.in_vain = 0
 
     def explain(self, judge: Judge, judged: Judged) -> None:
-        if self.known:
-            judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
+        judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
         if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
             judged.mistakes = Diagnosis(judge, judged).mistakes()
             self.in_vain += judged.verdict is Verdict.MORE and not judged.mistakes

@@ -23,6 +23,7 @@ _OF_SCHEME = "scheme "
 _OTHER_EULER = "symplectic Euler of the other kind"
 _ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
 _SHARP = 40  # digits
+_ENDS_AND_MIDDLE = 3
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,7 @@ def of_states(right: Setting) -> Iterator[Mistake]:
     """All that can be seen in doubles."""
     yield from _of_columns(right)
     yield from _of_scheme(right)
+    yield from _staggered(right)
     yield from _of_step(right)
 
 
@@ -104,6 +106,33 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
         yield Mistake(
             f"{_OF_SCHEME}{name}", says, replace(right, case=replace(right.case, scheme=name))
         )
+
+
+def _staggered(right: Setting) -> Iterator[Mistake]:
+    """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
+
+    That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
+    """
+    generic = schemes.get(right.case.scheme).generic
+    parts = generic.parts if isinstance(generic, Splitting) else ()
+    if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
+        return
+    (first, half), (second, whole), _ = parts
+    name = "p" if first == "kick" else "q"
+    both = ((first, 2 * half), (second, whole))
+    for sign, order, says in ((1, both[::-1], "ahead"), (-1, both, "behind")):
+        case = replace(right.case, scheme=_named(order))
+        start = _a_part_on(right, name, _named(both), sign)
+        if start is not None:
+            yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}, as leapfrog's",
+                          replace(right, case=replace(case, **{name: start})))  # fmt: skip
+
+
+def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
+    """The initial `name` after half of the scheme's first part, which changes it alone."""
+    start = getattr(right.case, name)
+    after = replace(right, case=replace(right.case, scheme=scheme)).state(1, _SHARP)
+    return start + sign * (after[name][0] - start) / 2 if after else None
 
 
 def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:

@@ -19,12 +19,13 @@ _MOST_SHOWN = 5
 _SHOWN = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
 _SAYS = (
     "agrees in all digits that are printed",
+    "says nothing: rounding may have taken every digit",
     "differs by what float64 rounding explains",
     "differs by more than rounding usually does, and no more than it may do",
     "DIFFERS by more than rounding",
 )
 _PARTS = ("input", "trajectory", "determinant", "product")
-_KEYS = ("agrees", "rounding", "perhaps rounding", "more than rounding")
+_KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 
 
 @click.command()
