@@ -9,12 +9,12 @@ from fractions import Fraction
 
 import numpy as np
 
-from verify.exact import magnitude, rational
+from verify.exact import magnitude, rational, text
 
 _NOT_FINITE = {"nan", "inf", "infinity"}
 _DIGITS = re.compile(r"[+-]?([0-9]*)\.?([0-9]*)(?:[eEdD]([+-]?[0-9]+))?")
 _ENOUGH, _LONG = 3, 7  # cells, and digits of one
-_SINGLE_BITS, _SHORT_BITS = 24, 16
+_SHORT_BITS = 16
 _LEAST_CHANCE = 0.01  # that a number is one of single precision by chance
 _FORTRAN = re.compile(r"[+-]?[0-9.]+[dD][+-]?[0-9]+")
 _LARGE = re.compile(r"(.+)[eE]([+-]?[0-9]{4,5})")  # beyond what a user's input may have
@@ -131,19 +131,32 @@ def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: st
 
 def is_single(value: Fraction, unit: Fraction) -> bool:
     """Whether it is a single-precision number, up to its printing, or one's shortest decimal."""
-    try:
-        near = struct.unpack("f", struct.pack("f", float(value)))[0]
-    except OverflowError:
-        return False
-    if not math.isfinite(near):
-        return False
-    return abs(Fraction(near) - value) <= unit or Fraction(str(np.float32(near))) == value
+    near = _single_near(value)
+    return near is not None and (
+        abs(Fraction(float(near)) - value) <= unit or _shortest(near, value)
+    )
 
 
 def chance_of_single(value: Fraction, unit: Fraction) -> float:
     """How likely a number that is not of single precision would pass for one: those of few digits
     do, and everything that is printed with seven."""
+    near = _single_near(value)
     bits = value.denominator.bit_length() + value.numerator.bit_length()
-    if bits < _SHORT_BITS:
+    if near is None or bits < _SHORT_BITS:
         return 1.0
-    return min(1.0, max(_LEAST_CHANCE, float(2 * unit / abs(value)) * 2**_SINGLE_BITS))
+    room = 2 * unit  # of the decimals that are no finer than a shortest one, one is
+    if _shortest(near, value):
+        room = Fraction(1, 10 ** len(text(value).partition(".")[2]))
+    return min(1.0, max(_LEAST_CHANCE, float(room / Fraction(float(np.spacing(abs(near)))))))
+
+
+def _single_near(value: Fraction) -> np.float32 | None:
+    try:
+        near = np.float32(struct.unpack("f", struct.pack("f", float(value)))[0])
+    except OverflowError:
+        return None
+    return near if np.isfinite(near) else None
+
+
+def _shortest(single: np.float32, value: Fraction) -> bool:
+    return Fraction(str(single)) == value

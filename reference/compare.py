@@ -1,6 +1,6 @@
 """A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -8,9 +8,10 @@ from reference.agreement import Printing, printing
 from reference.diagnosis import Diagnosis
 from reference.findings import Judged, Named, Verdict
 from reference.judge import Judge
+from reference.mistakes import of_states
 from reference.ours import OurRun, Ours
 from reference.scatter import Scatters
-from reference.setting import Points
+from reference.setting import Case, Points, Setting
 from reference.theirs import Theirs
 from verify.errors import InputError
 from verify.results import SeparationResult
@@ -87,14 +88,17 @@ def compare(
     judged: list[Judged] = []
     off: list[tuple[Fraction, int, OurRun]] = []  # Λ, by no more than rounding may do
     search = _Search()
-    marks = {step for _, rows in theirs.runs.values() for step in rows}
+    steps = {step for _, rows in theirs.runs.values() for step in rows}
+    marks = {max(0, step + late) for step in steps for late in (-1, 0, 1)}
     scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(marks))
     points = Points({own.case: (own.run.digits, own.rows) for own in ours.runs()})
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
         judge = Judge(run, rows, how, scatters, points)
         if judge.cells:
             each = judge.judged()
-            search.explain(judge, each)
+            if search.explain(judge, each):
+                rest = [run for run, _ in list(theirs.runs.values())[count:]]
+                scatters.expect(_cases(rest, points, search.known))
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
@@ -151,12 +155,23 @@ class _Search:
         self.known: set[str] = set()
         self.in_vain = 0
 
-    def explain(self, judge: Judge, judged: Judged) -> None:
+    def explain(self, judge: Judge, judged: Judged) -> bool:
+        """Whether it has found one that was not known."""
         judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
         if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
             judged.mistakes = Diagnosis(judge, judged).mistakes()
             self.in_vain += judged.verdict is Verdict.MORE and not judged.mistakes
+        before = len(self.known)
         self.known |= {name for group in judged.mistakes for name, _ in group}
+        return len(self.known) > before
+
+
+def _cases(runs: Iterable[OurRun], points: Points, names: Container[str]) -> Iterator[Case]:
+    """What runs with one of these mistakes would be."""
+    for run in runs:
+        for mistake in of_states(Setting(run.case, points)):
+            if mistake.name in names:
+                yield mistake.setting.case
 
 
 def _column(name: str, judged: Iterable[Judged]) -> Column:
@@ -177,8 +192,14 @@ def _column(name: str, judged: Iterable[Judged]) -> Column:
 
 
 def _diagnoses(judged: Iterable[Judged]) -> list[Explained]:
+    """Which mistakes fit in how many runs. Where several fit in one of them, and some of these in
+    all of another, the other rules out the rest."""
     counts: dict[tuple[Named, ...], int] = {}
     for each in judged:
         for group in each.mistakes:
             counts[tuple(group)] = counts.get(tuple(group), 0) + 1
+    for group in sorted(counts, key=len, reverse=True):
+        smaller = [x for x in counts if set(x) < set(group)]
+        if len(smaller) == 1:
+            counts[smaller[0]] += counts.pop(group)
     return [Explained(group, count) for group, count in counts.items()]

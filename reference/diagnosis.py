@@ -59,7 +59,11 @@ class Diagnosis:
         known = [(x.theirs, x.unit) for x in cells if x.theirs is not None]
         single = all(is_single(*x) for x in known)
         by_chance = math.prod(chance_of_single(*x) for x in known)
-        return single and by_chance <= _BY_CHANCE and judge.fit(judge.right, names, SINGLE, wholly=False).fits
+        return (
+            single
+            and by_chance <= _BY_CHANCE
+            and judge.fit(judge.right, names, SINGLE, wholly=False).fits
+        )
 
     # -- of the state -------------------------------------------------------------------------
 
@@ -84,7 +88,14 @@ class Diagnosis:
         if not self._nearer_by_itself(setting, right, unit):
             return False
         fit = self.judge.fit(setting, names, unit, wholly=False)
-        return fit.fits and self._nearer(fit, right, unit)
+        return fit.fits and self._tells(fit) and self._nearer(fit, right, unit)
+
+    def _tells(self, fit: Fit) -> bool:
+        """Whether there is more than one step to go by, where the setting's run is lost so early
+        that it says nothing of the others: many a mistake has one point of another's orbit."""
+        if fit.lost_from is None:
+            return True
+        return len({step for step, _ in self.judge.cells if 0 < step < fit.lost_from}) > 1
 
     def _nearer_by_itself(self, setting: Setting, right: Fit, unit: Fraction) -> bool:
         """What `_nearer` asks for, before anything is scattered, which takes long."""

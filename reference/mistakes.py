@@ -20,6 +20,7 @@ from verify.proof.splitting_conditions import Part, Splitting
 
 _MOST_INEXACT = 4  # inputs of which all subsets are tried
 _OF_SCHEME = "scheme "
+_OTHER = "your scheme is "
 _OTHER_EULER = "symplectic Euler of the other kind"
 _ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
 _SHARP = 40  # digits
@@ -82,11 +83,11 @@ def _of_columns(right: Setting) -> Iterator[Mistake]:
 def _of_step(right: Setting) -> Iterator[Mistake]:
     case, h = right.case, right.case.step_size
     for name, factor, says in (("half", Fraction(1, 2), "half"), ("double", Fraction(2), "twice")):
-        yield Mistake(f"{name}-step", f"your h is {says} of {_text(h)}",
+        yield Mistake(f"{name}-step", f"your h is {says} what it should be",
                       replace(right, case=replace(case, step_size=factor * h)))  # fmt: skip
     single = {"h": _single(h)}
     if single["h"] not in (None, h):
-        yield Mistake("single-h", f"your h is the single-precision number nearest to {_text(h)}",
+        yield Mistake("single-h", "your h is the single-precision number nearest to it",
                       replace(right, case=_with(case, single)))  # fmt: skip
     for name, value in case.hamiltonian.values:
         for what, other in (("minus", -value), ("no", Fraction(0))):
@@ -99,8 +100,8 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
     """Its relatives by name, then all other schemes."""
     mine = right.case.scheme
     said = dict(_relatives(mine))
-    for name in schemes.names():
-        said.setdefault(name, f"your scheme is {name}")
+    for name in sorted(schemes.names(), key=lambda x: not x.startswith("lie")):
+        said.setdefault(name, f"{_OTHER}{name}")
     said.pop(mine, None)
     for name, says in said.items():
         yield Mistake(
@@ -124,7 +125,7 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
         case = replace(right.case, scheme=_named(order))
         start = _a_part_on(right, name, _named(both), sign)
         if start is not None:
-            yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}, as leapfrog's",
+            yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
                           replace(right, case=replace(case, **{name: start})))  # fmt: skip
 
 
@@ -145,7 +146,10 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
         if mistake.name.startswith(_OF_SCHEME):
             known = replace(setting, case=there).state(1, _SHARP)
             state = known and (known["p"][0], known["q"][0])
-        found.setdefault(state or mistake.name, mistake)
+        first = found.setdefault(state or mistake.name, mistake)
+        if first is not mistake and first.says.startswith(_OTHER):
+            also = mistake.name.removeprefix(_OF_SCHEME)
+            found[state] = replace(first, says=f"{first.says}, which {also} is for this H, too")
     return list(found.values())
 
 
