@@ -100,7 +100,8 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
     """Its relatives by name, then all other schemes."""
     mine = right.case.scheme
     said = dict(_relatives(mine))
-    for name in sorted(schemes.names(), key=lambda x: not x.startswith("lie")):
+    known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
+    for name in known:
         said.setdefault(name, f"{_OTHER}{name}")
     said.pop(mine, None)
     for name, says in said.items():
