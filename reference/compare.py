@@ -86,7 +86,7 @@ def compare(
     how = _printings(theirs)
     found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
     judged: list[Judged] = []
-    off: list[tuple[Fraction, int, OurRun]] = []  # Λ, by no more than rounding may do
+    off: list[_Off] = []  # Λ, by no more than rounding may do
     search = _Search()
     steps = {step for _, rows in theirs.runs.values() for step in rows}
     marks = {max(0, step + late) for step in steps for late in (-1, 0, 1)}
@@ -114,7 +114,10 @@ def compare(
     return found
 
 
-def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, int, OurRun]]:
+_Off = tuple[bool, Fraction, int, OurRun]  # whether its run is never lost; how far, when, where
+
+
+def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[_Off]:
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
@@ -123,13 +126,14 @@ def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, i
         if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
             continue
         if cell.apart:
-            yield cell.apart, step, judge.ours
+            yield judged.lost_from is None, cell.apart, step, judge.ours
 
 
-def _separated(off: list[tuple[Fraction, int, OurRun]]) -> Separated | None:
+def _separated(off: list[_Off]) -> Separated | None:
+    """Of runs that are lost only where there is no other: their separation takes long."""
     if not off:
         return None
-    apart, step, run = max(off, key=lambda x: x[0])
+    _, apart, step, run = max(off, key=lambda x: x[:2])
     case = run.case
     result = separate(
         case.hamiltonian, case.scheme, q=case.q, p=case.p,
