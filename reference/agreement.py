@@ -7,12 +7,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.exact import magnitude, rational
+import numpy as np
+
+from verify.exact import magnitude, rational, text
 
 _NOT_FINITE = {"nan", "inf", "infinity"}
 _DIGITS = re.compile(r"[+-]?([0-9]*)\.?([0-9]*)(?:[eEdD]([+-]?[0-9]+))?")
 _ENOUGH, _LONG = 3, 7  # cells, and digits of one
+_SHORT_BITS = 16
+_LEAST_CHANCE = 0.01  # that a number is one of single precision by chance
 _FORTRAN = re.compile(r"[+-]?[0-9.]+[dD][+-]?[0-9]+")
+_LARGE = re.compile(r"(.+)[eE]([+-]?[0-9]{4,5})")  # beyond what a user's input may have
 _HEXADECIMAL = re.compile(r"[+-]?0[xX].{1,60}")
 
 
@@ -56,7 +61,8 @@ def printing(texts: Iterable[str]) -> Printing:
 def number(text: str, what: str) -> Fraction | None:
     """The exact value of a cell; None where it is not finite, an InputError where it is no number.
 
-    Hexadecimal floats, as C prints them with %a, are numbers, too, and Fortran's 1.5D+00.
+    Hexadecimal floats, as C prints them with %a, are numbers, too, and Fortran's 1.5D+00; exponents
+    may be as large as those of the reference data, which go beyond ±1000.
     """
     bare = text.strip()
     if bare.lstrip("+-").casefold() in _NOT_FINITE:
@@ -66,7 +72,11 @@ def number(text: str, what: str) -> Fraction | None:
             return Fraction(float.fromhex(bare))
         except (ValueError, OverflowError):
             pass
-    return rational(bare.upper().replace("D", "E") if _FORTRAN.fullmatch(bare) else bare, what)
+    bare = bare.upper().replace("D", "E") if _FORTRAN.fullmatch(bare) else bare
+    large = _LARGE.fullmatch(bare)
+    if large and large[1].isascii():
+        return rational(large[1], what) * Fraction(10) ** int(large[2])
+    return rational(bare, what)
 
 
 @dataclass(frozen=True)
@@ -120,9 +130,33 @@ def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: st
 
 
 def is_single(value: Fraction, unit: Fraction) -> bool:
-    """Whether it is a single-precision number, up to its printing."""
+    """Whether it is a single-precision number, up to its printing, or one's shortest decimal."""
+    near = _single_near(value)
+    return near is not None and (
+        abs(Fraction(float(near)) - value) <= unit or _shortest(near, value)
+    )
+
+
+def chance_of_single(value: Fraction, unit: Fraction) -> float:
+    """How likely a number that is not of single precision would pass for one: those of few digits
+    do, and everything that is printed with seven."""
+    near = _single_near(value)
+    bits = value.denominator.bit_length() + value.numerator.bit_length()
+    if near is None or bits < _SHORT_BITS:
+        return 1.0
+    room = 2 * unit  # of the decimals that are no finer than a shortest one, one is
+    if _shortest(near, value):
+        room = Fraction(1, 10 ** len(text(value).partition(".")[2]))
+    return min(1.0, max(_LEAST_CHANCE, float(room / Fraction(float(np.spacing(abs(near)))))))
+
+
+def _single_near(value: Fraction) -> np.float32 | None:
     try:
-        near = struct.unpack("f", struct.pack("f", float(value)))[0]
+        near = np.float32(struct.unpack("f", struct.pack("f", float(value)))[0])
     except OverflowError:
-        return False
-    return math.isfinite(near) and abs(Fraction(near) - value) <= unit
+        return None
+    return near if np.isfinite(near) else None
+
+
+def _shortest(single: np.float32, value: Fraction) -> bool:
+    return Fraction(str(single)) == value

@@ -1,6 +1,6 @@
 """A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -8,9 +8,10 @@ from reference.agreement import Printing, printing
 from reference.diagnosis import Diagnosis
 from reference.findings import Judged, Named, Verdict
 from reference.judge import Judge
+from reference.mistakes import of_states
 from reference.ours import OurRun, Ours
 from reference.scatter import Scatters
-from reference.setting import Points
+from reference.setting import Case, Points, Setting
 from reference.theirs import Theirs
 from verify.errors import InputError
 from verify.results import SeparationResult
@@ -23,8 +24,8 @@ _SEPARATED_DIGITS = 3
 
 @dataclass(frozen=True)
 class Column:
-    """A column of all runs together; `digits` agree at least, in `run` at `step`, and it parts
-    there first where a run differs by more than rounding."""
+    """A column of all runs together; in its `rows`, but for those where a run is lost, `digits`
+    agree at least, in `run` at `step`. In `parts_run` a run first differs by more than rounding."""
 
     name: str
     verdict: Verdict
@@ -85,16 +86,19 @@ def compare(
     how = _printings(theirs)
     found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
     judged: list[Judged] = []
-    off: list[tuple[Fraction, int, OurRun]] = []  # Λ, by no more than rounding may do
+    off: list[_Off] = []  # Λ, by no more than rounding may do
     search = _Search()
-    marks = {step for _, rows in theirs.runs.values() for step in rows}
+    steps = {step for _, rows in theirs.runs.values() for step in rows}
+    marks = {max(0, step + late) for step in steps for late in (-1, 0, 1)}
     scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(marks))
     points = Points({own.case: (own.run.digits, own.rows) for own in ours.runs()})
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
         judge = Judge(run, rows, how, scatters, points)
         if judge.cells:
             each = judge.judged()
-            search.explain(judge, each)
+            if search.explain(judge, each):
+                rest = [run for run, _ in list(theirs.runs.values())[count:]]
+                scatters.expect(_cases(rest, points, search.known))
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
@@ -110,7 +114,10 @@ def compare(
     return found
 
 
-def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, int, OurRun]]:
+_Off = tuple[bool, Fraction, int, OurRun]  # whether its run is never lost; how far, when, where
+
+
+def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[_Off]:
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
@@ -119,13 +126,14 @@ def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[tuple[Fraction, i
         if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
             continue
         if cell.apart:
-            yield cell.apart, step, judge.ours
+            yield judged.lost_from is None, cell.apart, step, judge.ours
 
 
-def _separated(off: list[tuple[Fraction, int, OurRun]]) -> Separated | None:
+def _separated(off: list[_Off]) -> Separated | None:
+    """Of runs that are lost only where there is no other: their separation takes long."""
     if not off:
         return None
-    apart, step, run = max(off, key=lambda x: x[0])
+    _, apart, step, run = max(off, key=lambda x: x[:2])
     case = run.case
     result = separate(
         case.hamiltonian, case.scheme, q=case.q, p=case.p,
@@ -144,19 +152,30 @@ def _printings(theirs: Theirs) -> dict[str, Printing]:
 
 
 class _Search:
-    """Looks for mistakes: in the first runs among all, in the others among those found before."""
+    """Looks for mistakes: in the first runs among all, in the others among those found before, and
+    single precision, which costs nothing to see."""
 
     def __init__(self) -> None:
         self.known: set[str] = set()
         self.in_vain = 0
 
-    def explain(self, judge: Judge, judged: Judged) -> None:
-        if self.known:
-            judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
+    def explain(self, judge: Judge, judged: Judged) -> bool:
+        """Whether it has found one that was not known."""
+        judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
         if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
             judged.mistakes = Diagnosis(judge, judged).mistakes()
             self.in_vain += judged.verdict is Verdict.MORE and not judged.mistakes
+        before = len(self.known)
         self.known |= {name for group in judged.mistakes for name, _ in group}
+        return len(self.known) > before
+
+
+def _cases(runs: Iterable[OurRun], points: Points, names: Container[str]) -> Iterator[Case]:
+    """What runs with one of these mistakes would be."""
+    for run in runs:
+        for mistake in of_states(Setting(run.case, points)):
+            if mistake.name in names:
+                yield mistake.setting.case
 
 
 def _column(name: str, judged: Iterable[Judged]) -> Column:
@@ -177,8 +196,14 @@ def _column(name: str, judged: Iterable[Judged]) -> Column:
 
 
 def _diagnoses(judged: Iterable[Judged]) -> list[Explained]:
+    """Which mistakes fit in how many runs. Where several fit in one of them, and some of these in
+    all of another, the other rules out the rest."""
     counts: dict[tuple[Named, ...], int] = {}
     for each in judged:
         for group in each.mistakes:
             counts[tuple(group)] = counts.get(tuple(group), 0) + 1
+    for group in sorted(counts, key=len, reverse=True):
+        smaller = [x for x in counts if set(x) < set(group)]
+        if len(smaller) == 1:
+            counts[smaller[0]] += counts.pop(group)
     return [Explained(group, count) for group, count in counts.items()]

@@ -5,12 +5,13 @@ nothing tells them apart. A mistake of the state is looked for in p and q, where
 then what is wrong with ΔJ, MSE and Λ, in the one setting that the state has.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
-from reference.agreement import is_single
+from reference.agreement import chance_of_single, is_single
 from reference.findings import DOUBLE, SINGLE, Fit, Judged, Named, Verdict
 from reference.judge import AREA, STATE, Judge
 from reference.mistakes import Mistake, of_inputs, of_states, without_synonyms
@@ -18,7 +19,7 @@ from reference.readings import readings
 from reference.setting import Setting
 
 _FARTHER = 30  # times: the right setting is off by so much more than a mistake that fits
-_SINGLES = 4  # numbers of single precision, so that it is not by chance
+_BY_CHANCE = 1e-3  # that all numbers are of single precision
 
 
 class Diagnosis:
@@ -34,7 +35,7 @@ class Diagnosis:
         found, settings = [], [right]
         if self._off(states) or self._finer_than_doubles():
             fitting = without_synonyms(list(self._fitting(states)))
-            if not fitting and self._is_single(states):
+            if not fitting and self._off(states) and self._is_single(states):
                 fitting = [Mistake("single", "you work with single precision", right)]
                 self.judged.unit = SINGLE
             found.append([(x.name, x.says) for x in fitting])
@@ -56,8 +57,13 @@ class Diagnosis:
         judge = self.judge
         cells = [cell for (_, n), cell in judge.cells.items() if n in STATE and cell.differs]
         known = [(x.theirs, x.unit) for x in cells if x.theirs is not None]
-        single = len(known) >= _SINGLES and all(is_single(*x) for x in known)
-        return single and judge.fit(judge.right, names, SINGLE, wholly=False).fits
+        single = all(is_single(*x) for x in known)
+        by_chance = math.prod(chance_of_single(*x) for x in known)
+        return (
+            single
+            and by_chance <= _BY_CHANCE
+            and judge.fit(judge.right, names, SINGLE, wholly=False).fits
+        )
 
     # -- of the state -------------------------------------------------------------------------
 
@@ -82,7 +88,14 @@ class Diagnosis:
         if not self._nearer_by_itself(setting, right, unit):
             return False
         fit = self.judge.fit(setting, names, unit, wholly=False)
-        return fit.fits and self._nearer(fit, right, unit)
+        return fit.fits and self._tells(fit) and self._nearer(fit, right, unit)
+
+    def _tells(self, fit: Fit) -> bool:
+        """Whether there is more than one step to go by, where the setting's run is lost so early
+        that it says nothing of the others: many a mistake has one point of another's orbit."""
+        if fit.lost_from is None:
+            return True
+        return len({step for step, _ in self.judge.cells if 0 < step < fit.lost_from}) > 1
 
     def _nearer_by_itself(self, setting: Setting, right: Fit, unit: Fraction) -> bool:
         """What `_nearer` asks for, before anything is scattered, which takes long."""

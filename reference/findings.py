@@ -12,14 +12,16 @@ class Verdict(IntEnum):
     """Of a column, or of a run, from best to worst."""
 
     AGREES = 0  # in all digits that are printed
-    ROUNDING = 1
-    PERHAPS = 2  # more than rounding usually does, and less than it may do
-    MORE = 3
+    LOST = 1  # rounding may have taken every digit: nothing is said
+    ROUNDING = 2
+    PERHAPS = 3  # more than rounding usually does, and less than it may do
+    MORE = 4
 
 
 @dataclass(frozen=True)
 class Of:
-    """What was found of a column of one run: `digits` agree at least, the least of them at `step`.
+    """What was found of a column of one run: of its `rows`, but for those where the run is lost,
+    `digits` agree at least, the least of them at `step`.
 
     `parts_at`: the first step at which it differs by more than rounding.
     """

@@ -5,6 +5,7 @@ foretells. The right one is tried in the precision that their numbers are printe
 doubles. `reference.diagnosis` tries others where it does not fit.
 """
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -60,11 +61,15 @@ class Judge:
         return Judged(self.ours.label, columns, [], unit, best.lost_from, best.overflow_from)
 
     def _of(self, name: str, fit: Fit) -> Of:
-        cells = {step: cell for (step, n), cell in self.cells.items() if n == name}
+        """Where the run is lost its digits say nothing, and they are not looked at."""
+        every = {step: cell for (step, n), cell in self.cells.items() if n == name}
+        cells = {n: x for n, x in every.items() if fit.lost_from is None or n < fit.lost_from}
+        verdict = fit.verdicts[name] if cells else Verdict.LOST
+        if all(cell.agrees for cell in every.values()):
+            verdict, cells = Verdict.AGREES, every
+        if not cells:
+            return Of(verdict, 0, math.inf, min(every), None)
         step = min(cells, key=lambda n: cells[n].digits)
-        verdict = fit.verdicts[name]
-        if all(cell.agrees for cell in cells.values()):
-            verdict = Verdict.AGREES
         parts_at = fit.parts.get(name) if verdict is Verdict.MORE else None
         return Of(verdict, len(cells), cells[step].digits, step, parts_at)
 
@@ -96,16 +101,21 @@ class Judge:
             if name not in names or found.verdicts[name] is Verdict.MORE:
                 continue
             known = self.known(setting, step, unit)
-            if cell.theirs is None and may_overflow(setting.case, step + setting.late, known):
+            there = {setting.inner(n): x for n, x in known.items()}
+            inner, after = setting.inner(name), step + setting.late
+            if cell.theirs is None and may_overflow(setting.case, after, there):
                 found.overflow_from = step if found.overflow_from is None else found.overflow_from
                 found.verdicts[name] = max(found.verdicts[name], Verdict.ROUNDING)
                 continue
             own = read(step) if read else Foretold(*known[name]) if name in known else None
             verdict: Verdict | None = Verdict.MORE
-            if own is not None and name in known and cell.theirs is not None:
-                apart = replace(cell, ours=own.value, radius=own.radius).apart
-                found.apart[step, name] = apart
-                verdict = _verdict(allowance, name, step + setting.late, known, apart / own.factor)
+            if own is not None and name in known:
+                if cell.theirs is None:
+                    verdict = verdict if allowance.of(inner, after, there) else None
+                else:
+                    apart = replace(cell, ours=own.value, radius=own.radius).apart
+                    found.apart[step, name] = apart
+                    verdict = _verdict(allowance, inner, after, there, apart / own.factor)
             if verdict is None:
                 found.lost_from = step
                 return found

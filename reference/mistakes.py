@@ -20,9 +20,11 @@ from verify.proof.splitting_conditions import Part, Splitting
 
 _MOST_INEXACT = 4  # inputs of which all subsets are tried
 _OF_SCHEME = "scheme "
+_OTHER = "your scheme is "
 _OTHER_EULER = "symplectic Euler of the other kind"
 _ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
 _SHARP = 40  # digits
+_ENDS_AND_MIDDLE = 3
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ def of_states(right: Setting) -> Iterator[Mistake]:
     """All that can be seen in doubles."""
     yield from _of_columns(right)
     yield from _of_scheme(right)
+    yield from _staggered(right)
     yield from _of_step(right)
 
 
@@ -80,11 +83,11 @@ def _of_columns(right: Setting) -> Iterator[Mistake]:
 def _of_step(right: Setting) -> Iterator[Mistake]:
     case, h = right.case, right.case.step_size
     for name, factor, says in (("half", Fraction(1, 2), "half"), ("double", Fraction(2), "twice")):
-        yield Mistake(f"{name}-step", f"your h is {says} of {_text(h)}",
+        yield Mistake(f"{name}-step", f"your h is {says} what it should be",
                       replace(right, case=replace(case, step_size=factor * h)))  # fmt: skip
     single = {"h": _single(h)}
     if single["h"] not in (None, h):
-        yield Mistake("single-h", f"your h is the single-precision number nearest to {_text(h)}",
+        yield Mistake("single-h", "your h is the single-precision number nearest to it",
                       replace(right, case=_with(case, single)))  # fmt: skip
     for name, value in case.hamiltonian.values:
         for what, other in (("minus", -value), ("no", Fraction(0))):
@@ -97,13 +100,41 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
     """Its relatives by name, then all other schemes."""
     mine = right.case.scheme
     said = dict(_relatives(mine))
-    for name in schemes.names():
-        said.setdefault(name, f"your scheme is {name}")
+    known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
+    for name in known:
+        said.setdefault(name, f"{_OTHER}{name}")
     said.pop(mine, None)
     for name, says in said.items():
         yield Mistake(
             f"{_OF_SCHEME}{name}", says, replace(right, case=replace(right.case, scheme=name))
         )
+
+
+def _staggered(right: Setting) -> Iterator[Mistake]:
+    """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
+
+    That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
+    """
+    generic = schemes.get(right.case.scheme).generic
+    parts = generic.parts if isinstance(generic, Splitting) else ()
+    if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
+        return
+    (first, half), (second, whole), _ = parts
+    name = "p" if first == "kick" else "q"
+    both = ((first, 2 * half), (second, whole))
+    for sign, order, says in ((1, both[::-1], "ahead"), (-1, both, "behind")):
+        case = replace(right.case, scheme=_named(order))
+        start = _a_part_on(right, name, _named(both), sign)
+        if start is not None:
+            yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
+                          replace(right, case=replace(case, **{name: start})))  # fmt: skip
+
+
+def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
+    """The initial `name` after half of the scheme's first part, which changes it alone."""
+    start = getattr(right.case, name)
+    after = replace(right, case=replace(right.case, scheme=scheme)).state(1, _SHARP)
+    return start + sign * (after[name][0] - start) / 2 if after else None
 
 
 def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
@@ -116,7 +147,10 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
         if mistake.name.startswith(_OF_SCHEME):
             known = replace(setting, case=there).state(1, _SHARP)
             state = known and (known["p"][0], known["q"][0])
-        found.setdefault(state or mistake.name, mistake)
+        first = found.setdefault(state or mistake.name, mistake)
+        if first is not mistake and first.says.startswith(_OTHER):
+            also = mistake.name.removeprefix(_OF_SCHEME)
+            found[state] = replace(first, says=f"{first.says}, which {also} is for this H, too")
     return list(found.values())
 
 

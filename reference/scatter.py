@@ -144,16 +144,21 @@ class Scatters:
     other cases have one of their own."""
 
     def __init__(self, cases: Iterable[Case] = (), marks: Sequence[int] = ()) -> None:
+        self._place: dict[Case, tuple[tuple[Case, ...], int]] = {}
+        self._marks = marks
+        self._made: dict[tuple[Case, ...], Scatter] = {}
+        self.expect(cases)
+
+    def expect(self, cases: Iterable[Case]) -> None:
+        """They may be asked for, too; so those of a kind that are new step together."""
         kinds: dict[object, list[Case]] = {}
         for case in dict.fromkeys(cases):
-            kinds.setdefault((case.hamiltonian.expression, case.scheme), []).append(case)
-        self._place: dict[Case, tuple[tuple[Case, ...], int]] = {}
+            if case not in self._place:
+                kinds.setdefault((case.hamiltonian.expression, case.scheme), []).append(case)
         for kind in kinds.values():
             for first in range(0, len(kind), _TOGETHER):
                 together = tuple(kind[first : first + _TOGETHER])
                 self._place |= {case: (together, k) for k, case in enumerate(together)}
-        self._marks = marks
-        self._made: dict[tuple[Case, ...], Scatter] = {}
 
     def at(self, case: Case, step: int) -> Spreads | None:
         """As `Scatter.at`, in any order; of no number where the scheme solves equations."""

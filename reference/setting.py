@@ -77,7 +77,12 @@ class Setting:
             return None
         if self.negated:
             p = -p[0], p[1]
-        return {"p": q, "q": p} if self.swapped else {"p": p, "q": q}
+        own = {"p": p, "q": q}
+        return {name: own[self.inner(name)] for name in own}
+
+    def inner(self, name: str) -> str:
+        """What stands in a column of that name."""
+        return {"p": "q", "q": "p"}.get(name, name) if self.swapped else name
 
     def point(self, step: int, digits: int) -> OrbitPoint | None:
         """What is known of the run where row `step` is of it."""

@@ -1,6 +1,7 @@
 """The command `verify reference compare`: somebody's numbers beside ours."""
 
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,20 +12,31 @@ from verify.cli_tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from reference.compare import Column, Compared, Explained, Separated
     from reference.theirs import Theirs
 
 DIFFERENT = 1  # exit status
 _MOST_SHOWN = 5
+_MOST_NAMED = 4  # mistakes of which one fits
 _SHOWN = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
 _SAYS = (
     "agrees in all digits that are printed",
+    "says nothing: rounding may have taken every digit",
     "differs by what float64 rounding explains",
     "differs by more than rounding usually does, and no more than it may do",
     "DIFFERS by more than rounding",
 )
+_NONE_LEFT = {
+    "rounding": "differs by what float64 rounding explains, which leaves no digit",
+    "perhaps rounding": "may differ by no more than rounding, which leaves no digit",
+}
+_LONG = re.compile(r"[0-9]+/[0-9]{20,}|[0-9]{25,}(?:/[0-9]+)?")
+_MOST_DIGITS, _DIGITS_SHOWN = 400, 36
+_ANY = 0.5  # digits: with fewer, none agrees
 _PARTS = ("input", "trajectory", "determinant", "product")
-_KEYS = ("agrees", "rounding", "perhaps rounding", "more than rounding")
+_KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 
 
 @click.command()
@@ -160,20 +172,35 @@ def _print(table: "Theirs", found: "Compared") -> None:
         click.echo(_column(column))
     if found.separated is not None:
         click.echo(_separated(found.separated))
-    for label, step in list(found.lost.items())[:_MOST_SHOWN]:
-        click.echo(f"{label}: from step {step} on rounding may have taken every digit")
-    for label, step in list(found.overflows.items())[:_MOST_SHOWN]:
-        click.echo(f"{label}: not finite at step {step}, where doubles may overflow")
+    _listed(found.lost, "from step {step} on rounding may have taken every digit; not judged")
+    _listed(found.overflows, "not finite at step {step}, where doubles may overflow")
     for diagnosis in found.diagnoses:
         click.echo(_diagnosis(diagnosis))
     for label in found.unexplained[:_MOST_SHOWN]:
-        click.echo(f"{label}: no known mistake fits")
+        click.echo(f"{_run(label)}: no known mistake fits")
     if len(found.unexplained) > _MOST_SHOWN:
         click.echo(f"… and {len(found.unexplained) - _MOST_SHOWN:,} more runs that none fits")
 
 
 def _count(number: int, what: str) -> str:
     return f"{number:,} {what}" + ("" if number == 1 else "s")
+
+
+def _run(label: str) -> str:
+    """A run's label, in which no number is very long."""
+    return _LONG.sub(lambda found: _compact(found[0]), label)
+
+
+def _compact(text: str) -> str:
+    """A long decimal or quotient as a decimal with an exponent, its middle left out."""
+    from verify.exact import decimal, rational
+
+    exact = decimal(rational(text), _MOST_DIGITS)
+    digits, _, exponent = exact.partition("e")
+    short = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    if len(short) > _DIGITS_SHOWN:
+        short = f"{short[: _DIGITS_SHOWN // 2]}…{short[-_DIGITS_SHOWN // 2 :]}"
+    return f"{short}e{exponent}" if exponent.strip("+0") else short
 
 
 def _exact(x: Any) -> str:
@@ -183,11 +210,24 @@ def _exact(x: Any) -> str:
 
 
 def _column(x: "Column") -> str:
-    shown = "all" if math.isinf(x.digits) else f"{x.digits:.1f}"
-    line = f"{_SHOWN.get(x.name, x.name):>3}  {shown:>5} digits  {_SAYS[x.verdict]}"
-    if x.parts_at is not None:
-        return f"{line}, first at step {x.parts_at} ({x.parts_run})"
-    return f"{line}; the fewest at step {x.step} ({x.run})" if x.verdict else line
+    name, verdict = _SHOWN.get(x.name, x.name), _KEYS[x.verdict]
+    if verdict == "lost":
+        return f"{name:>3}  {_SAYS[x.verdict]}"
+    shown = "all" if math.isinf(x.digits) else f"{x.digits:.1f}" if x.digits >= _ANY else "no"
+    line = f"{name:>3}  {shown:>5} digits  {_SAYS[x.verdict]}"
+    if x.parts_run is not None:
+        return f"{line}, first at step {x.parts_at} ({_run(x.parts_run)})"
+    if shown == "no":
+        return f"{name:>3}  {_NONE_LEFT[verdict]} at step {x.step} ({_run(x.run)})"
+    return line if verdict == "agrees" else f"{line}; the fewest at step {x.step} ({_run(x.run)})"
+
+
+def _listed(steps: "Mapping[str, int]", says: str) -> None:
+    """A line for each of the first runs, and how many more there are."""
+    for label, step in list(steps.items())[:_MOST_SHOWN]:
+        click.echo(f"{_run(label)}: {says.format(step=step)}")
+    if len(steps) > _MOST_SHOWN:
+        click.echo(f"… and {_count(len(steps) - _MOST_SHOWN, 'more run')}, likewise")
 
 
 def _separated(x: "Separated") -> str:
@@ -197,8 +237,8 @@ def _separated(x: "Separated") -> str:
     assert plain is not None  # noqa: S101 - it is not shown without
     parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in _PARTS)
     return (
-        f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({x.run}); rounding makes "
-        f"{plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"
+        f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_run(x.run)}); rounding "
+        f"makes {plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"
     )
 
 
@@ -207,4 +247,6 @@ def _diagnosis(x: "Explained") -> str:
     says = [says for _, says in x.mistakes]
     if len(says) == 1:
         return f"in {many}: {says[0]}"
+    if len(says) > _MOST_NAMED:
+        says = [*says[: _MOST_NAMED - 1], f"{len(says) - _MOST_NAMED + 1} others"]
     return f"in {many} one of these, which the table does not tell apart: " + "; or ".join(says)

@@ -103,3 +103,28 @@ def test_bad_input_is_one_line_and_status_2(
     assert told in err
     assert err.count("\n") == 1
     assert "Traceback" not in err
+
+
+def test_what_rounding_leaves_no_digit_of_is_not_said_to_have_0_digits(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """q starts 10⁻²² from an unstable equilibrium, on which doubles stay; its number is long."""
+    table = tmp_path / "mine.csv"
+    given = ["--scene", "extreme-soft-duffing", "--scheme", "lie2"]
+    given += ["--q", "0.9999999999999999999999", "--p", "0"]
+    table.write_text("step,p,q\n0,0,1.0\n1,0.0,1.0\n4000,0.0,1.0\n")
+    status, out, _ = here(capsys, "reference", "compare", str(table), *given)
+    assert status == 0
+    run = "extreme-soft-duffing: lie2, h = 0.01, (q, p) = (9.999999999999999999999e-01, 0)"
+    explained = "differs by what float64 rounding explains, which leaves no digit at step 1"
+    assert f"  p  {explained} ({run})\n" in out
+    assert "  q   22.0 digits" in out
+    assert f"{run}: from step 4000 on rounding may have taken every digit; not judged\n" in out
+    table.write_text("step,p,q\n4000,0.0,1.0\n")
+    status, out, _ = here(capsys, "reference", "compare", str(table), *given)
+    assert status == 0
+    assert "  p  says nothing: rounding may have taken every digit\n" in out
+    shown = json_of(here(capsys, "reference", "compare", str(table), *given, "--json")[1])
+    assert [(x["verdict"], x["digits"], x["rows"]) for x in shown["columns"]] == [
+        ("lost", None, 0)
+    ] * 2

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from reference.agreement import is_single
+from reference.agreement import is_single, number
 from reference.compare import Compared, compare
 from reference.findings import Verdict
 from reference.make import COMMITTED
@@ -15,6 +15,7 @@ from reference.ours import OurRun, load
 from reference.overflow import may_overflow
 from reference.scatter import Scatter
 from reference.theirs import read
+from verify.errors import InputError
 
 BEYOND = float("nan")
 Step = Callable[[Any, Any, Any], tuple[Any, Any]]
@@ -95,3 +96,73 @@ def test_numbers_beyond_single_precision_are_none() -> None:
     assert not is_single(Fraction(10) ** 60, Fraction(0))
     assert not is_single(Fraction(10) ** 400, Fraction(0))
     assert is_single(Fraction(1, 2), Fraction(0))
+
+
+@pytest.mark.parametrize("scene", ["extreme-quartic", "stiff-oscillator"])
+def test_the_datas_own_numbers_agree_beyond_all_sizes_of_doubles(scene: str) -> None:
+    ours = load(COMMITTED, scene)
+    found = compare(ours, read(COMMITTED / f"{scene}-runs.csv", ours, {"scene": scene}, {}))
+    assert {x.verdict for x in found.columns} == {Verdict.AGREES}
+
+
+@pytest.mark.parametrize(("text", "value"), [("1e4000", 4000), ("1.0E-4000", -4000)])
+def test_an_exponent_may_be_large(text: str, value: int) -> None:
+    assert number(text, "p") == Fraction(10) ** value
+
+
+def test_an_exponent_may_not_be_huge() -> None:
+    with pytest.raises(InputError, match="exponent"):
+        number("1e100000", "p")
+
+
+RIM = "9999999999999999999999/10000000000000000000000"  # q = 1 is an unstable equilibrium
+
+
+def soft(folder: Path, rows: str) -> Compared:
+    ours = load(COMMITTED, "extreme-soft-duffing")
+    path = folder / "theirs.csv"
+    path.write_text(f"step,p,q\n{rows}\n")
+    given = {"scene": "extreme-soft-duffing", "scheme": "lie4", "q0": RIM}
+    return compare(ours, read(path, ours, given, {}))
+
+
+def test_where_a_run_is_lost_nothing_is_said(tmp_path: Path) -> None:
+    """Neither of a number that is not finite nor of its digits."""
+    found = soft(tmp_path, "0,0,1\n4000,nan,7")
+    assert found.agrees
+    assert list(found.lost.values()) == [4000]
+    assert all(x.rows == 1 and x.digits > 15 for x in found.columns)
+    found = soft(tmp_path, "4000,nan,7")
+    assert {x.verdict for x in found.columns} == {Verdict.LOST}
+
+
+def test_an_equilibrium_in_doubles_is_not_single_precision(tmp_path: Path) -> None:
+    rows = "\n".join(f"{n},0,{q}" for n, q in ((0, 1), (1, "1.000000000000000000"), (100, 1)))
+    found = soft(tmp_path, rows)
+    assert found.agrees
+
+
+def test_swapped_columns_scatter_as_what_stands_in_them(tmp_path: Path) -> None:
+    """A free particle: rounding moves its q far, and its p not at all."""
+    ours = load(COMMITTED, "extreme-free")
+    p, q, rows = 1.0, 0.0, ["step,p,q"]
+    for n in range(5001):
+        if n in (0, 1, 100, 5000):
+            rows.append(f"{n},{q!r},{p!r}")
+        q += 0.1 * (p + p * p * p)
+    path = tmp_path / "theirs.csv"
+    path.write_text("\n".join(rows) + "\n")
+    found = compare(ours, read(path, ours, {"scene": "extreme-free", "scheme": "lie2"}, {}))
+    assert [[n for n, _ in x.mistakes] for x in found.diagnoses] == [["swapped-columns"]]
+
+
+def test_one_point_of_an_orbit_that_is_lost_then_names_no_mistake(tmp_path: Path) -> None:
+    """(0, 1) is a fixed point for δ = −1, so unstable at h = 100 that all later rows are lost."""
+    ours = load(COMMITTED, "extreme-duffing")
+    path = tmp_path / "theirs.csv"
+    path.write_text("step,p,q\n1,0.0,1.0\n2,-200.0,1.0\n4,1e30,1e60\n")
+    for scheme in ("lie4", "stormer-verlet"):
+        given = {"scene": "extreme-duffing", "scheme": scheme, "step_size": "100", "q0": "1"}
+        found = compare(ours, read(path, ours, given, {}))
+        assert not found.agrees
+        assert not found.diagnoses
