@@ -222,8 +222,8 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
             found.differences.append(Difference(*where, "toml", "a scene", str(error)))
             continue
         if size_of(scene) > MOST_BYTES:  # what it asks for is listed, and would fill all memory
-            wanted = "a scene whose data can be read"
-            found.differences.append(Difference(*where, "toml", wanted, each.toml))
+            readable = "a scene whose data can be read"
+            found.differences.append(Difference(*where, "toml", readable, each.toml))
             continue
         scenes[each.name] = scene
     if own is not None:

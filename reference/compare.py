@@ -88,8 +88,8 @@ def compare(
     judged: list[Judged] = []
     off: list[_Off] = []  # Λ, by no more than rounding may do
     search = _Search()
-    steps = {step for _, rows in theirs.runs.values() for step in rows}
-    marks = {max(0, step + late) for step in steps for late in (-1, 0, 1)}
+    asked = {step for _, rows in theirs.runs.values() for step in rows}
+    marks = {max(0, step + late) for step in asked for late in (-1, 0, 1)}
     scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(marks))
     points = Points({own.case: (own.run.digits, own.rows) for own in ours.runs()})
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
@@ -200,8 +200,8 @@ def _diagnoses(judged: Iterable[Judged]) -> list[Explained]:
     all of another, the other rules out the rest."""
     counts: dict[tuple[Named, ...], int] = {}
     for each in judged:
-        for group in each.mistakes:
-            counts[tuple(group)] = counts.get(tuple(group), 0) + 1
+        for fitting in each.mistakes:
+            counts[tuple(fitting)] = counts.get(tuple(fitting), 0) + 1
     for group in sorted(counts, key=len, reverse=True):
         smaller = [x for x in counts if set(x) < set(group)]
         if len(smaller) == 1:

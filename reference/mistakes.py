@@ -127,7 +127,7 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
         start = _a_part_on(right, name, _named(both), sign)
         if start is not None:
             yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
-                          replace(right, case=replace(case, **{name: start})))  # fmt: skip
+                          replace(right, case=_with(case, {f"{name}0": start})))  # fmt: skip
 
 
 def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:

@@ -248,7 +248,7 @@ def group(leader: int) -> list[str]:
 def test_an_interrupted_run_says_nothing_and_ends_with_130(digits: str | None) -> None:
     changes = {"steps": "100000000000", "digits": digits}
     with started(*arguments("run", RUN, **changes), "--json") as process:
-        time.sleep(3)
+        time.sleep(2)
         assert process.poll() is None
         status, out, err = interrupt(process)
     assert (status, out, err) == (130, "", "")
