@@ -51,21 +51,20 @@ def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
 @contextmanager
 def told(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[Done]":
     """Yields what is called with each finished task; an interruption says what is kept where."""
-    from verify.execute import cost
+    from verify.execute import Store, cost
     from verify.progress import progress_bar
 
-    finished = 0
     with progress_bar(f"{len(tasks)} tasks", sum(map(cost, tasks.values())), unit="") as advance:
 
         def done(name: str, _: object) -> None:
-            nonlocal finished
-            finished += 1
             advance(cost(tasks[name]))
 
         try:
             yield done
         except KeyboardInterrupt:
             if kept is not None:
+                paths = map(Store(kept).path, tasks)  # one may be written and not yet told
+                finished = sum(path is not None and path.exists() for path in paths)
                 text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {kept}"
                 click.echo(f"{text}; the same command goes on from there", err=True)
             raise

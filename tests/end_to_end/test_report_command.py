@@ -200,7 +200,6 @@ def test_an_interrupted_report_goes_on_from_what_it_kept(
         while not kept(folder) and time.monotonic() < until:
             assert process.poll() is None
             time.sleep(0.02)
-        time.sleep(0.1)
         status, out, err = interrupt(process)
     assert (status, out) == (130, "")
     finished = len(kept(folder))
