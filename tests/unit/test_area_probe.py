@@ -123,7 +123,7 @@ def test_a_curve_that_bounds_no_area_is_told() -> None:
     [("lie1", SQUARE), ("lie2", CIRCLE), ("lie3", SQUARE), ("lie2", CAT), ("lie4", CIRCLE)],
 )
 def test_a_linear_map_changes_areas_by_its_determinant(scheme: str, outline: Outline) -> None:
-    h, steps = Fraction(1, 20), 100
+    h, steps = Fraction(1, 20), 20 if outline is CAT else 100
     true = linear_determinant(scheme, h, steps)
     own = placed(outline, 2, -1, "3/2")
     found = measured(own, floats(scheme, h, steps))

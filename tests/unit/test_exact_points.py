@@ -82,7 +82,7 @@ def test_long_times_cost_no_digits_away_from_separatrices(name: str, regime: str
     h = ALL[name].hamiltonian(values)
     closed = ALL[name].flow is not None
     times = LONG if closed else (Fraction(60),)
-    p, q = cloud(float(p0), float(q0), 4 if closed else 2)
+    p, q = cloud(float(p0), float(q0), 2)
     found = exact_points(h, p, q, times)
     assert not found.alone
     assert largest_error(h, p, q, times, found) <= found.bound

@@ -26,7 +26,13 @@ HAMILTONIANS = {
 }
 SCHEMES = ("lie1", "lie3", "lie2", "rk4", "implicit-midpoint", "stormer-verlet")
 Asked = tuple[str, str]
-ALL: list[Asked] = [(text, scheme) for text in HAMILTONIANS for scheme in SCHEMES]
+# Each H with four of the schemes, the first two with the same.
+ALL: list[Asked] = [
+    (text, scheme)
+    for k, text in enumerate(HAMILTONIANS)
+    for n, scheme in enumerate(SCHEMES)
+    if (n + k // 2) % 3
+]
 START = {"q": "3/4", "p": "-1/3", "step_size": "1/50", "steps": 5}
 RUNS: dict[str, tuple[str, ...]] = {
     "float64": ("lambda", "lambda_plain"),

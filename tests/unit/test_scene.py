@@ -257,7 +257,9 @@ def test_the_scenes_of_the_paper_survive_json_too(name: str) -> None:
     assert Scene.model_validate_json(scene.model_dump_json()) == scene
 
 
-def full_report(folder: Path) -> Report:
+@pytest.fixture(scope="module")
+def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
+    folder = tmp_path_factory.mktemp("full")
     scene = load(folder, FULL)
     (folder / "claims.toml").write_text(CLAIMS)
     file = load_claims(folder / "claims.toml")
@@ -291,8 +293,8 @@ def models(value: object) -> set[type]:
     return found
 
 
-def test_every_result_is_the_same_after_a_round_trip_through_json(tmp_path: Path) -> None:
-    report = full_report(tmp_path)
+def test_every_result_is_the_same_after_a_round_trip_through_json(full_report: Report) -> None:
+    report = full_report
     named = [m for file in RESULTS for m in vars(file).values()]
     every = {m for m in named if isinstance(m, type) and issubclass(m, Frozen)} | {GalleryScene}
     assert models(report) == every - {Frozen}, "the report holds an example of every model"
@@ -301,8 +303,8 @@ def test_every_result_is_the_same_after_a_round_trip_through_json(tmp_path: Path
         assert type(one).model_validate_json(one.model_dump_json()) == one
 
 
-def test_results_are_frozen_and_refuse_unknown_keys(tmp_path: Path) -> None:
-    run = full_report(tmp_path).scenes[0].runs[0]
+def test_results_are_frozen_and_refuse_unknown_keys(full_report: Report) -> None:
+    run = full_report.scenes[0].runs[0]
     with pytest.raises(ValidationError, match="frozen"):
         run.steps = 3  # type: ignore[misc]
     with pytest.raises(ValidationError, match="extra"):
