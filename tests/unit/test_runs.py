@@ -120,7 +120,7 @@ def test_the_loop_of_this_file_agrees_with_the_vectors() -> None:
 
 
 def test_estimated_bounds_hold_for_many_steps() -> None:
-    (q, p, h), counts = START, [100_000, 1_000_000]
+    (q, p, h), counts = START, [100_000, 500_000]
     for count, true in zip(counts, duffing_loop(*START, Fraction(1), counts), strict=True):
         found = run(DUFFING.with_values({"delta": 1}), "lie2", q=q, p=p, step_size=h, steps=count)
         assert not broken(found, true), f"N = {count}"
@@ -226,7 +226,7 @@ def asked_of_the_kernel(
 
 
 @pytest.mark.parametrize("arithmetic", ["float64", "mpmath"])
-@pytest.mark.parametrize("steps", [1, 50, DIRECT_STEPS + 1])
+@pytest.mark.parametrize("steps", [1, 50, 20_001])
 def test_symplectic_euler_gives_exact_zeros_that_no_kernel_computes(
     monkeypatch: pytest.MonkeyPatch, arithmetic: str, steps: int
 ) -> None:

@@ -4,12 +4,12 @@ The global `mpmath.mp` is neither used nor changed.
 """
 
 from collections.abc import Callable
-from contextlib import nullcontext
 from fractions import Fraction
 from functools import lru_cache
 from threading import get_ident
 from typing import Any
 
+import gmpy2
 from mpmath import libmp
 from mpmath.ctx_mp import MPContext
 
@@ -56,7 +56,7 @@ def _made(bits: int, _thread: int) -> Arithmetic:
         finite=lambda x: bool(
             context.isfinite(x) and abs(x._mpf_[2] + x._mpf_[3]) <= MOST_EXPONENT
         ),
-        context=nullcontext,
+        context=gmpy2.context,  # mpmath's roots use gmpy2, and would raise what its user traps
         functions={
             **{f: getattr(context, f) for f in names},
             **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
