@@ -239,3 +239,15 @@ def test_a_bound_of_astronomical_size_is_none_and_is_not_written_out() -> None:
     assert found.status == "finished"
     assert found.plain is not None
     assert found.plain.error_kind == "estimated"
+
+
+def test_at_an_equilibrium_the_noise_in_p_is_not_waited_for() -> None:
+    """Of an H with a parameter, p's parts cancel up to rounding; written out, exactly."""
+    at: dict[str, Any] = {"q": "0." + 22 * "9", "p": 0, "step_size": "1/100", "steps": 100}
+    soft = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": -1})
+    written = Hamiltonian.parse("p**2/2 + q**2/2 - q**4/4")
+    one, other = (separate(h, "lie4", digits=3, **at) for h in (soft, written))
+    assert (one.status, other.status) == ("finished", "finished")
+    assert one.plain is not None
+    assert other.plain is not None
+    assert one.plain.parts.truncation == other.plain.parts.truncation
