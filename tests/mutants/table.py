@@ -27,6 +27,7 @@ one, a condition. A property that holds for the code and is violated by a mutant
 - `mutate.py` says what is not changed: texts, types, imports, what is raised, bounds of effort.
 - Unit tests kill nothing here; they only help to explain who lives.
 """
+_BY_HAND = "none of those tried; what `tests/unit/test_properties.py` plants"
 
 
 def page(found: list[records.Record], why: dict[str, str], same: Set[str] = frozenset()) -> str:
@@ -83,9 +84,10 @@ def _properties(results: Found, found: list[records.Record]) -> str:
     killed = {name: (str(len(rows)), rows[0]["key"]) for name, rows in results.per_killer().items()}
     for name, record in shown.items():
         if name not in killed:
-            killed[name] = ("by itself", record["key"] or "none of the sample")
+            key = record["key"]
+            killed[name] = ("by itself" if key else "by hand", key)
     for name, (n, key) in sorted(killed.items()):
-        lines.append(f"| {_cell(name)} | {n} | {_code(key)} |")
+        lines.append(f"| {_cell(name)} | {n} | {_code(key) if key else _BY_HAND} |")
     return "\n".join([*lines, ""])
 
 
