@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass, field
 
-from reference.reading import without_controls
+from verify.errors import without_controls
 
 _MOST_SHOWN = 120
 

@@ -18,11 +18,6 @@ _MOST_OPEN = 2**21
 _HALF = re.compile(r"(?<!\\)(?:\\\\)*\\u[dD][89a-fA-F]")  # a surrogate, which no UTF-8 text has
 
 
-def without_controls(text: str) -> str:
-    """A text of a file as a terminal may be given it."""
-    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
-
-
 def content_of(path: Path) -> bytes:
     """A regular file's content. InputError names the file and the problem."""
     try:

@@ -11,10 +11,9 @@ from fractions import Fraction
 from pathlib import Path
 
 from reference.ours import KEYS, OurRun, Ours
-from reference.reading import without_controls
 from reference.table import Table, opened
 from reference.writing import VALUES
-from verify.errors import InputError
+from verify.errors import InputError, without_controls
 from verify.exact import rational
 from verify.tangent import number as double
 

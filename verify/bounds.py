@@ -42,22 +42,25 @@ def working_digits(digits: int, steps: int) -> int:
     return digits + 10 + 2 * len(str(steps))
 
 
-def spread(first: Outcome, second: Outcome, noise: Fraction = Fraction(0)) -> Fraction:
+def spread(first: Outcome, second: Outcome, least: Fraction = Fraction(0)) -> Fraction:
     """The greatest difference of p or q at any checkpoint, relative to the orbit's size in each.
 
-    `noise`: where that is smaller than so much of the other's, it may be rounding's, which no
-    precision ends, such as p at an equilibrium; so much of the other's size is then taken.
+    Where that is smaller than `least`, relative to `least`.
     """
-    trail = (*first.trail, *second.trail)
-    sizes = {name: max(abs(at[name]) for at in trail) for name in _STATE}
-    least = noise * max(sizes.values())
     spread = Fraction(0)
-    for name, size in sizes.items():
+    for name in _STATE:
+        size = max(least, *(abs(a[name]) for a in (*first.trail, *second.trail)))
+        pairs = zip(first.trail, second.trail, strict=False)
         if size:
-            pairs = zip(first.trail, second.trail, strict=False)
-            apart = max(abs(a[name] - b[name]) for a, b in pairs)
-            spread = max(spread, apart / max(size, least))
+            spread = max(spread, *(abs(a[name] - b[name]) / size for a, b in pairs))
     return spread
+
+
+def _noise(own: Arithmetic, *runs: Outcome) -> Fraction:
+    """What in p or q may be nothing but rounding beside the orbit's size, as p at an equilibrium:
+    no precision ends it."""
+    sizes = [abs(at[name]) for run in runs for at in run.trail for name in _STATE]
+    return max(sizes, default=Fraction(0)) * Fraction(1, 2 ** (own.bits // 2))
 
 
 def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
@@ -66,7 +69,7 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
         finer = number_systems.get(own.name, digits_of(own) + _MORE_DIGITS)
         second = job.go(finer)
         method = f"rerun with {_MORE_DIGITS} more digits"
-        noise = Fraction(1, 2 ** (own.bits // 2))
+        noise = _noise(own, first, second)
         if first.done != second.done or not second.trail or spread(first, second, noise) > LINEAR:
             if first.done == second.done < job.steps and not second.trail:
                 return Bounds({}, method, "left range", second.done + 1)
@@ -80,11 +83,10 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
             n: (second.values[n], abs(x - second.values[n]) + unit * _rounded(n, x))
             for n, x in first.values.items()
         }
-        floor = noise * max(abs(at[name]) for at in second.trail for name in _STATE)
         missing = max(
             missing_of(name, *value, digits)
             for name, value in found.items()
-            if not (name in _STATE and abs(value[0]) <= value[1] <= floor)  # 0, as far as is known
+            if not (name in _STATE and abs(value[0]) <= value[1] <= noise)  # 0, as far as is known
         )
         if missing <= 0:
             return Bounds(found, method)

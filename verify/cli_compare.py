@@ -12,7 +12,7 @@ from verify.cli_tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from reference.compare import Column, Compared, Explained, Separated
     from reference.theirs import Theirs
@@ -176,10 +176,8 @@ def _print(table: "Theirs", found: "Compared") -> None:
     _listed(found.overflows, "not finite at step {step}, where doubles may overflow")
     for diagnosis in found.diagnoses:
         click.echo(_diagnosis(diagnosis))
-    for label in found.unexplained[:_MOST_SHOWN]:
-        click.echo(f"{_run(label)}: no known mistake fits")
-    if len(found.unexplained) > _MOST_SHOWN:
-        click.echo(f"… and {len(found.unexplained) - _MOST_SHOWN:,} more runs that none fits")
+    unknown = [f"{_run(label)}: no known mistake fits" for label in found.unexplained]
+    _few(unknown, " that none fits")
 
 
 def _count(number: int, what: str) -> str:
@@ -223,11 +221,16 @@ def _column(x: "Column") -> str:
 
 
 def _listed(steps: "Mapping[str, int]", says: str) -> None:
-    """A line for each of the first runs, and how many more there are."""
-    for label, step in list(steps.items())[:_MOST_SHOWN]:
-        click.echo(f"{_run(label)}: {says.format(step=step)}")
-    if len(steps) > _MOST_SHOWN:
-        click.echo(f"… and {_count(len(steps) - _MOST_SHOWN, 'more run')}, likewise")
+    lines = [f"{_run(label)}: {says.format(step=step)}" for label, step in steps.items()]
+    _few(lines, ", likewise")
+
+
+def _few(lines: "Sequence[str]", rest: str) -> None:
+    """The first of the runs' lines, and how many more there are."""
+    for line in lines[:_MOST_SHOWN]:
+        click.echo(line)
+    if len(lines) > _MOST_SHOWN:
+        click.echo(f"… and {_count(len(lines) - _MOST_SHOWN, 'more run')}{rest}")
 
 
 def _separated(x: "Separated") -> str:

@@ -10,7 +10,7 @@ from verify import show
 from verify.cli_compare import compare
 from verify.cli_input import writable
 from verify.cli_tasks import json_option, told, with_tasks, with_where
-from verify.errors import InputError
+from verify.errors import InputError, without_controls
 
 if TYPE_CHECKING:
     from reference.check import Checked
@@ -165,8 +165,6 @@ def _as_json(found: "Checked") -> dict[str, Any]:
 
 
 def _print(found: "Checked") -> None:
-    from reference.reading import without_controls
-
     for line in (*found.not_recomputed, *found.not_compared):
         click.echo(f"not looked at: {without_controls(line)}")
     again = f"{found.recomputed:,} computed again (--seed {found.seed})"

@@ -25,6 +25,11 @@ class PlaceError(RuntimeError):
     """
 
 
+def without_controls(text: str) -> str:
+    """The text as a terminal may be given it."""
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
 def _short(value: object) -> str:
     """The value as one short line, however long or many-lined the user's text was."""
     try:
@@ -34,5 +39,4 @@ def _short(value: object) -> str:
     text = " ".join(text.split())
     if len(text) > 78:  # both ends: a path is known by its last part
         text = f"{text[:38]}…{text[-39:]}"
-    # Control characters would reach the user's terminal.
-    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    return without_controls(text)

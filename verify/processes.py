@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import cached_property
 from multiprocessing import forkserver, resource_tracker
 from typing import Any
 
@@ -27,16 +28,20 @@ class Processes:
         self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        # A process that is half begun could not be ended.
-        with _held(signal.SIGINT, signal.SIGTERM):
-            pool = self._idle.pop() if self._idle else _process()
+        context = self._context  # made before both are held, which workers would inherit
+        with _held(signal.SIGINT, signal.SIGTERM):  # what is half begun could not be ended
+            pool = self._idle.pop() if self._idle else _process(context)
             try:
                 future = pool.submit(function, *arguments)
             except BrokenExecutor:  # lost while it was idle
-                pool = _process()
+                pool = _process(context)
                 future = pool.submit(function, *arguments)
             self._busy[future] = pool
         return future
+
+    @cached_property
+    def _context(self) -> Any:
+        return _forked_beside_this()
 
     def release(self, future: "Future[Any]") -> None:
         pool = self._busy.pop(future)
@@ -65,11 +70,11 @@ class Processes:
                 list(threads.map(ProcessPoolExecutor.shutdown, self._idle))
 
 
-def _process() -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(1, mp_context=_context(), initializer=_begin)
+def _process(context: Any) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
 
 
-def _context() -> Any:
+def _forked_beside_this() -> Any:
     """How a process comes to be: forked, but not from this one.
 
     This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported
