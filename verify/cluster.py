@@ -10,6 +10,7 @@ from typing import Any
 
 from verify.errors import InputError, PlaceError
 from verify.keeping import fingerprint
+from verify.processes import safe_path
 
 _PATIENCE = 5.0  # seconds for a scheduler to answer, and to have a worker
 _LOOK = 5.0  # seconds between two looks at who is there
@@ -30,7 +31,7 @@ def connected(address: str) -> Iterator["Cluster"]:
         problem = "needs the package distributed: pip install 'areaproof[cluster]'"
         raise InputError("cluster", address, problem) from None
     make: Callable[..., Any] = distributed.Client
-    with _quiet():
+    with _quiet(), safe_path():  # whatever distributed may start beside this process
         _meet(address, distributed.rpc)
         try:
             client = make(address, timeout=_PATIENCE, set_as_default=False)

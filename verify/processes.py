@@ -12,6 +12,8 @@ from functools import cached_property
 from multiprocessing import forkserver, resource_tracker
 from typing import Any
 
+_SAFE_PATH = "PYTHONSAFEPATH"  # Python's own variable, read as it starts
+
 
 class Processes:
     """See `verify.executors.Place`. Each process is a pool of one, which has one call at a time.
@@ -29,7 +31,8 @@ class Processes:
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         context = self._context  # made before both are held, which workers would inherit
-        with _held(signal.SIGINT, signal.SIGTERM):  # what is half begun could not be ended
+        # What is half begun could not be ended.
+        with safe_path(), _held(signal.SIGINT, signal.SIGTERM):
             pool = self._idle.pop() if self._idle else _process(context)
             try:
                 future = pool.submit(function, *arguments)
@@ -85,9 +88,28 @@ def _forked_beside_this() -> Any:
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["verify.perform"])
-    with _held(signal.SIGINT):  # which it and the workers then never get
+    with safe_path(), _held(signal.SIGINT):  # which it and the workers then never get
         forkserver.ensure_running()
     return context
+
+
+@contextmanager
+def safe_path() -> Iterator[None]:
+    """Processes that are started meanwhile import nothing from the current folder.
+
+    Python puts it first on the path of `python -c`, which is how `multiprocessing` starts the fork
+    server, the resource tracker and spawned workers: a `random.py` that lies there would be run.
+    Once a worker is there, its path is this process's own.
+    """
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(_SAFE_PATH, None)
+        else:
+            os.environ[_SAFE_PATH] = before
 
 
 @contextmanager
