@@ -5,43 +5,43 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from verify.errors import InputError as InputError
-    from verify.hamiltonian import Hamiltonian as Hamiltonian
+    from verify.hamiltonians.hamiltonian import Hamiltonian as Hamiltonian
+    from verify.hamiltonians.system import System as System
     from verify.proof.order import Proof as Proof
     from verify.proof.order import prove as prove
-    from verify.results import RunResult as RunResult
-    from verify.results import SeparationGrid as SeparationGrid
-    from verify.results import SeparationResult as SeparationResult
-    from verify.runs import run as run
-    from verify.scene import Scene as Scene
-    from verify.scene import load_scene as load_scene
-    from verify.scene_results import Report as Report
-    from verify.scheme import Scheme as Scheme
-    from verify.separation import separate as separate
-    from verify.separation import separate_grid as separate_grid
-    from verify.step_map import StepMap as StepMap
-    from verify.system import System as System
+    from verify.runs.run import run as run
+    from verify.scenes.results.core import RunResult as RunResult
+    from verify.scenes.results.core import SeparationGrid as SeparationGrid
+    from verify.scenes.results.core import SeparationResult as SeparationResult
+    from verify.scenes.results.report import Report as Report
+    from verify.scenes.scene import Scene as Scene
+    from verify.scenes.scene import load_scene as load_scene
+    from verify.schemes.scheme import Scheme as Scheme
+    from verify.schemes.step_map import StepMap as StepMap
+    from verify.studies.separation.separate import separate as separate
+    from verify.studies.separation.separate import separate_grid as separate_grid
     from verify.verdict import Verdict as Verdict
 
 # Where each public name lives. Nothing is imported before it is asked for, so that `verify --help`
 # and a proof do not wait for what they do not use.
 _HOMES = {
-    "Hamiltonian": "verify.hamiltonian",
+    "Hamiltonian": "verify.hamiltonians.hamiltonian",
     "InputError": "verify.errors",
     "Proof": "verify.proof.order",
-    "Report": "verify.scene_results",
-    "RunResult": "verify.results",
-    "Scene": "verify.scene",
-    "Scheme": "verify.scheme",
-    "SeparationGrid": "verify.results",
-    "SeparationResult": "verify.results",
-    "StepMap": "verify.step_map",
-    "System": "verify.system",
+    "Report": "verify.scenes.results.report",
+    "RunResult": "verify.scenes.results.core",
+    "Scene": "verify.scenes.scene",
+    "Scheme": "verify.schemes.scheme",
+    "SeparationGrid": "verify.scenes.results.core",
+    "SeparationResult": "verify.scenes.results.core",
+    "StepMap": "verify.schemes.step_map",
+    "System": "verify.hamiltonians.system",
     "Verdict": "verify.verdict",
-    "load_scene": "verify.scene",
+    "load_scene": "verify.scenes.scene",
     "prove": "verify.proof.order",
-    "run": "verify.runs",
-    "separate": "verify.separation",
-    "separate_grid": "verify.separation",
+    "run": "verify.runs.run",
+    "separate": "verify.studies.separation.separate",
+    "separate_grid": "verify.studies.separation.separate",
 }
 __all__ = list(_HOMES)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from verify.proof.order import Proof
-    from verify.results import (
+    from verify.scenes.results.core import (
         CrossoverResult,
         EvaluationResult,
         RunResult,
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
         SeparationResult,
         Value,
     )
-    from verify.scene_results import Report
+    from verify.scenes.results.report import Report
 
 _LONGEST = 1200  # characters of a formula that is shown
 _RUN = {
@@ -47,7 +47,7 @@ _WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 
 def proof_html(proof: "Proof") -> str:
     """Verdict, order, leading coefficient, closed form, witness, order of the map."""
-    from verify.exact import text
+    from verify.arithmetic.exact import text
 
     closed = proof.step_map.delta_j_text
     rows = [("verdict", f"{proof.verdict}: {proof.reason}")]

@@ -11,19 +11,19 @@
         assert_convergence_order(step, "pendulum", 1)
 
 The step is proved where its code lets symbols through, and else measured; see
-`verify.check_integrator`. It is called, also with p, q and h that are no floats.
+`verify.integrators.check`. It is called, also with p, q and h that are no floats.
 """
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from verify.check_integrator import check_integrator
+from verify.arithmetic.exact import Exact, rational
 from verify.errors import InputError
-from verify.exact import Exact, rational
-from verify.hamiltonian import Hamiltonian
-from verify.integrator import made_step
-from verify.integrator_results import MOST_CLAIMED, Claims, Finding
-from verify.own_step import TIME_LIMIT
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.check import check_integrator
+from verify.integrators.loading import made_step
+from verify.integrators.results import MOST_CLAIMED, Claims, Finding
+from verify.integrators.step import TIME_LIMIT
 from verify.verdict import Verdict
 
 __all__ = ["assert_area_order", "assert_area_preserving", "assert_convergence_order"]
@@ -81,7 +81,7 @@ def _order(order: int) -> int:
 def _hamiltonian(
     given: Hamiltonian | str, parameters: Mapping[str, Exact | None] | None
 ) -> Hamiltonian:
-    from verify import systems
+    from verify.hamiltonians import systems
 
     if isinstance(given, Hamiltonian):
         return given.with_values({**dict(given.values), **parameters}) if parameters else given

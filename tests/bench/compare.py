@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.unit.others import Program, kick_drift_kick, kick_first, lie1, lie2, lie3
+from tests.helpers.submitted_programs import Program, kick_drift_kick, kick_first, lie1, lie2, lie3
 
 ROOT = Path(__file__).parents[2]
 SECONDS, MEGABYTES = 20.0, 500.0
@@ -51,7 +51,7 @@ def main() -> None:
             command = ["reference", "compare", str(path), "--scene", "duffing"]
             begun = time.perf_counter()
             done = subprocess.run(
-                [sys.executable, "-m", "verify.cli", *command],
+                [sys.executable, "-m", "verify.commands.main", *command],
                 cwd=ROOT, capture_output=True, text=True, check=False,
             )  # fmt: skip
             seconds = time.perf_counter() - begun

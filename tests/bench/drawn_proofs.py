@@ -61,7 +61,7 @@ KINDS: dict[str, tuple[int, Draw]] = {
 def prove_all(kind: str) -> None:
     """Prints Hamiltonians a second, the best of some rounds of other ones, and the peak memory."""
     from verify import schemes
-    from verify.hamiltonian import Hamiltonian
+    from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.proof.order import prove
     from verify.verdict import Verdict
 

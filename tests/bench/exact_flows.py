@@ -12,9 +12,9 @@ from typing import Any
 
 import flint
 
-from verify.exact_solution import exact_solution
-from verify.hamiltonian import Hamiltonian
-from verify.proof.exact_flow import Flow
+from verify.flows.extrapolation import Flow
+from verify.flows.solution import exact_solution
+from verify.hamiltonians.hamiltonian import Hamiltonian
 
 END, Q0 = 100, Fraction(3, 2)
 DIGITS = (16, 30, 60)

@@ -11,9 +11,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from verify.exact_points import exact_points
-from verify.exact_solution import exact_solution
-from verify.hamiltonian import Hamiltonian
+from verify.flows.points import exact_points
+from verify.flows.solution import exact_solution
+from verify.hamiltonians.hamiltonian import Hamiltonian
 
 COUNT, REPEATS = 5000, 3
 LONG, SHORT = (Fraction(50), Fraction(100), Fraction(200)), (Fraction(10),)

@@ -23,8 +23,9 @@ import tight_mpmath
 from mpmath import libmp
 from tight_mpmath import DELTA, NAMES, STEP_SIZE, P, Q, Result
 
-from verify import arithmetic, systems
-from verify.stepping import Job
+from verify import arithmetic
+from verify.hamiltonians import systems
+from verify.kernels.stepping import Job
 
 HERE = Path(__file__).parent
 BITS = {33: 113, 53: 170, 72: 240}  # digits asked of us → bits of the competitors

@@ -16,13 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from verify import arithmetic, shapes
-from verify.float_context import FLOAT
-from verify.flow import carry
-from verify.flow_sections import ShapeGiven
-from verify.hamiltonian import Hamiltonian
-from verify.many_points import PointMap
-from verify.tasks import FlowTask
+from verify import arithmetic
+from verify.arithmetic.float_context import FLOAT
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.many_points import PointMap
+from verify.scenes.region_sections import ShapeGiven
+from verify.scenes.shapes import named as shapes
+from verify.scenes.tasks import FlowTask
+from verify.studies.regions.carry import carry
 
 SYSTEMS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
 POINTS, STEPS, H = 2_000, 20_000, Fraction(1, 100)

@@ -13,8 +13,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from verify import arithmetic, systems
-from verify.kernel import kernel_for
+from verify import arithmetic
+from verify.hamiltonians import systems
+from verify.kernels.kernel import kernel_for
 
 STEPS, ROUNDS = 50_000_000, 7
 TARGET = 1.2

@@ -51,8 +51,8 @@ def show(what: str, value: str, target: str, met: bool, judged: bool = True) -> 
 
 
 def _job(hamiltonian: str, parameters: dict[str, str], steps: int) -> Any:
-    from verify.hamiltonian import Hamiltonian
-    from verify.stepping import Job
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.kernels.stepping import Job
 
     start = {"h": Fraction("0.001"), "q": Fraction("1.5"), "p": Fraction(0)}
     chosen = Hamiltonian.parse(hamiltonian, parameters)
@@ -61,7 +61,8 @@ def _job(hamiltonian: str, parameters: dict[str, str], steps: int) -> Any:
 
 def step_costs(system: str, name: str, digits: int, long: int) -> tuple[float, float]:
     """Median seconds of a step in short and in long runs, taken in turn."""
-    from verify import arithmetic, systems
+    from verify import arithmetic
+    from verify.hamiltonians import systems
 
     made, formula = arithmetic.get(name, digits), systems.get(system).formula
     jobs = {n: _job(formula, SYSTEMS[system], n) for n in (SHORT, long)}
@@ -75,7 +76,8 @@ def step_costs(system: str, name: str, digits: int, long: int) -> tuple[float, f
 
 def peak_memory(system: str, name: str, digits: int, steps: int) -> int:
     """KiB at the most, after a run of so many steps."""
-    from verify import arithmetic, systems
+    from verify import arithmetic
+    from verify.hamiltonians import systems
 
     _job(systems.get(system).formula, SYSTEMS[system], steps).go(arithmetic.get(name, digits))
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -93,11 +95,11 @@ def first_call(formula: str, name: str, digits: int) -> float:
 
 def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]]:
     """Wall seconds, steps, the fewest digits that are known, and how often each kind of bound."""
-    from verify.cli_input import target
-    from verify.execute import Store, execute
-    from verify.executors import Where
-    from verify.plan import plan_scenes
-    from verify.results import RunResult
+    from verify.commands.input import target
+    from verify.execution.execute import Store, execute
+    from verify.execution.executors import Where
+    from verify.scenes.results.core import RunResult
+    from verify.studies.plan import plan_scenes
 
     _, scenes, _ = target("paper")
     asked = {"arithmetic": name, "digits": TABLE_DIGITS, "observables": OBSERVABLES}
@@ -120,8 +122,8 @@ def figure10_run(name: str, digits: int, steps: int) -> tuple[float, float, Any]
 
     The paper does not say from where it starts; q = 1.5, p = 0 is one of its five initial values.
     """
-    from verify import systems
-    from verify.runs import run
+    from verify.hamiltonians import systems
+    from verify.runs.run import run
 
     begun = time.perf_counter()
     found = run(

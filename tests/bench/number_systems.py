@@ -12,8 +12,9 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import NamedTuple
 
-from verify import arithmetic, systems
-from verify.kernel import kernel_for
+from verify import arithmetic
+from verify.hamiltonians import systems
+from verify.kernels.kernel import kernel_for
 
 NAMES = "mpmath", "mpfr", "ball"
 STEPS, ROUNDS = 3000, 9

@@ -22,9 +22,9 @@ DEGREE_8 = "(p**8 + q**8)/8 + p**3*q**5/5 - 2*p**4*q**2 + p*q/3 + q**7/7"
 
 
 SYMBOLIC = (
-    "import sys; from verify.check import prepare; from verify.claims_file import load_claims\n"
-    "from verify.claims import EXACT; from verify.cli_input import paper_folder\n"
-    "from verify.execute import Store\n"
+    "import sys; from verify.claims.check import prepare; from verify.claims.file import load_claims\n"
+    "from verify.claims.kinds import EXACT; from verify.commands.input import paper_folder\n"
+    "from verify.execution.execute import Store\n"
     "file = load_claims(paper_folder() / 'claims.toml')\n"
     "names = [c.id for c in file.claims if isinstance(c, EXACT)]\n"
     "found = prepare(file, names).run(Store(None))\n"
@@ -43,7 +43,7 @@ def show(what: str, command: Sequence[str], target: str) -> None:
 
 
 def main() -> None:
-    verify = [sys.executable, "-m", "verify.cli"]
+    verify = [sys.executable, "-m", "verify.commands.main"]
     show("lie1 … lie8 for every H, with telescoping", [sys.executable, "-c", EVERY], "< 2 s")
     with tempfile.TemporaryDirectory() as folder:
         file = str(Path(folder) / "lie6.json")

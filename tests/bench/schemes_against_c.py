@@ -24,9 +24,10 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from verify import arithmetic, schemes, systems
+from verify import arithmetic, schemes
 from verify.errors import InputError
-from verify.kernel import CLOSED_FORM, Kernel, kernel_for
+from verify.hamiltonians import systems
+from verify.kernels.kernel import CLOSED_FORM, Kernel, kernel_for
 
 SECONDS, ROUNDS = 0.15, 9  # of one measurement, and how many of each there are
 TARGET = 1.2

@@ -18,11 +18,11 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.hamiltonian import Hamiltonian
-from verify.kernel import kernel_for
-from verify.runs import run
-from verify.separation_chain import Separation
-from verify.separation_working import Stopped
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.kernel import kernel_for
+from verify.runs.run import run
+from verify.studies.separation.chain import Separation
+from verify.studies.separation.working import Stopped
 
 STEPS, H = 8, Fraction(1, 100)
 P, Q = Fraction(1, 3), Fraction(1, 2)

@@ -15,13 +15,13 @@ from collections.abc import Sequence
 
 ROUNDS = 5
 _RUN = (
-    "from fractions import Fraction as F; from verify import systems; from verify.runs import run;"
+    "from fractions import Fraction as F; from verify import systems; from verify.runs.run import run;"
     "h = systems.get('duffing').hamiltonian({'delta': 1});"
     "r = run(h, 'lie2', q=F(3, 2), p=F(0), step_size=F(1, 1000), steps=%d)"
 )
 _TABLES = (
-    "from verify.cli_input import target; from verify.plan import plan_scenes;"
-    "from verify.execute import Store, execute\n"
+    "from verify.commands.input import target; from verify.studies.plan import plan_scenes;"
+    "from verify.execution.execute import Store, execute\n"
     "if __name__ == '__main__':\n"
     "    _, scenes, _ = target('paper')\n"
     "    scenes = [s.with_only(schemes=('lie2',), grid=s.grid.model_copy(\n"
@@ -54,7 +54,7 @@ def show(what: str, value: str, target: str) -> None:
 
 
 def main() -> None:
-    verify = [sys.executable, "-m", "verify.cli"]
+    verify = [sys.executable, "-m", "verify.commands.main"]
     help_, _ = measure([*verify, "--help"])
     show("verify --help", f"{help_:.3f} s", "< 0.2 s")
     proof, _ = measure([*verify, "prove", "--system", "duffing", "--scheme", "lie2"])

@@ -5,15 +5,15 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
-from reports.page import render
-from tests.unit.made_gallery import CROSSED, KEPT, NOTHING, gallery, shown
-from verify.claims import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
-from verify.execute import Store
-from verify.executors import HERE
-from verify.paper_figures import PaperFigure
-from verify.report import gallery_report, make_report
-from verify.scene import scene_from
-from verify.scene_results import Report
+from tests.helpers.constructed_galleries import CROSSED, KEPT, NOTHING, gallery, shown
+from verify.claims.kinds import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
+from verify.claims.report import gallery_report, make_report
+from verify.execution.execute import Store
+from verify.execution.executors import HERE
+from verify.pages.page import render
+from verify.scenes.paper_figures import PaperFigure
+from verify.scenes.results.report import Report
+from verify.scenes.scene import scene_from
 
 EVIL = "<script>window.planted = 1</script><img src=x onerror='window.planted = 2'>"
 FLOW = "Figure 4 <script>window.planted = 3</script>"  # a label may be 80 characters long

@@ -232,7 +232,13 @@ def test_the_readmes_claims_file_gives_the_verdicts_that_it_prints(tmp_path: Pat
     section = readme[readme.index("## Check a paper's claims") :]
     (content, printed) = re.findall(r"```(?:toml)?\n(.*?)```", section, re.DOTALL)[:2]
     (tmp_path / "claims.toml").write_text(content)
-    command = [sys.executable, "-c", "from verify.cli import main; main()", "check", "claims.toml"]
+    command = [
+        sys.executable,
+        "-c",
+        "from verify.commands.main import main; main()",
+        "check",
+        "claims.toml",
+    ]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
     assert (done.returncode, done.stderr) == (1, "")

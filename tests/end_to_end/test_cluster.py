@@ -12,19 +12,19 @@ import pytest
 
 from tests.end_to_end.test_command_line import SCENE, here
 from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
-from tests.unit.sent import killed, killed_once, process, square, wrong
-from tests.unit.test_execute import CONTENT, kept_in, plain
-from tests.unit.test_scene import DUFFING, load
-from verify import cluster as clusters
-from verify import executors
-from verify.cluster import connected
+from tests.helpers.worker_functions import killed, killed_once, process, square, wrong
+from tests.unit.execution.test_execute import CONTENT, kept_in, plain
+from tests.unit.scenes.test_scene import DUFFING, load
 from verify.errors import InputError, PlaceError
-from verify.execute import execute
-from verify.executors import HERE, Call, Where, opened, performed
-from verify.keeping import machine
-from verify.plan import plan_scenes
-from verify.tasks import WorkPrecisionTask
-from verify.work_precision_results import WorkPrecisionResult
+from verify.execution import cluster as clusters
+from verify.execution import executors
+from verify.execution.cluster import connected
+from verify.execution.execute import execute
+from verify.execution.executors import HERE, Call, Where, opened, performed
+from verify.execution.keeping import machine
+from verify.scenes.results.work_precision import WorkPrecisionResult
+from verify.scenes.tasks import WorkPrecisionTask
+from verify.studies.plan import plan_scenes
 
 distributed = pytest.importorskip("distributed")
 GIVEN_UP = 1  # workers that may be lost with a task, so that a test of it is short

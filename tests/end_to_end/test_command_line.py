@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from verify.cli import main
+from verify.commands.main import main
 
 RUN = {"--system": "pendulum", "--scheme": "lie2", "--step-size": "0.01", "--steps": "10",
        "--q": "1.5", "--p": "-0.5"}  # fmt: skip

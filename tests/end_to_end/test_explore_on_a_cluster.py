@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
-from verify import hunting
+from verify.exploration import hunting
 
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
-from verify import perform
-from verify.keeping import Keeper
+from verify.execution import perform
+from verify.execution.keeping import Keeper
 
 SCENE = """
 system = "duffing"

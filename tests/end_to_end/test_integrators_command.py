@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from verify import others
-from verify.cli import main
+from verify.commands.main import main
+from verify.integrators.others import libraries as others
 
 
 @pytest.fixture(autouse=True)

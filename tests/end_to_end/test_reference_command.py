@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from reference.make import COMMITTED, committed_scenes
 from tests.end_to_end.test_command_line import apart, here, json_of
-from tests.unit.made_reference import SCENES
+from tests.helpers.constructed_reference import SCENES
+from verify.reference.make.make import PUBLISHED, committed_scenes
 
 LIMIT = 5_000_000  # bytes of the committed set
 
@@ -80,8 +80,8 @@ def test_the_committed_set_is_of_its_scenes_small_and_agrees(
 ) -> None:
     status, out, _ = here(capsys, "reference", "check", "--share", "0.005", "--seed", "7")
     assert (status, out.split(":")[0]) == (0, "agrees"), out
-    assert sum(map(len, content(COMMITTED).values())) < LIMIT
-    manifest = json.loads((COMMITTED / "manifest.json").read_text())
+    assert sum(map(len, content(PUBLISHED).values())) < LIMIT
+    manifest = json.loads((PUBLISHED / "manifest.json").read_text())
     made = {each["name"]: each["toml"] for each in manifest["scenes"]}
     assert made == {path.stem: path.read_text() for path in committed_scenes()}
     assert manifest["command"] == "verify reference make"
@@ -93,7 +93,7 @@ def test_the_committed_set_is_what_is_made_now(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     for name, made in content(tmp_path).items():
         if name.startswith("extreme-escape"):
-            assert (COMMITTED / name).read_bytes() == made, name
+            assert (PUBLISHED / name).read_bytes() == made, name
 
 
 @pytest.mark.parametrize(
@@ -185,8 +185,8 @@ def test_parquet_is_the_same_tables_or_one_line_says_what_is_missing(
         assert "pyarrow" in err
         return
     assert status == 0
-    from reference.parquet import parquet_bytes, parquet_rows
-    from tests.unit.made_reference import repaired
+    from tests.helpers.constructed_reference import repaired
+    from verify.reference.make.parquet import parquet_bytes, parquet_rows
 
     status, out, _ = here(capsys, "reference", "check", str(folder), "--share", "0", "--json")
     assert (status, json_of(out)["not_compared"]) == (0, [])

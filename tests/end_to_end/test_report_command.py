@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import RUN, SCENE, apart, arguments, here
-from verify.scene_results import Report
+from verify.scenes.results.report import Report
 
 VERIFY = Path(sys.executable).with_name("verify")
 # 7 tasks: four runs of a fifth of a second or more, a series, two proofs; one scheme has no proof.

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
-from verify.cli_input import target
+from verify.commands.input import target
 
 SCENE = """
 system = "duffing"

@@ -1,4 +1,4 @@
-"""The properties of `verify.properties` on random scenes, until one of them is violated.
+"""The properties of `verify.exploration.properties` on random scenes, until one of them is violated.
 
     python -m tests.mutants.battery MODULE INDEX --examples 60
 
@@ -40,7 +40,7 @@ def there() -> bool:
 
 def catalogue() -> dict[str, Any]:
     """Each property by its name; `holds(example)` is False where it says nothing of it."""
-    properties = import_module("verify.properties")
+    properties = import_module("verify.exploration.properties")
     return {name: properties.get(name) for name in properties.names()}
 
 
@@ -61,12 +61,12 @@ def drawn_scenes(examples: int, seed: int) -> list[Any]:
 
 def example_of(scene: Any) -> Any:
     """The scene as properties look at it."""
-    return import_module("verify.example").Example.of(scene)
+    return import_module("verify.exploration.sample").Example.of(scene)
 
 
 def violation() -> type[Exception]:
     """What a property raises where it does not hold."""
-    found: type[Exception] = import_module("verify.property").Violation
+    found: type[Exception] = import_module("verify.exploration.property").Violation
     return found
 
 

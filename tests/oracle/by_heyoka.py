@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 
 hy = pytest.importorskip("heyoka")
 

@@ -31,8 +31,8 @@ from tests.oracle.by_heyoka import (
     oracle,
 )
 from verify import arithmetic
-from verify.results import RunResult
-from verify.runs import run
+from verify.runs.run import run
+from verify.scenes.results.core import RunResult
 
 STEPS = 300
 START = (Fraction(1, 4), Fraction(5, 4))

@@ -10,9 +10,9 @@ from itertools import pairwise
 
 import pytest
 
-from reference.models import Data
+from tests.helpers.constructed_reference import made
 from tests.oracle.by_heyoka import PRECISIONS, SYSTEMS, State, determinant, oracle
-from tests.unit.made_reference import made
+from verify.reference.make.models import Data
 
 SLACK = 400  # roundings of so many steps, each of which may grow on the way
 STEPS = (1, 10, 100)

@@ -9,15 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutants import battery, forked, killers, records, table
-from tests.mutants.mutate import (
-    ROOT,
-    Mutant,
-    mutants,
-    mutants_of,
-    mutated,
-    mutated_source,
-    path_of,
-)
+from tests.mutants.mutate import ROOT, Mutant, mutants, mutants_of, mutated, mutated_source, path_of
 from tests.mutants.run import ordered
 from tests.mutants.summary import found_in, share
 from tests.mutants.targets import modules, sample, shares
@@ -154,7 +146,7 @@ def one(module: str, change: str) -> Mutant:
     return found
 
 
-COMBINATION = "verify.proof.combination"
+COMBINATION = "verify.algebra.linear_combination"
 PLANTED = """
 import sys
 from tests.mutants.planted import planted
@@ -233,9 +225,9 @@ from pathlib import Path
 from tests.mutants import forked, killers
 forked.warm_up()
 killer = killers.Killer("mine", 2, partial(killers._tests, Path({path!r})))
-found = [forked.forked(partial(killers.on_sound_code, killer, ("verify.schemes.ruth3",)), 60).value]
+found = [forked.forked(partial(killers.on_sound_code, killer, ("verify.schemes.methods.splitting.ruth3",)), 60).value]
 for index in {indices}:
-    work = partial(killers.on_mutant, killer, "verify.schemes.ruth3", index, {{}})
+    work = partial(killers.on_mutant, killer, "verify.schemes.methods.splitting.ruth3", index, {{}})
     found.append(forked.forked(work, 60).value)
 print(json.dumps(found))
 """
@@ -245,7 +237,7 @@ def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) 
     """Also one that raises; and what it does not look at lives."""
     path = tmp_path / "test_mine.py"
     path.write_text(CHECK)
-    ruth = "verify.schemes.ruth3"
+    ruth = "verify.schemes.methods.splitting.ruth3"
     wrong = [one(ruth, "minus-dropped -2"), one(ruth, "Rational(7, 24) → Rational(24, 7)")]
     broken, unseen = one(ruth, "alternating(_SIZES"), one(ruth, "truth False → True")
     text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, broken, unseen)])
@@ -263,7 +255,7 @@ def test_the_killers_are_all_files_of_properties_and_the_battery_where_it_is() -
     files = {p.name for p in (ROOT / "tests" / "property").glob("test_*.py")}
     assert {Path(k.name).name for k in found if k.stage == 2} == files
     assert "tests/unit/test_step_map.py" in {
-        k.name for k in killers.unit_killers("verify.step_map")
+        k.name for k in killers.unit_killers("verify.schemes.step_map")
     }
 
 
@@ -276,7 +268,7 @@ def test_what_is_near_and_cheap_is_asked_first() -> None:
     far, near, other, battery_ = (k.name for k in made)
     seconds = {far: 1, near: 9, other: 2, battery_: 5}
     sound = [{"killer": name, "seconds": s} for name, s in seconds.items()]
-    mutant = mutants("verify.proof.splitting_conditions")[0]
+    mutant = mutants("verify.schemes.splitting_conditions")[0]
     assert [k.name for k in ordered(mutant, sound, made)] == [battery_, near, far, other]
 
 

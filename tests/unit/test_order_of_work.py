@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from verify.errors import InputError
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.runs import run
+from verify.runs.run import run
 from verify.schemes import get
 
 HAMILTONIANS = {

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from tests.unit import own_steps
+from tests.helpers import user_steps as own_steps
 from verify.errors import InputError
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.testing import assert_area_order, assert_area_preserving, assert_convergence_order
 
 

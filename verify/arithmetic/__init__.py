@@ -1,25 +1,31 @@
-"""The number systems, one file each, found by themselves.
+"""Arithmetic: exact rationals, balls; `systems/` has one number system a file.
 
-A file defines `NAME` and `make(digits)`, the arithmetic that works with at least that many decimal
-digits. Adding a number system is adding one file.
+A file of `systems/` defines `NAME` and `make(digits)`, the arithmetic that works with at least that
+many decimal digits. Adding a number system is adding one file.
 """
 
-import pkgutil
-from functools import cache
-from importlib import import_module
+from typing import TYPE_CHECKING
 
+from verify.discovery import Catalogue
 from verify.errors import InputError
-from verify.number_system import Arithmetic
+
+if TYPE_CHECKING:
+    from verify.arithmetic.number_system import Arithmetic
+
+_FILES = Catalogue(f"{__name__}.systems", [f"{folder}/systems" for folder in __path__])
 
 
-@cache
 def names() -> tuple[str, ...]:
-    return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__)))
+    """The names of all number systems."""
+    return _FILES.names
 
 
-def get(name: str, digits: int) -> Arithmetic:
-    """The arithmetic of that name with at least `digits` decimal digits (float64 has its own)."""
-    if name not in names():
+def get(name: str, digits: int) -> "Arithmetic":
+    """The arithmetic of that name with at least `digits` decimal digits (float64 has its own).
+
+    Raises InputError where there is none of that name.
+    """
+    if name not in _FILES:
         raise InputError("arithmetic", name, f"unknown; allowed: {', '.join(names())}")
-    made: Arithmetic = import_module(f"{__name__}.{name}").make(digits)
-    return made
+    arithmetic: Arithmetic = _FILES.module(name).make(digits)
+    return arithmetic

@@ -6,9 +6,9 @@ hold, det J ≡ 1. They suffice; so where one does not, nothing follows for det 
 
 from collections.abc import Sequence
 
-from verify.conditions import ByConditions, Condition
+from verify.algebra.conditions import ByConditions, Condition
 from verify.proof.every_proof import EveryProof
-from verify.scheme import Scheme
+from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
 _MORE = 2  # orders beyond the claimed one that are looked at

@@ -1,9 +1,9 @@
 """An H for which a scheme does not preserve area, where conditions that suffice for it fail."""
 
 from verify.errors import InputError
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import leading_of
-from verify.scheme import Scheme
+from verify.schemes.scheme import Scheme
 
 # Polynomials, so that all is decided; with cubic terms, as a quadratic H makes too much vanish.
 _SEPARABLE = ("p**2/2 + q**2/2 + q**3/3", "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3")

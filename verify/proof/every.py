@@ -23,17 +23,17 @@ Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 import math
 from dataclasses import replace
 
-from verify.conditions import ByConditions
+from verify.algebra.conditions import ByConditions
+from verify.algebra.jets import Jets, Poly, shown
 from verify.errors import InputError
-from verify.generic import BySeries, StageEquations, TaylorSeries
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.counterexample import counterexample
 from verify.proof.every_proof import EveryProof as EveryProof
-from verify.proof.jets import Jets, Poly, shown
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
-from verify.proof.tree_conditions import TreeConditions
-from verify.scheme import Scheme
 from verify.schemes import get
+from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.scheme import Scheme
+from verify.schemes.tree_conditions import TreeConditions
 from verify.verdict import Verdict
 
 _MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from verify.conditions import Condition
-from verify.generic import TaylorSeries
+from verify.algebra.conditions import Condition
 from verify.schemes import get
+from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.verdict import Verdict
 
 ARGUMENT = (

@@ -7,13 +7,13 @@ from functools import cached_property
 
 import sympy
 
+from verify.algebra.formula import checked
+from verify.algebra.generators import embed
+from verify.algebra.quotient_series import QuotientSeries
+from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError
-from verify.formula import checked
-from verify.generators import embed
-from verify.proof.quotient_series import QuotientSeries
-from verify.ring import Decision, Poly, Ring
-from verify.step_map import H_STEP
-from verify.substep import h_inside
+from verify.schemes.step_map import H_STEP
+from verify.schemes.substep import h_inside
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
 

@@ -12,14 +12,14 @@ from functools import cached_property
 
 import sympy
 
-from verify.conditions import Condition
-from verify.generators import embed
-from verify.hamiltonian import VectorField
+from verify.algebra.conditions import Condition
+from verify.algebra.generators import embed
+from verify.algebra.power_series import Series, delta_j
+from verify.algebra.ring import Decision, Poly, Ring
+from verify.hamiltonians.hamiltonian import VectorField
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_left
-from verify.ring import Decision, Poly, Ring
-from verify.scheme import Scheme
-from verify.series import Series, delta_j
-from verify.step_map import StepMap
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed

@@ -14,17 +14,17 @@ from itertools import chain, combinations_with_replacement, islice, product
 
 import sympy
 
-from verify.enclosure import enclose, points
+from verify.algebra.enclosure import enclose, points
+from verify.algebra.generators import embed
+from verify.algebra.linear_combination import combination, may_combine
+from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.generators import embed
-from verify.generic import TaylorSeries
-from verify.hamiltonian import VectorField
-from verify.proof.combination import combination, may_combine
+from verify.hamiltonians.hamiltonian import VectorField
 from verify.proof.order import Proof
 from verify.proof.telescoping import potential_of_lie
-from verify.ring import Poly, Ring
-from verify.scheme import Scheme
-from verify.step_map import P, Q
+from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import P, Q
 
 _MOST_MONOMIALS, _MOST_DEGREE = 300, 20
 _PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)

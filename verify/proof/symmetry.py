@@ -11,15 +11,15 @@ shows nothing; the verdict is UNDECIDED then.
 
 from dataclasses import dataclass
 
-from verify.conditions import Condition, WithSymmetry
+from verify.algebra.conditions import Condition, WithSymmetry
+from verify.algebra.power_series import Series, at_point, partials
+from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.generic import StageEquations
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import first_wrong, shown
-from verify.ring import Poly, Ring
-from verify.scheme import Scheme
-from verify.series import Series, at_point, partials
-from verify.step_map import StepMap
+from verify.schemes.every_hamiltonian import StageEquations
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 # Neither even nor odd in p or q, so that no symmetry of H hides one that the scheme has not.

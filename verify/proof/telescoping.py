@@ -19,13 +19,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from verify.generator import terms_of
-from verify.proof.combination import combination
-from verify.proof.jets import Jets, Poly, shown
+from verify.algebra.generator import terms_of
+from verify.algebra.jets import Jets, Poly, shown
+from verify.algebra.linear_combination import combination
 
 
 class Derivation(Protocol):
-    """p and q with their derivatives along the flow: `verify.hamiltonian.VectorField` is one."""
+    """p and q with their derivatives along the flow: `verify.hamiltonians.hamiltonian.VectorField` is one."""
 
     def along(self, name: str, most: int) -> Sequence[Poly]:
         """[y, X y, …, X^most y] of y = p or q."""

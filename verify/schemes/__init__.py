@@ -1,35 +1,44 @@
-"""The schemes, one file each, found by themselves.
+"""Schemes: step maps, tableaux, splittings, order conditions; `methods/` has one scheme a file.
 
-A file defines `EXAMPLES`, names it answers to, and `make(name)`, which returns the Scheme of that
-name or None. Adding a scheme is adding one file.
+A file of `methods/` defines `EXAMPLES`, names it answers to, and `make(name)`, which returns the
+Scheme of that name or None. The name of a file is the beginning of the names it answers to;
+those in `methods/user/` answer to texts of the users' own. Adding a scheme is adding one file.
 """
 
-import pkgutil
+from collections.abc import Iterator
 from functools import cache
-from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
+from verify.discovery import Catalogue
 from verify.errors import InputError
-from verify.scheme import Scheme
+
+if TYPE_CHECKING:
+    from verify.schemes.scheme import Scheme
+
+_FILES = Catalogue(f"{__name__}.methods", [f"{folder}/methods" for folder in __path__])
+_USERS = "user"
 
 
 @cache
-def _modules() -> tuple[object, ...]:
-    names = sorted(m.name for m in pkgutil.iter_modules(__path__))
-    return tuple(import_module(f"{__name__}.{name}") for name in names)
-
-
 def names() -> tuple[str, ...]:
     """A name for each scheme; a family is shown by its first members."""
-    return tuple(name for module in _modules() for name in module.EXAMPLES)  # type: ignore[attr-defined]
+    return tuple(name for file in _FILES.names for name in _FILES.module(file).EXAMPLES)
 
 
 @cache
-def get(name: str) -> Scheme:
+def get(name: str) -> "Scheme":
     """The scheme of that name; InputError where there is none."""
     if not isinstance(name, str):
         raise InputError("scheme", name, "is not a name")
-    for module in _modules():
-        scheme = module.make(name)  # type: ignore[attr-defined]
+    for module in _candidates(name):
+        scheme: Scheme | None = module.make(name)
         if scheme is not None:
-            return scheme  # type: ignore[no-any-return]
+            return scheme
     raise InputError("scheme", name, f"unknown; allowed: {', '.join(names())}, …")
+
+
+def _candidates(name: str) -> Iterator[Any]:
+    """The files that may answer to the name: `lie2` imports `lie.py` and no other."""
+    users = [file for file in _FILES.names if _FILES.folder(file) == _USERS]
+    for file in (*(f for f in _FILES.names if name.startswith(f) and f not in users), *users):
+        yield _FILES.module(file)

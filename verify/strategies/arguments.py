@@ -5,8 +5,8 @@ from fractions import Fraction
 
 from hypothesis import strategies as st
 
+from verify.arithmetic.exact import Exact, rational, text
 from verify.errors import InputError
-from verify.exact import Exact, rational, text
 
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:

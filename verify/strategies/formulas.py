@@ -17,8 +17,8 @@ from typing import NamedTuple
 from hypothesis import strategies as st
 
 from verify.errors import InputError
-from verify.strategies.own_terms import KINDS, OWN, Shape, Wanted
 from verify.strategies.terms import Drawer, Limits, Sum, monomial, power
+from verify.strategies.user_terms import KINDS, OWN, Shape, Wanted
 
 NAMES = ("a", "b")
 # How often a shape is drawn, the simplest first; whether H → ∞ in every direction (None: unknown).

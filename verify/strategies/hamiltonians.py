@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
+from verify.algebra.formula import MAX_EXPONENT
 from verify.errors import InputError
-from verify.formula import MAX_EXPONENT
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import whole, yes_no_either
 from verify.strategies.formulas import KINDS as KINDS
 from verify.strategies.formulas import Formula, formulas, plans

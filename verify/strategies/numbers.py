@@ -6,11 +6,11 @@ from fractions import Fraction
 
 from hypothesis import strategies as st
 
+from verify.algebra.formula import parameter_name
+from verify.arithmetic.exact import Exact, magnitude
 from verify.errors import InputError
-from verify.exact import Exact, magnitude
-from verify.formula import parameter_name
-from verify.hamiltonian import Hamiltonian
-from verify.scene_values import InitialValue
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.values import InitialValue
 from verify.strategies.arguments import exactly, whole
 
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values

@@ -7,11 +7,11 @@ from hypothesis import reject
 from hypothesis import strategies as st
 
 from verify.errors import InputError
-from verify.hamiltonian import Hamiltonian
-from verify.runs import MAX_STEPS
-from verify.scene import Grid, Scene
-from verify.scene_values import InitialValue
-from verify.scheme import Scheme
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.run import MAX_STEPS
+from verify.scenes.scene import Grid, Scene
+from verify.scenes.values import InitialValue
+from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import strategy_or_none, whole
 from verify.strategies.formulas import Formula
 from verify.strategies.hamiltonians import drawn_formulas, made

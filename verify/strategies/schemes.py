@@ -6,11 +6,11 @@ import sympy
 from hypothesis import strategies as st
 
 from verify import schemes as catalogue
+from verify.algebra.formula import symbol
 from verify.errors import InputError
-from verify.formula import symbol
-from verify.hamiltonian import Hamiltonian
-from verify.scheme import Scheme
-from verify.schemes.lie import eta_of
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.methods.taylor.lie import eta_of
+from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import whole, yes_no_either
 
 _LIE_AS_OFTEN = 3  # as each of the others: the family is what the toolkit is about

@@ -1,1 +1,0 @@
-"""The paper's scenes and claims, as data; this package's TOML files."""

@@ -1,0 +1,85 @@
+"""A small folder of reference data, and ways to damage it, for several tests."""
+
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+from verify.execution.execute import Store, execute
+from verify.execution.executors import HERE
+from verify.reference.make.make import Asked, command_of, data_of, files_of, manifest_of, write
+from verify.reference.make.models import Data
+from verify.reference.make.scene_plan import plan_references
+from verify.reference.make.writing import MANIFEST, digest
+from verify.scenes.scene import scene_from_toml
+
+SCENES = {
+    "mine": """
+title = "A pendulum"
+hamiltonian = "p**2/2 - a*cos(q)"
+parameters = { a = "3/2" }
+schemes = ["lie1", "lie2", "rk4", "stormer-verlet"]
+[[reference]]
+step_sizes = [0.1, "1/3"]
+initial_values = [{ q = 1.5, p = "-1/4" }]
+steps = [0, 1, 7, 30]
+digits = 14
+""",
+    "leaves": """
+system = "duffing"
+parameters = { delta = 1 }
+schemes = ["lie2", "symplectic-euler"]
+[[reference]]
+step_sizes = [100]
+initial_values = [{ q = 1, p = 0 }]
+steps = [0, 1, 2, 8, 9]
+digits = 9
+flow = false
+""",
+}
+
+
+def made(scenes: dict[str, str] | None = None) -> list[Data]:
+    """The data of the scenes."""
+    found = [scene_from_toml(toml, name) for name, toml in (scenes or SCENES).items()]
+    results = execute(plan_references(found), Store(None), where=HERE)
+    return [data_of(scene, results) for scene in found]
+
+
+def put(folder: Path, data: list[Data], scenes: dict[str, str] | None = None) -> None:
+    """The data's files and their manifest in the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    asked = [Asked(scene_from_toml(x, name), x) for name, x in (scenes or SCENES).items()]
+    files = files_of(data)
+    command = command_of([f"{name}.toml" for name in scenes or SCENES], parquet=False)
+    write(folder, files, manifest_of(asked, files, command))
+
+
+def repaired(folder: Path, name: str) -> None:
+    """The manifest says of that file what it now is."""
+    path, content = folder / MANIFEST, (folder / name).read_bytes()
+    lines = path.read_text().split("\n")
+    for k, line in enumerate(lines):
+        if f'"name": "{name}", "bytes"' in line:
+            listed = {"name": name, "bytes": len(content), "sha256": digest(content)}
+            lines[k] = f"  {json.dumps(listed)}" + ("," if line.endswith(",") else "")
+    path.write_text("\n".join(lines))
+
+
+def flipped(text: str, at: int, draw: random.Random) -> str:
+    """The text with another character of the same kind there."""
+    kinds = ("0123456789", "abcdefghijklmnopqrstuvwxyz", "{}[],:.-+ \n")
+    old = text[at]
+    kind = next((kind for kind in kinds if old in kind), "xyz")
+    new = draw.choice([c for c in kind if c != old])
+    return text[:at] + new + text[at + 1 :]
+
+
+def changed(data: Data, path: list[Any], value: Any) -> Data:
+    """The data with another value there."""
+    raw = data.model_dump(mode="json", by_alias=True)
+    at = raw
+    for part in path[:-1]:
+        at = at[part]
+    at[path[-1]] = value
+    return Data.model_validate(raw)

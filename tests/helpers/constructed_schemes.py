@@ -1,0 +1,59 @@
+"""Schemes that are made by hand for proofs for every H: by a series, by stages, by conditions."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import pytest
+from hypothesis import strategies as st
+
+from verify.algebra.conditions import Condition
+from verify.proof import every
+from verify.proof.every import prove_every
+from verify.proof.every_proof import EveryProof
+from verify.schemes import get
+from verify.schemes.scheme import Scheme
+
+
+def made_of(generic: Any, order: int, area: bool = False, base: str = "euler") -> Scheme:
+    """A scheme named "made" with these claims; for one H it is the scheme `base`."""
+    return replace(get(base), name="made", generic=generic, order=order, area_preserving=area)
+
+
+def proof_of(
+    generic: Any, order: int, area: bool = False, separable: bool = False, base: str = "euler"
+) -> EveryProof:
+    """What `prove_every` says of such a scheme."""
+    scheme = made_of(generic, order, area, base)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(every, "get", lambda _: scheme)
+        return prove_every("made", separable)
+
+
+@dataclass(frozen=True)
+class Made:
+    """Conditions by hand: (order, whether it holds)."""
+
+    of_order: tuple[tuple[int, bool | None], ...]
+    of_area: tuple[bool | None, ...]
+    most_order: int
+    separable: bool = False
+
+    def order_conditions(self, order: int) -> tuple[Condition, ...]:
+        assert order <= self.most_order
+        own = [(n, holds) for n, holds in self.of_order if n <= order]
+        return tuple(Condition(f"C{k}", n, f"r{k}", holds) for k, (n, holds) in enumerate(own))
+
+    def area_conditions(self) -> tuple[Condition, ...]:
+        return tuple(Condition(f"A{k}", 0, f"s{k}", holds) for k, holds in enumerate(self.of_area))
+
+
+holding = st.sampled_from([True, True, True, True, False, None])
+conditions = st.builds(
+    Made,
+    st.lists(st.tuples(st.integers(1, 6), holding), max_size=6).map(
+        lambda x: tuple(sorted(x, key=lambda c: c[0]))
+    ),
+    st.lists(holding, max_size=2).map(tuple),
+    st.integers(4, 8),
+    st.booleans(),
+)

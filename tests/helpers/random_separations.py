@@ -1,0 +1,38 @@
+"""Drawn separations of truncation from rounding, for their properties."""
+
+from fractions import Fraction
+
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from tests.helpers.random_formulas import monomial, polynomials, rationals
+from verify import arithmetic as number_systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.studies.separation.chain import Chains, Separation
+from verify.studies.separation.working import Stopped
+
+sizes = st.builds(lambda n, k: Fraction(n, 2 * 7**k), st.integers(0, 8), st.integers(0, 9))
+starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
+step_sizes = st.fractions(min_value="1/50", max_value="1/3", max_denominator=50)
+FIXED = number_systems.get("fixed", 30)
+SHORT = Fraction(1, 2**3000)  # what the oracle rounds off
+DUFFING = "p**2/2 + q**2/2 + q**4/4"
+KNOWN = (DUFFING, "p**2/2 - cos(q)", "p**2/2 + q**2/2 - q**3/3", "p**2/2 + exp(-q) + q")
+
+
+@st.composite
+def bent(draw: st.DrawFn) -> str:
+    extra = draw(polynomials(degree=4, most_terms=1))
+    return f"p**2/2 + {monomial(draw(rationals(4)), 'pq', (0, 3))} + {extra}"
+
+
+def separated(
+    text: str, scheme: str, start: dict[str, Fraction], steps: int, digits: int, name: str
+) -> tuple[Chains, list[int], Separation]:
+    advanced: list[int] = []
+    work = Separation(Hamiltonian.parse(text), scheme, start, steps)
+    try:
+        return work.chains(digits, name, advanced.append), advanced, work
+    except Stopped:
+        assume(False)
+        raise

@@ -1,0 +1,26 @@
+"""The catalogue's properties over drawn scenes: the same that `verify explore` looks at.
+
+What each of them must catch is in tests/unit/test_properties.py.
+"""
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from verify import strategies
+from verify.exploration import properties
+from verify.exploration.sample import Example
+from verify.scenes.scene import Scene
+
+SCENES = strategies.scenes(steps=(1, 8))
+
+
+@pytest.mark.parametrize("name", properties.names())
+def test_a_property_holds_of_drawn_scenes(name: str) -> None:
+    asked = properties.get(name)
+
+    @settings(deadline=None, max_examples=12, suppress_health_check=[HealthCheck.too_slow])
+    @given(SCENES)
+    def holds(scene: Scene) -> None:
+        asked.holds(Example.of(scene))
+
+    holds()

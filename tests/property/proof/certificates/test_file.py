@@ -1,0 +1,138 @@
+"""What has a certificate: a proof and nothing less, and nested as deep as a checker can look."""
+
+import json
+import sys
+import tempfile
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.examples import drawn
+from tests.helpers.constructed_schemes import made_of, proof_of
+from tests.helpers.random_certificates import EVERY, Data, as_read
+from tests.helpers.random_formulas import rationals
+from verify.errors import InputError
+from verify.proof.certificates import every as certificate
+from verify.proof.certificates.checker import check, poly
+from verify.proof.certificates.every import of_every
+from verify.proof.certificates.file import FORMAT, checked, statement
+from verify.proof.every import prove_every
+from verify.proof.every_proof import EveryProof
+from verify.schemes.every_hamiltonian import RungeKutta
+from verify.verdict import Verdict
+
+OF_ONE_H = "p_next = p - h*q; q_next = q + h*p_next"
+proofs = cache(prove_every)
+names = st.sampled_from(EVERY)
+verdicts = st.sampled_from([Verdict.PROVED, *Verdict])
+quick = drawn(40)
+
+
+def refused(proof: EveryProof) -> str:
+    with pytest.raises(InputError) as found:
+        of_every(proof)
+    return str(found.value)
+
+
+@quick
+@given(names, verdicts, st.booleans(), st.booleans())
+def test_what_is_not_proved_for_every_h_has_no_certificate(
+    name: str, verdict: Verdict, of_every_h: bool, ordered: bool
+) -> None:
+    """Nor has a map whose order is not told, or that is a scheme for one H."""
+    proof = replace(
+        proofs(name),
+        verdict=verdict,
+        scheme=name if of_every_h else OF_ONE_H,
+        convergence_order=proofs(name).convergence_order if ordered else None,
+    )
+    if verdict is Verdict.PROVED and of_every_h and ordered:
+        data = as_read(of_every(proof))
+        check(data)
+        assert (data["scheme"], data["format"]) == (name, FORMAT)
+        assert ("potential" in data) == bool(proof.telescopes)
+        assert ("T(p) + V(q)" in statement(data)) == proof.separable
+    else:
+        assert f"{verdict}: there is nothing to certify" in refused(proof)
+
+
+@quick
+@given(st.sampled_from(["yoshida4", "suzuki4", "gauss4", "gauss6"]), verdicts)
+def test_what_is_proved_by_irrational_coefficients_has_none_either(
+    name: str, verdict: Verdict
+) -> None:
+    said = refused(replace(proofs(name), verdict=verdict))
+    proved = verdict is Verdict.PROVED
+    assert ("is proved by its coefficients" in said) == proved
+    assert ("there is nothing to certify" in said) != proved
+
+
+@drawn(15)
+@given(rationals(4), st.booleans())
+def test_two_explicit_stages_of_order_2_have_a_potential_that_is_certified(
+    alpha: Fraction, separable: bool
+) -> None:
+    """L = X·G, G = (1 − α)/2 det Hess H, α the second node; it is 0 for Heun's, α = 1."""
+    generic = RungeKutta(((), (alpha,)), (1 - 1 / (2 * alpha), 1 / (2 * alpha)))
+    proof = proof_of(generic, 2, separable=separable)
+    assert (proof.verdict, proof.convergence_order) == (Verdict.PROVED, 2)
+    assert (proof.order, proof.telescopes) == ((4, False) if alpha == 1 else (3, True))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(certificate, "get", lambda _: made_of(generic, 2))
+        data = as_read(of_every(proof))
+    check(data)
+    assert ("T(p) + V(q)" in statement(data)) == separable
+    if alpha == 1:
+        assert "potential" not in data
+        return
+    size = (1 - alpha) / 2
+    wanted = [[str(size), "H_pp", "H_qq"], *[[str(-size), "H_pq", "H_pq"]] * (not separable)]
+    assert poly(data["potential"]) == poly(wanted)
+    data["potential"][0][0] = str(-size * 2)
+    with pytest.raises(ValueError, match="potential is not zero"):
+        check(data)
+
+
+def fraction_of(depth: int, first: int) -> Data:
+    """q' = q + h q e_n, e_n = 1/(1 + e_(n−1)) a continued fraction: ΔJ = h e_n, not zero."""
+    functions: list[list[object]] = [["e0", "inverse", [[str(first)]]]]
+    functions += [[f"e{k}", "inverse", [["1"], ["1", f"e{k - 1}"]]] for k in range(1, depth + 1)]
+    last = [["1", f"e{depth}"]]
+    return {
+        "format": FORMAT,
+        "scheme": "made",
+        "hamiltonian": [["1/2", "p", "p"]],
+        "functions": functions,
+        "p_next": [[["1", "p"]]],
+        "q_next": [[["1", "q"]], [["1", "q", f"e{depth}"]]],
+        "convergence_order": 0,
+        "order": 1,
+        "leading": last,
+        "witness": {"p": "1", "q": "1"},
+    }
+
+
+@drawn(6)
+@given(st.integers(0, 30), st.booleans(), st.integers(1, 9), st.integers(1, 4))
+def test_a_certificate_is_refused_that_is_nested_beyond_all_bounds(
+    depth: int, beyond: bool, first: int, times: int
+) -> None:
+    depth += sys.getrecursionlimit() * beyond
+    data = fraction_of(depth, first)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "certificate.json"
+        path.write_text(json.dumps(data), encoding="utf-8")
+        holds, said = checked(path)
+        assert holds == (not beyond)
+        assert said == (statement(data) if holds else "its functions are nested too deeply")
+        data["leading"][0][0] = str(Fraction(times + 1, times))
+        path.write_text(json.dumps(data), encoding="utf-8")
+        assert not checked(path)[0], "another leading coefficient is none"
+        path.write_text("[" * (depth * 100), encoding="utf-8")
+        with pytest.raises(InputError):
+            checked(path)

@@ -1,0 +1,185 @@
+"""Maps with h in their functions, first coefficients, and potentials of drawn ones."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import sympy
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from tests.examples import drawn
+from tests.helpers.random_formulas import (
+    H,
+    P,
+    Q,
+    lie_step,
+    plain,
+    polynomials,
+    rationals,
+    zero_there,
+)
+from tests.helpers.random_maps import determinant, order_of_flow
+from verify.algebra.formula import parse, to_text
+from verify.algebra.generators import embed
+from verify.algebra.ring import Decision
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_left
+from verify.proof.order import Proof, prove
+from verify.proof.potential import potential_of
+from verify.schemes import get
+from verify.schemes.step_map import StepMap
+from verify.schemes.substep import h_inside
+from verify.verdict import Verdict
+
+quick = drawn(14)
+few = drawn(8)
+
+
+# -- maps that are no polynomials in h ------------------------------------------------------------
+
+FREE = Hamiltonian.parse("p**2/2")
+INSIDE = ("1/(1 + ({})*h)", "exp(({})*h)", "1/(1 + ({})*h**2*q**2)", "cos(({})*h)", "exp(({})*h*q)")
+
+
+@drawn(5)
+@given(st.sampled_from(INSIDE), rationals(3), st.integers(0, 3), polynomials("pq", 2, 1))
+def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
+    inside: str, size: Fraction, power: int, factor: str
+) -> None:
+    text = "p**2/2 + q**2/2 + q**3/3"
+    eta = max(power, 1)
+    p, q = (str(x) for x in lie_step(plain(text), eta))
+    bent = f"h**{power}*({inside.format(size)})*({factor})"
+    hamiltonian = Hamiltonian.parse(text)
+    step_map = StepMap.from_formulas(hamiltonian, f"{p} + {bent}", q)
+    step = [plain(f"{p} + {bent}"), plain(q)]
+    series = [
+        sum((x.diff(H, n).subs(H, 0) / math.factorial(n) * H**n for n in range(7)), sympy.S.Zero)
+        for x in step
+    ]
+    (part,) = step_map.substeps
+    assert part.degree is part.terms is step_map.taylor(3) is None
+    assert h_inside(part.ring, part.p_next)
+    assert not h_inside(part.ring, part.q_next)
+    proof = prove(step_map)
+    assert proof.convergence_order == order_of_flow(plain(text), series, 4)
+    delta_j = determinant(step)
+    found = [delta_j.diff(H, n).subs(H, 0) / math.factorial(n) for n in range(5)]
+    first = next((n for n, c in enumerate(found) if not zero_there(c)), None)
+    if first is not None:
+        assert proof.order == first
+        assert zero_there(proof.leading - found[first])
+    expansion = Expansion(part.ring, part.p_next)
+    assert expansion.length == MOST_ORDERS + 1
+    for n in (3, 0, 1, 5):
+        ring, x = expansion.coefficient(n)
+        true = step[0].diff(H, n).subs(H, 0) / math.factorial(n)
+        assert zero_there(ring.expression(x) - true)
+    assert step_map.delta_j_text is not None
+    assert zero_there(parse(step_map.delta_j_text, ("p", "q", "h")) - delta_j)
+
+
+@drawn(3)
+@given(st.integers(MOST_ORDERS + 2, MOST_ORDERS + 9))
+def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: int) -> None:
+    p_next = f"p*(1 + h**{power})/(1 + 2*h**{power})"
+    proof = prove(StepMap.from_formulas(Hamiltonian.parse("p**2/2"), p_next, "q + h*p"))
+    assert (proof.order, proof.area_preserving) == (None, False)
+    assert "is not the zero function" in proof.reason
+    assert proof.verdict is Verdict.PROVED
+    kicked = StepMap.from_formulas(FREE, "p - h**2*p", "q")
+    moved = StepMap.from_formulas(FREE, "p", f"q + h*p + h**{power}*q")
+    parts = moved.substeps + moved.substeps
+    both = prove(StepMap(FREE, parts))
+    assert (both.order, both.area_preserving) == (None, False), "of a composition as well"
+    assert prove(StepMap(FREE, parts + kicked.substeps)).order == 2
+
+
+@few
+@given(st.lists(polynomials("pq", 2, 1) | st.just("0"), min_size=1, max_size=5))
+def test_the_first_coefficient_left_is_the_first_that_is_not_0(given_: list[str]) -> None:
+    ring, found = embed([parse(x) for x in given_], ("p", "q"))
+    first = next((n for n, x in enumerate(found) if x != 0), None)
+    left = first_left(lambda n: (ring, found[n]), len(found))
+    assert (left.power if left else None) == first
+    whole = sum((parse(x) * H**n for n, x in enumerate(given_)), sympy.S.Zero)
+    ring, (x,) = embed([whole], ("p", "q", "h"))
+    expansion = Expansion(ring, x)
+    assert expansion.length == 1 + max((n for n, c in enumerate(found) if c != 0), default=0)
+    leading = expansion.leading()
+    assert (leading.power, leading.decision.zero) == (first, first is None)
+    true = parse(given_[first]) if first is not None else 0
+    assert sympy.expand(leading.coefficient - true) == 0
+    assert sympy.expand(parse(leading.text) - true) == 0
+
+
+# -- potentials -----------------------------------------------------------------------------------
+
+FIELDS = (
+    "p**2/2 + q**2/2 + q**3/3",
+    "p**2/2 - cos(q)",
+    "p**2/2 + p*q**2 + q**4/4",
+    "p**2/2 + exp(q)",
+)
+
+
+def proof_with(text: str, leading: str | sympy.Expr) -> Proof:
+    """A proof whose leading coefficient is this one."""
+    step_map = get("rk4").step_map(Hamiltonian.parse(text))
+    field = step_map.substeps[0].field
+    own, (x,) = Hamiltonian.parse(text).field(
+        parse(leading) if isinstance(leading, str) else leading
+    )
+    first = Leading(5, Decision(False), (own.ring, x))
+    true = prove(get("lie1").step_map(Hamiltonian.parse(text)), get("lie1"))
+    assert field is not None
+    return replace(true, order=5, first=first, step_map=step_map)
+
+
+@few
+@given(st.sampled_from(FIELDS), polynomials("pq", 3, 2))
+def test_a_leading_coefficient_that_is_x_g_has_a_potential(text: str, g: str) -> None:
+    exact, inner = plain(text), plain(g)
+    along = sympy.expand(exact.diff(P) * inner.diff(Q) - exact.diff(Q) * inner.diff(P))
+    assume(along != 0)
+    proof = proof_with(text, parse(to_text(along)))
+    found = potential_of(proof, get("rk4"))
+    assert found.holds is True
+    assert "linear algebra" in found.reason
+    assert found.potential is not None
+    gap = exact.diff(P) * found.potential.diff(Q) - exact.diff(Q) * found.potential.diff(P) - along
+    assert sympy.simplify(gap) == 0
+    assert found.text is not None
+    assert sympy.simplify(parse(found.text) - found.potential) == 0
+
+
+EQUILIBRIA = [
+    ("p**2/2 + q**2/2", "0", "0"),
+    ("p**2/2 - cos(q)", "0", "0"),
+    ("p**2/2 + (q - 1)**2", "0", "1"),
+    ("(p + 1)**2/2 + q**2", "-1", "0"),
+    ("p**2/2 - sin(q/2)", "0", "pi"),
+    ("p**2/2 + (q + 1)**2*q**0", "0", "-1"),
+]
+
+
+@few
+@given(st.sampled_from(EQUILIBRIA), polynomials("pq", 2, 2))
+def test_at_an_equilibrium_where_l_is_not_zero_no_potential_is_believed(
+    case: tuple[str, str, str], leading: str
+) -> None:
+    text, p, q = case
+    found = potential_of(proof_with(text, leading), get("rk4"))
+    there = plain(leading).subs({P: sympy.sympify(p), Q: sympy.sympify(q)})
+    if there != 0:
+        assert (found.holds, found.potential, found.text) == (False, None, None)
+        assert "equilibrium" in found.reason
+    if found.holds is False:
+        assert f"p = {p}, q = {q}" in found.reason or text == "p**2/2 - cos(q)" or "sin" in text
+    if found.holds:
+        exact = plain(text)
+        g = found.potential
+        assert g is not None
+        along = exact.diff(P) * g.diff(Q) - exact.diff(Q) * g.diff(P)
+        assert sympy.simplify(along - plain(leading)) == 0

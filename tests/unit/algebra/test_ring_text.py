@@ -1,0 +1,57 @@
+"""Texts that are too long to be factored: their values are those of what they write."""
+
+import re
+from typing import Any
+
+import mpmath
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.stages import Stages
+
+DIGITS = 20
+
+
+def value_of(text: str, at: dict[sympy.Symbol, Any]) -> Any:
+    """Of the formula, read by Python with each integer in it a number of mpmath's.
+
+    sympy would take ten seconds to read a thousand terms.
+    """
+    places = {str(x): mpmath.mpf(v.p) / v.q for x, v in at.items()}
+    known = {"mpf": mpmath.mpf, "sin": mpmath.sin, "cos": mpmath.cos, **places}
+    return eval(re.sub(r"\b\d+\b", r"mpf(\g<0>)", text), known)  # noqa: S307 - the ring's text
+
+
+def agrees(text: str, base: sympy.Expr, power: int, at: dict[sympy.Symbol, Any]) -> bool:
+    with mpmath.workdps(2 * DIGITS):
+        true = sympy.N(base.subs(at), 2 * DIGITS) ** power
+        return bool(abs(value_of(text, at) - true) < mpmath.mpf(10) ** -DIGITS)
+
+
+def test_what_is_too_long_to_be_factored_is_written_with_named_parts_spelled_out() -> None:
+    field = Hamiltonian.parse("p**3/3 + p**2*q**2 - cos(q)").field()[0]
+    stages = Stages(field, 1)
+    ring, (p, q) = stages.ring, stages.start
+    inner = ring.named(p**2 + stages.field.h_q)
+    long = ring.reduce((inner + p + 2 * q + 1) ** 12)
+    assert len(long) > 300
+    text = ring.text(long)
+    assert "None" not in text
+    at = {symbol("p"): sympy.Rational(1, 3), symbol("q"): sympy.Rational(-2, 7)}
+    base = ring.expression(inner) + symbol("p") + 2 * symbol("q") + 1
+    assert agrees(text, base, 12, at)
+    assert not agrees(text + " + 1/10**15", base, 12, at)
+
+
+def test_a_parameter_named_like_anything_keeps_its_name_in_a_long_text() -> None:
+    names = ("g5_", "a_1", "g_1")
+    formula = "+".join(f"{name}*p**{k}*q**{3 - k}" for k, name in enumerate(names)) + "+sin(q)"
+    field = Hamiltonian.parse(formula).field()[0]
+    long = field.ring.reduce((field.h_p + field.h_q + 1) ** 6)
+    assert len(long) > 300
+    text = field.ring.text(long)
+    at = {symbol(n): sympy.Rational(k + 2, 7) for k, n in enumerate(("p", "q", *names))}
+    base = field.ring.expression(field.h_p) + field.ring.expression(field.h_q) + 1
+    assert agrees(text, base, 6, at)
+    assert not agrees(text.replace("g5_", "g_1"), base, 6, at)

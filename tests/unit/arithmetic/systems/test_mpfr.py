@@ -1,0 +1,139 @@
+"""MPFR against mpmath: the same bits on + − × ÷, the same end of an orbit that leaves the range.
+
+Neither has code in common with the other: mpmath rounds its own integers.
+"""
+
+from fractions import Fraction
+from typing import Any
+
+import gmpy2
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.examples import drawn
+from verify import arithmetic
+from verify.arithmetic.systems import mpfr, mpmath
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.stepping import Job
+from verify.runs.digits_on_demand import measure
+from verify.runs.float64 import bounded
+from verify.runs.run import ASKED, run
+
+DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + 7*q**4/12")
+DIVIDING = Hamiltonian.parse("p**2/2 + 1/(q**2 + a) + q/(3 + p**2)", {"a": "2/7"})
+MAP = "p_next = p - h*q/(1 + h*p**2); q_next = q + h*p"
+JOBS = [
+    pytest.param(DUFFING, "lie2", id="duffing-lie2"),
+    pytest.param(DUFFING, "lie3", id="duffing-lie3"),
+    pytest.param(DIVIDING, "lie2", id="dividing-lie2"),
+    pytest.param(Hamiltonian.parse("p**2/2 + q**2/2"), MAP, id="dividing-map"),
+]
+
+
+def job(h: Hamiltonian, scheme: str, q: Fraction, p: Fraction, steps: int, size: Fraction) -> Job:
+    return Job(h, scheme, {"q": q, "p": p, "h": size}, steps, frozenset(ASKED), 0)
+
+
+def assert_the_same_bits(of: Job, bits: int) -> None:
+    ours, theirs = of.go(mpfr.at_bits(bits)), of.go(mpmath.at_bits(bits))
+    assert ours.done == theirs.done
+    assert ours.trail == theirs.trail
+
+
+@pytest.mark.parametrize("bits", [24, 53, 113, 170, 1000])
+@pytest.mark.parametrize(("h", "scheme"), JOBS)
+def test_a_rational_step_has_the_bits_that_mpmath_has(
+    h: Hamiltonian, scheme: str, bits: int
+) -> None:
+    of = job(h, scheme, Fraction(3, 2), Fraction(1, 3), 1500, Fraction(1, 70))
+    assert len(of.go(mpfr.at_bits(bits)).trail) > 10, "the whole state, at points on the way too"
+    assert_the_same_bits(of, bits)
+
+
+@drawn(50)
+@given(
+    q=st.fractions(-2, 2, max_denominator=10**6),
+    p=st.fractions(-2, 2, max_denominator=10**6),
+    size=st.fractions("1/1000", 1, max_denominator=1000),
+    bits=st.integers(2, 400),
+    at=st.sampled_from(JOBS),
+)
+def test_the_bits_are_the_same_from_anywhere_at_any_precision(
+    q: Fraction, p: Fraction, size: Fraction, bits: int, at: Any
+) -> None:
+    assert_the_same_bits(job(*at.values, q, p, 40, size), bits)
+
+
+@pytest.mark.parametrize("digits", [1, 2, 15, 17, 50, 333])
+def test_as_many_digits_are_as_many_bits_as_in_mpmath(digits: int) -> None:
+    assert mpfr.make(digits).bits == mpmath.make(digits).bits
+
+
+def test_one_bit_less_is_seen() -> None:
+    """The twin of the tests above: they can tell a last bit."""
+    of = job(DUFFING, "lie2", Fraction(3, 2), Fraction(0), 100, Fraction(1, 70))
+    assert of.go(mpfr.at_bits(112)).values != of.go(mpmath.at_bits(113)).values
+
+
+@pytest.mark.parametrize(("scheme", "size"), [("lie2", "0.5"), ("lie3", "2"), ("lie1", "7/3")])
+def test_an_orbit_escapes_at_the_step_at_which_it_does_in_mpmath(scheme: str, size: str) -> None:
+    at: dict[str, Any] = {"q": 5, "p": 0, "step_size": size, "steps": 500, "digits": 20}
+    ours, theirs = (run(DUFFING, scheme, **at, arithmetic=n) for n in ("mpfr", "mpmath"))
+    assert ours.status == theirs.status == "left range"
+    assert ours.failed_step == theirs.failed_step
+
+
+MADE = mpfr.at_bits(100)
+UNDEFINED = [
+    "1/(x - x)", "1/log(x - x)", "log(-x)", "sqrt(-x)", "root(-x, 3)", "root(-x, 4)",
+    "exp(1/(x - x)) - exp(1/(x - x))", "exp(exp(exp(exp(20*x))))", "1/exp(exp(exp(20*x)))",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("source", UNDEFINED)
+def test_what_is_undefined_or_out_of_range_is_an_error_even_where_a_number_comes_out(
+    source: str,
+) -> None:
+    x = MADE.number(Fraction(4, 3))
+    with pytest.raises((ArithmeticError, ValueError)), MADE.context():
+        eval(source, dict(MADE.functions), {"x": x})  # noqa: S307 - this file's own text
+    with MADE.context():
+        assert x - x == 0, "an earlier error is forgotten"
+
+
+def test_a_context_is_its_own_whatever_the_threads_context_is() -> None:
+    x = MADE.number(Fraction(1, 3))
+    with MADE.context():
+        expected = MADE.exact(gmpy2.sin(x) / 3)
+    odd = gmpy2.context(
+        precision=20, real_prec=11, round=gmpy2.RoundUp, emax=9, emin=-9, subnormalize=True,
+        trap_inexact=True, allow_complex=True, rational_division=True,
+    )  # fmt: skip
+    with odd:
+        before = repr(gmpy2.get_context())
+        made = mpfr.at_bits(100)
+        assert made.number(Fraction(1, 3)) == x
+        assert made.functions == MADE.functions
+        with made.context():
+            assert made.exact(gmpy2.sin(x) / 3) == expected
+        with pytest.raises(KeyError), made.context():
+            raise KeyError
+        with pytest.raises(ArithmeticError), made.context():
+            gmpy2.log(x - x)
+        with made.context(), arithmetic.get("mpfr", 500).context(), made.context():
+            pass
+        assert repr(gmpy2.get_context()) == before
+
+
+@pytest.mark.parametrize("text", ["p**2/2 + q**2/2 + 7*q**4/12", "p**2/2 - cos(q)"])
+def test_the_bounds_of_float64_are_those_that_mpmath_would_give(text: str) -> None:
+    of = job(Hamiltonian.parse(text), "lie2", Fraction(3, 2), Fraction(0), 500, Fraction(1, 70))
+    first = of.go(arithmetic.get("float64", 17))
+    found = bounded(of, first, {})
+    assert found.rigorous
+    by_mpmath = measure(of, "mpmath", 30).bounds
+    for name, (value, bound) in found.values.items():
+        true, error = by_mpmath.values[name]
+        assert value == first.values[name]
+        assert abs(bound - abs(value - true)) <= abs(true) / 10**19 + error

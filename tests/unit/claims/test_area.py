@@ -1,0 +1,286 @@
+"""Claims about orders and area: true, off by one, undecided; of one H and of every H."""
+
+import sys
+from dataclasses import dataclass
+from fractions import Fraction
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from verify.claims.area import Known, judge_area, judge_order
+from verify.claims.findings import Findings
+from verify.claims.judge import check_claim
+from verify.claims.kinds import AreaClaim, ConvergenceOrderClaim, DeltaJClaim, OrderClaim
+from verify.errors import InputError
+from verify.scenes.results.core import ClaimResult
+from verify.scenes.scene import Scene
+from verify.verdict import Verdict
+
+PROVED, REFUTED, UNDECIDED = Verdict.PROVED, Verdict.REFUTED, Verdict.UNDECIDED
+DUFFING = "p**2/2 + q**2/2 + delta*q**4/4"
+PENDULUM = "p**2/2 - cos(q)"
+HARMONIC = "p**2/2 + q**2/2"
+# H and scheme -> the order of ΔJ (None where ΔJ ≡ 0) and of convergence, by hand.
+KNOWN = {
+    (DUFFING, "lie1"): (2, 1),
+    (DUFFING, "lie2"): (3, 2),
+    (DUFFING, "lie3"): (4, 3),
+    (DUFFING, "symplectic-euler"): (None, 1),
+    (PENDULUM, "lie1"): (2, 1),
+    (PENDULUM, "lie2"): (3, 2),
+    (PENDULUM, "symplectic-euler"): (None, 1),
+    (HARMONIC, "lie1"): (2, 1),
+    (HARMONIC, "lie2"): (4, 2),  # det J = 1 + h⁴/4
+    (HARMONIC, "lie3"): (4, 3),
+    (HARMONIC, "lie4"): (6, 4),
+    (DUFFING, "p_next = p - h*(q + delta*q**3); q_next = q + h*p"): (2, 1),
+    (PENDULUM, "p_next = p; q_next = q"): (None, 0),
+    (PENDULUM, "p_next = p - h*sin(q) + h**9*p; q_next = q + h*p_next"): (9, 1),
+}
+every_case = pytest.mark.parametrize(("at", "orders"), KNOWN.items(), ids=lambda x: str(x)[:40])
+
+
+def judged(claim: Any, hamiltonian: str, **scene: Any) -> ClaimResult:
+    made = Scene(hamiltonian=hamiltonian, schemes=(claim.scheme,), name="made", **scene)
+    return check_claim(claim, Findings({"made": made}))
+
+
+def order(r: int, scheme: str, **more: Any) -> OrderClaim:
+    return OrderClaim(id="c", scene="made", scheme=scheme, kind="order", order=r, **more)
+
+
+def convergence(k: int, scheme: str, **more: Any) -> ConvergenceOrderClaim:
+    return ConvergenceOrderClaim(id="c", scene="made", scheme=scheme, kind="convergence_order",
+                                 convergence_order=k, **more)  # fmt: skip
+
+
+def area(holds: bool, scheme: str, **more: Any) -> AreaClaim:
+    return AreaClaim(id="c", scene="made", scheme=scheme, kind="area_preserving",
+                     area_preserving=holds, **more)  # fmt: skip
+
+
+@every_case
+def test_the_order_of_delta_j_is_proved_and_every_other_refuted(at: Any, orders: Any) -> None:
+    hamiltonian, scheme = at
+    for r in range(1, 12):
+        exactly = judged(order(r, scheme), hamiltonian).verdict
+        assert exactly is (PROVED if r == orders[0] else REFUTED), r
+        at_least = judged(order(r, scheme, at_least=True), hamiltonian).verdict
+        assert at_least is (PROVED if orders[0] is None or r <= orders[0] else REFUTED), r
+
+
+@every_case
+def test_the_order_of_convergence_is_proved_and_every_other_refuted(at: Any, orders: Any) -> None:
+    hamiltonian, scheme = at
+    for k in range(1, 7):
+        assert judged(convergence(k, scheme), hamiltonian).verdict is (
+            PROVED if k == orders[1] else REFUTED
+        )
+        assert judged(convergence(k, scheme, at_least=True), hamiltonian).verdict is (
+            PROVED if k <= orders[1] else REFUTED
+        )
+
+
+@every_case
+def test_area_preservation_is_proved_or_refuted(at: Any, orders: Any) -> None:
+    hamiltonian, scheme = at
+    preserved = orders[0] is None
+    assert judged(area(preserved, scheme), hamiltonian).verdict is PROVED
+    assert judged(area(not preserved, scheme), hamiltonian).verdict is REFUTED
+
+
+def test_a_value_of_a_parameter_counts() -> None:
+    zero = {"parameters": {"delta": Fraction(0)}}
+    assert judged(order(3, "lie2"), DUFFING).verdict is PROVED
+    assert judged(order(3, "lie2"), DUFFING, **zero).verdict is REFUTED
+    assert judged(order(4, "lie2"), DUFFING, **zero).verdict is PROVED
+
+
+# log(q²) − 2 log(q) is 0 where q > 0, and the ring does not know it.
+HIDDEN = "log(q**2) - 2*log(q)"
+
+
+def test_what_is_not_decided_in_the_ring_leaves_orders_undecided_from_there_on() -> None:
+    scheme = f"p_next = p - h*sin(q) + h**5*p*({HIDDEN}); q_next = q + h*p_next"
+    found = {r: judged(order(r, scheme), PENDULUM).verdict for r in range(1, 8)}
+    assert [found[r] for r in range(1, 5)] == [REFUTED] * 4
+    assert {found[r] for r in range(5, 8)} == {UNDECIDED}
+    at_least = {r: judged(order(r, scheme, at_least=True), PENDULUM).verdict for r in (4, 5, 6)}
+    assert at_least == {4: PROVED, 5: PROVED, 6: UNDECIDED}
+    assert judged(area(True, scheme), PENDULUM).verdict is UNDECIDED
+    assert judged(area(False, scheme), PENDULUM).verdict is UNDECIDED
+
+
+def test_a_map_that_may_be_exact_to_higher_order_leaves_convergence_undecided() -> None:
+    scheme = f"p_next = p + h*({HIDDEN}); q_next = q + h*p"
+    found = judged(convergence(1, scheme), "p**2/2").verdict
+    assert found is UNDECIDED
+
+
+@pytest.mark.parametrize("r", [1, 12])
+def test_the_exact_flow_has_every_order_looked_at(r: int) -> None:
+    free = "p_next = p; q_next = q + h*p"
+    assert judged(convergence(r, free, at_least=True), "p**2/2").verdict is PROVED
+    exactly = judged(convergence(r, free), "p**2/2").verdict
+    assert exactly is (REFUTED if r < 12 else UNDECIDED)
+
+
+@pytest.mark.parametrize(
+    ("known", "exactly", "at_least"),
+    [
+        (Known(3, True, False, "e"), {2: REFUTED, 3: PROVED, 4: REFUTED}, {3: PROVED, 4: REFUTED}),
+        (Known(3, False, None, "e"), {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED},
+         {3: PROVED, 4: UNDECIDED}),
+        (Known(3, False, False, "e"), {2: REFUTED, 3: UNDECIDED}, {3: PROVED, 4: UNDECIDED}),
+        (Known(0, False, True, "e"), {1: REFUTED}, {1: PROVED, 40: PROVED}),
+    ],
+)  # fmt: skip
+def test_orders_are_judged_by_what_is_known(known: Known, exactly: Any, at_least: Any) -> None:
+    for r, verdict in exactly.items():
+        assert judge_order(order(r, "lie2"), r, known).verdict is verdict
+    for r, verdict in at_least.items():
+        assert judge_order(order(r, "lie2", at_least=True), r, known).verdict is verdict
+
+
+def test_area_is_judged_by_what_is_known() -> None:
+    for vanishes, true, false in (
+        (True, PROVED, REFUTED),
+        (False, REFUTED, PROVED),
+        (None, UNDECIDED, UNDECIDED),
+    ):
+        assert judge_area(area(True, "lie2"), vanishes, "e").verdict is true
+        assert judge_area(area(False, "lie2"), vanishes, "e").verdict is false
+
+
+# -- every H, by a stub of the proof --------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Stub:
+    """The fields of `verify.proof.every.EveryProof` that a claim asks for."""
+
+    verdict: Verdict = PROVED
+    reason: str = "by hand"
+    order: int | None = 3
+    area_preserving: bool | None = False
+    convergence_order: int | None = 2
+    leading: str = "H_p*H_ppq - 2*H_q*H_ppp"
+
+
+EULER = Stub(order=None, area_preserving=True, convergence_order=1, leading="0")
+OPEN = Stub(UNDECIDED, "left open", None, None, None, "0")
+
+
+@pytest.fixture
+def proofs(monkeypatch: pytest.MonkeyPatch) -> dict[tuple[str, bool], Stub]:
+    """What is proved, by scheme and whether H is separable."""
+    known = {("lie2", False): Stub(), ("lie2", True): Stub(),
+             ("symplectic-euler", True): EULER, ("lie3", False): OPEN}  # fmt: skip
+    module = ModuleType("verify.proof.every")
+    module.prove_every = lambda name, separable=False: known[name, separable]  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "verify.proof.every", module)
+    return known
+
+
+EVERY, SEPARABLE = {"every": "hamiltonian"}, {"every": "separable hamiltonian"}
+
+
+@pytest.mark.usefixtures("proofs")
+@pytest.mark.parametrize(
+    ("claim", "expected"),
+    [
+        (order(3, "lie2", **EVERY), PROVED),
+        (order(2, "lie2", **EVERY), REFUTED),
+        (order(4, "lie2", **EVERY), REFUTED),
+        (order(2, "lie2", at_least=True, **EVERY), PROVED),
+        (order(4, "lie2", at_least=True, **EVERY), REFUTED),
+        (order(3, "lie3", **EVERY), UNDECIDED),
+        (order(1, "symplectic-euler", **SEPARABLE), REFUTED),
+        (order(9, "symplectic-euler", at_least=True, **SEPARABLE), PROVED),
+        (convergence(2, "lie2", **EVERY), PROVED),
+        (convergence(1, "lie2", **EVERY), REFUTED),
+        (convergence(3, "lie2", **EVERY), REFUTED),
+        (convergence(3, "lie3", **EVERY), UNDECIDED),
+        (area(False, "lie2", **EVERY), PROVED),
+        (area(True, "lie2", **EVERY), REFUTED),
+        (area(True, "symplectic-euler", **SEPARABLE), PROVED),
+        (area(False, "symplectic-euler", **SEPARABLE), REFUTED),
+        (area(True, "lie3", **EVERY), UNDECIDED),
+    ],
+)
+def test_a_claim_of_every_h_is_held_against_the_proof(claim: Any, expected: Verdict) -> None:
+    found = check_claim(claim, Findings({}))
+    assert found.verdict is expected
+    assert found.evidence
+
+
+def test_a_map_that_reached_all_that_was_looked_at_may_be_of_higher_order(proofs: Any) -> None:
+    proofs["lie2", False] = Stub(convergence_order=3)
+    found = {k: check_claim(convergence(k, "lie2", **EVERY), Findings({})).verdict
+             for k in (2, 3, 4)}  # fmt: skip
+    assert found == {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED}
+
+
+def first_term(formula: str, up_to: int = 4, scheme: str = "lie2", **every: str) -> DeltaJClaim:
+    return DeltaJClaim(id="c", scheme=scheme, kind="delta_j", formula=formula, up_to=up_to,
+                       **(every or EVERY))  # type: ignore[arg-type]  # fmt: skip
+
+
+@pytest.mark.usefixtures("proofs")
+@pytest.mark.parametrize(
+    ("formula", "up_to", "expected"),
+    [
+        ("h**3*(H_p*H_ppq - 2*H_q*H_ppp)", 4, PROVED),
+        ("h**3*(H_p*H_qpp - 2*H_01*H_30) + 7*h**4*H_q", 4, PROVED),
+        ("0", 3, PROVED),
+        ("h**3*(H_p*H_ppq + 2*H_q*H_ppp)", 4, REFUTED),
+        ("h**3*(H_p*H_ppq - 2*H_q*H_pppp)", 4, REFUTED),
+        ("h**2*(H_p*H_ppq - 2*H_q*H_ppp)", 4, REFUTED),
+        ("2*h**3*(H_p*H_ppq - 2*H_q*H_ppp)", 4, REFUTED),
+        ("0", 4, REFUTED),
+        ("h**3*(H_p*H_ppq - 2*H_q*H_ppp)", 5, UNDECIDED),
+        ("h**3*(H_p*H_ppq - 3*H_q*H_ppp)", 5, REFUTED),
+    ],
+)
+def test_the_first_term_for_every_h_is_held_against_the_proof(
+    formula: str, up_to: int, expected: Verdict
+) -> None:
+    assert check_claim(first_term(formula, up_to), Findings({})).verdict is expected
+
+
+@pytest.mark.usefixtures("proofs")
+def test_mixed_derivatives_of_a_separable_h_vanish() -> None:
+    formula = "-2*h**3*H_q*H_ppp"
+    assert check_claim(first_term(formula), Findings({})).verdict is REFUTED
+    assert check_claim(first_term(formula, **SEPARABLE), Findings({})).verdict is PROVED
+    euler = first_term("h**4*H_pq", 8, "symplectic-euler", **SEPARABLE)
+    assert check_claim(euler, Findings({})).verdict is PROVED
+    wrong = first_term("h**4*H_pp", 8, "symplectic-euler", **SEPARABLE)
+    assert check_claim(wrong, Findings({})).verdict is REFUTED
+
+
+@pytest.mark.usefixtures("proofs")
+@pytest.mark.parametrize("formula", ["h**3*T_p", "h*H_x", "h*delta", "h*H_pq5", "h**", "h*H"])
+def test_other_names_than_derivatives_of_h_are_input_errors(formula: str) -> None:
+    with pytest.raises(InputError, match="claim c: formula"):
+        check_claim(first_term(formula), Findings({}))
+
+
+# -- the paper's schemes, off by one --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
+@pytest.mark.parametrize("scheme", ["lie2", "symplectic-euler"])
+def test_every_planted_order_of_the_papers_schemes_is_refuted(
+    hamiltonian: str, scheme: str
+) -> None:
+    delta_j, agreement = KNOWN[hamiltonian, scheme]
+    true: list[Any] = [convergence(agreement, scheme), area(delta_j is None, scheme)]
+    planted: list[Any] = [convergence(agreement + 1, scheme), area(delta_j is not None, scheme)]
+    planted += [convergence(agreement - 1, scheme)] if agreement > 1 else []
+    if delta_j is not None:
+        true.append(order(delta_j, scheme))
+        planted += [order(delta_j + d, scheme) for d in (1, -1)]
+    assert {judged(claim, hamiltonian).verdict for claim in true} == {PROVED}
+    assert {judged(claim, hamiltonian).verdict for claim in planted} == {REFUTED}

@@ -1,0 +1,266 @@
+"""The paper's theorems: their verdicts, and that no wrong counterexample or identity passes."""
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+import sympy
+
+import verify
+from tests.helpers.theorem_controls import refused
+from verify.claims.theorems import (
+    check_theorem,
+    convergence,
+    criteria,
+    criteria_empty,
+    criteria_examples,
+    lie_series,
+    lipschitz,
+    matrix_vector,
+    names,
+)
+from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
+from verify.claims.theorems.criteria_examples import Example
+from verify.claims.theorems.differential import Flow, generic
+from verify.claims.theorems.exact_maps import Areas, Point, value
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.scene import read_toml
+from verify.schemes import get
+from verify.verdict import Verdict
+
+PROVED, REFUTED, UNDECIDED = Verdict.PROVED, Verdict.REFUTED, Verdict.UNDECIDED
+TOML = Path(verify.__file__).parents[1] / "reports" / "paper" / "claims.toml"
+VERDICTS = {
+    "lie-exponential": PROVED,
+    "eq-3": REFUTED,
+    "convergence": PROVED,
+    "eq-9": REFUTED,
+    "eq-10": REFUTED,
+    "two-norm": REFUTED,
+    "eq-12": REFUTED,
+    "near-identity": REFUTED,
+    "determinant-of-every-h": REFUTED,
+    "determinant-of-the-examples": PROVED,
+    "determinant-classification": PROVED,
+    "criterion-2-implies-3": PROVED,
+    "criterion-4-connection": REFUTED,
+    "criterion-4-stronger": REFUTED,
+    "criteria-of-consistent-schemes": REFUTED,
+    "total-error-increases": REFUTED,
+}
+
+
+# -- the registry ---------------------------------------------------------------------------------
+
+
+def test_every_theorem_is_found_and_has_its_verdict() -> None:
+    assert {name: check_theorem(name).verdict for name in names()} == VERDICTS
+
+
+@pytest.mark.parametrize("name", VERDICTS)
+def test_an_argument_is_one_line_a_paragraph_and_a_table(name: str) -> None:
+    argument = check_theorem(name)
+    assert argument.id == name
+    assert "\n" not in argument.evidence + argument.proof + argument.statement
+    assert argument.evidence
+    assert argument.proof.endswith("∎")
+    assert "  " not in argument.proof
+    head, *rows = argument.details
+    assert rows
+    assert all(len(row) == len(head) and row[-1] == "holds" for row in rows)
+
+
+def test_the_claims_file_says_what_the_functions_judge() -> None:
+    tables = [t for t in read_toml(TOML)["claim"] if t["kind"] == "theorem"]
+    assert {t["name"] for t in tables} == set(names())
+    for table in tables:
+        argument = check_theorem(table["name"])
+        assert table["kind"] == "theorem"
+        assert (table["id"], table["source"], table["statement"]) == (
+            argument.id, argument.source, argument.statement,
+        )  # fmt: skip
+
+
+def test_an_unknown_theorem_is_named() -> None:
+    with pytest.raises(InputError, match=r"theorem=fermat.*eq-9"):
+        check_theorem("fermat")
+
+
+# -- a failed check shows nothing -----------------------------------------------------------------
+
+
+def argued(*checks: Check) -> Argument:
+    return concluded("x", "s", "t", PROVED, "because", "proof ∎", checks)
+
+
+def test_an_argument_with_a_failed_check_or_none_is_undecided_and_has_no_proof() -> None:
+    good, bad = Check("one", True, "1"), Check("two", False, "2")
+    assert argued(good).verdict is PROVED
+    for wrong in (argued(good, bad), argued(bad), argued()):
+        assert wrong.verdict is UNDECIDED
+        assert wrong.proof == ""
+    assert "two" in argued(good, bad).evidence
+
+
+# -- generic H, against sympy's own derivatives ---------------------------------------------------
+
+
+@pytest.mark.parametrize("eta", [1, 2, 3])
+@pytest.mark.parametrize("formula", ["p**3*q + q**4/4 + p**2/2", "p**2*q**2 - q"])
+def test_delta_j_of_a_generic_h_is_that_of_the_house_for_one_h(formula: str, eta: int) -> None:
+    flow = generic(eta + 2)
+    hamiltonian = Hamiltonian.parse(formula)
+    p, q, h = sympy.symbols("p q h", real=True)
+    put = {}
+    for name in flow.ring.names:
+        if name.startswith("H"):
+            i, j = map(int, name[1:].split("_"))
+            put[name] = sympy.diff(hamiltonian.expression, p, i, q, j) if i + j else None
+    total = sympy.Integer(0)
+    for n, x in flow.delta_j(*flow.lie(eta)).items():
+        for monomial, coefficient in x.to_dict().items():
+            term = sympy.Rational(int(coefficient.p), int(coefficient.q)) * h**n
+            for name, power in zip(flow.ring.names, monomial, strict=True):
+                if power:
+                    term *= put[name] ** int(power)
+            total += term
+    told = get(f"lie{eta}").step_map(hamiltonian).delta_j
+    assert sympy.expand(total - told) == 0
+
+
+def test_a_derivative_beyond_the_order_of_a_generic_h_is_an_error_and_not_zero() -> None:
+    flow = generic(2)
+    with pytest.raises(KeyError):
+        flow.along("p", 3)
+
+
+# -- Eq. 2–5 --------------------------------------------------------------------------------------
+
+
+def test_a_recursion_by_one_operator_alone_is_not_the_exponential() -> None:
+    def one_operator(flow: Flow, y: Any) -> Any:
+        return flow.h_p * flow.ring.diff(y, "q")
+
+    assert refused(lie_series.lie_exponential(one_operator))
+
+
+def test_a_recursion_with_a_wrong_sign_is_not_the_exponential() -> None:
+    assert refused(lie_series.lie_exponential(lambda flow, y: -lie_series.eq_4(flow, y)))
+
+
+def test_eq_3_with_q_for_p_is_not_refuted() -> None:
+    assert refused(lie_series.eq_3("q"))
+
+
+# -- Eq. 8–11 -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shift", [1, -1])
+def test_an_order_other_than_eta_is_not_proved(shift: int) -> None:
+    assert refused(convergence.convergence(shift))
+
+
+def test_eq_10_with_the_index_that_is_meant_is_not_refuted() -> None:
+    assert refused(convergence.eq_10(fixed=False))
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        (Point(Fraction(0), Fraction(1)), Point(Fraction(0), Fraction(1))),
+        (Point(Fraction(0), Fraction(0)), Point(Fraction(1), Fraction(1))),
+        (Point(Fraction(0), Fraction(0)), Point(Fraction(1), Fraction(0))),
+    ],
+)
+def test_a_pair_with_different_p_or_the_same_q_does_not_refute_eq_9(
+    pair: tuple[Point, Point],
+) -> None:
+    assert refused(lipschitz.eq_9(pair))
+
+
+def test_the_two_norm_is_not_refuted_where_the_step_does_not_stretch() -> None:
+    assert refused(lipschitz.two_norm(Point(Fraction(0), Fraction(0))))
+    assert refused(lipschitz.two_norm(Point(Fraction(0), Fraction(1, 2))))
+
+
+# -- Eq. 12 ---------------------------------------------------------------------------------------
+
+
+def test_eq_12_is_not_refuted_by_a_quadratic_h_or_by_the_origin() -> None:
+    assert refused(matrix_vector.eq_12(Hamiltonian.parse("p**2/2 + p*q + q**2")))
+    assert refused(matrix_vector.eq_12(point=Point(Fraction(0), Fraction(0))))
+
+
+@pytest.mark.parametrize(("p_next", "q_next"), [("-2*q", "p"), ("p - h*q", "q + h*p"), ("p", "q")])
+def test_a_map_that_changes_areas_or_moves_little_does_not_refute_near_identity(
+    p_next: str, q_next: str
+) -> None:
+    assert refused(matrix_vector.near_identity(p_next, q_next))
+
+
+# -- the criteria ---------------------------------------------------------------------------------
+
+EXAMPLES = [x for x in vars(criteria_examples).values() if isinstance(x, Example)]
+
+
+def planted(example: Example, **changes: Any) -> Example:
+    fields = {name: getattr(example, name) for name in example.__dataclass_fields__}
+    return Example(**{**fields, **changes})
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda e: e.name)
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_each_number_said_of_an_example_is_held_against_its_run(
+    example: Example, place: int
+) -> None:
+    assert example.check().holds
+
+    def closed(h: Fraction) -> Any:
+        numbers = list(example.closed(h))
+        numbers[place] += h**40
+        return tuple(numbers)
+
+    assert not planted(example, closed=closed).check().holds
+
+
+def test_the_criteria_are_not_told_apart_by_maps_with_other_numbers() -> None:
+    area_preserving = planted(criteria_examples.FRICTION, p_next="p", q_next="q + h*p")
+    assert refused(criteria.two_implies_three(planted(criteria_examples.NOT_UNIFORM, q_next="q")))
+    assert refused(criteria.connection(friction=area_preserving))
+    assert refused(criteria.connection(alternating=[area_preserving]))
+    assert refused(criteria.stronger(compensated=area_preserving))
+    drifting = planted(criteria_examples.COMPENSATED, p_next="p*(1 + h*(3/4 - q))")
+    assert refused(criteria.stronger(compensated=drifting))
+
+
+def test_the_inequalities_hold_for_every_run_and_not_for_made_up_numbers() -> None:
+    class Wrong(Areas):
+        mse = Fraction(0)
+
+    values = (Fraction(1, 2), Fraction(-1, 3), Fraction(2))
+    assert criteria.inequalities_hold(Areas(values))
+    assert not criteria.inequalities_hold(Wrong(values))
+
+
+def test_a_map_for_another_field_has_a_delta_j_of_order_h() -> None:
+    assert refused(criteria_empty.empty(hamiltonian=False))
+    assert 1 not in criteria_empty.consistent_map()
+
+
+def test_a_start_from_which_the_total_error_grows_does_not_refute_that_it_grows() -> None:
+    point = Point(Fraction(1), Fraction(1, 5))
+    assert refused(criteria_empty.increasing(point))
+
+
+def test_a_value_that_is_not_rational_is_not_taken_for_one() -> None:
+    p = sympy.Symbol("p", real=True)
+    with pytest.raises(ValueError, match="not rational"):
+        value(sympy.sqrt(p), Point(Fraction(2), Fraction(0)), Fraction(1))
+
+
+def test_vanishes_tells_a_zero_from_what_is_not() -> None:
+    ring = generic(1).ring
+    assert vanishes("x", ring.zero).holds
+    assert not vanishes("x", ring.zero, ring["p"]).holds

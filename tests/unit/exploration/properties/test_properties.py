@@ -1,0 +1,291 @@
+"""Every property of the catalogue: it holds of a scene, and a planted error makes it fail there."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from verify.arithmetic.exact import decimal
+from verify.exploration import properties
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.kernels.kernel import kernel_for
+from verify.proof import growth_law as growth
+from verify.proof.order import prove
+from verify.scenes.scene import scene_from
+from verify.schemes import get
+from verify.schemes.step_map import StepMap
+from verify.schemes.substep import Substep
+
+Patch = pytest.MonkeyPatch
+Plant = Callable[[Example, Patch], Example]
+
+
+def example_of(scheme: str, hamiltonian: str = "p**2/2 + q**2/2 + q**4/4") -> Example:
+    data = {
+        "hamiltonian": hamiltonian,
+        "schemes": [scheme],
+        "grid": {
+            "steps": 6,
+            "step_sizes": ["0.01"],
+            "initial_values": [{"q": "1.1", "p": "-0.3"}],
+        },
+    }
+    return Example.of(scene_from(data, "scene"))
+
+
+@pytest.fixture(autouse=True)
+def _every_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    take_every_turn(monkeypatch)
+
+
+def take_every_turn(patch: Patch) -> None:
+    """What looks at one example in a few looks at these."""
+    patch.setattr(Example, "turn", 0)
+    patch.setattr(Example, "is_turn", lambda self, one_in, after=0: True)
+
+
+def with_map(example: Example, change: Callable[[Substep], tuple[Any, Any]]) -> Example:
+    """The example, its scheme's last part changed for every H."""
+
+    def build(hamiltonian: Any) -> StepMap:
+        *before, last = example.scheme.build(hamiltonian).substeps
+        return StepMap(hamiltonian, (*before, Substep(last.field, *change(last))))
+
+    return replace(example, scheme=replace(example.scheme, build=build))
+
+
+def added(p_power: int, q_power: int, h_power: int, part: str = "p") -> Plant:
+    """h^… p^… q^…/1000 added to p' or q'."""
+
+    def changed(step: Substep) -> tuple[Any, Any]:
+        p, q, h = (step.ring.variable(name) for name in "pqh")
+        term = p**p_power * q**q_power * h**h_power / 1000
+        return step.p_next + term * (part == "p"), step.q_next + term * (part == "q")
+
+    return lambda example, _: with_map(example, changed)
+
+
+def wrong_order(example: Example, patch: Patch) -> Example:
+    """A proof that says one order more."""
+    proof = example.proof
+    assert proof.convergence_order is not None
+    wrong = replace(proof, convergence_order=proof.convergence_order + 1)
+    patch.setitem(example.__dict__, "proof", wrong)
+    return example
+
+
+def another_proof(example: Example, patch: Patch) -> Example:
+    """The proof of another map: an h³ term of the wrong sign."""
+    twisted = added(1, 1, 3)(example, patch)
+    patch.setitem(example.__dict__, "proof", prove(twisted.step_map, example.scheme))
+    return example
+
+
+def sums_for_products(example: Example, patch: Patch) -> Example:
+    """Λ as the sum of the ΔJ."""
+    from verify.kernels.kernel import Writer
+
+    kernel_for.cache_clear()
+    patch.setattr(Writer, "product_of_factors", lambda self: self.accumulate("lam", "dj"))
+    return example
+
+
+def off_by_a_digit(example: Example, patch: Patch) -> Example:
+    from verify.exploration.properties.numbers import number_systems_agree as module
+
+    true = module.run
+
+    def wrong(*args: Any, **named: Any) -> Any:
+        found = true(*args, **named)
+        last = found.values["q"]
+        moved = Fraction(last.value) + 4 * Fraction(last.bound)
+        value = last.model_copy(update={"value": decimal(moved, 60)})
+        return found.model_copy(update={"values": found.values | {"q": value}})
+
+    patch.setattr(module, "run", wrong)
+    return example
+
+
+def a_part_twice(example: Example, patch: Patch) -> Example:
+    from verify.studies.separation.chain import Chain
+
+    true = Chain.trail
+
+    def wrong(self: Chain, name: str) -> Any:
+        trail, bound = true(self, name)
+        return (tuple(2 * x for x in trail) if name == "product" else trail), bound
+
+    patch.setattr(Chain, "trail", wrong)
+    return example
+
+
+def twice_the_potential(example: Example, patch: Patch) -> Example:
+    growth.growth_law.cache_clear()
+    true = growth.potential_of_lie
+    patch.setattr(growth, "potential_of_lie", lambda field, eta: 2 * true(field, eta))
+    return example
+
+
+def blind(example: Example, patch: Patch) -> Example:
+    """A proof that never sees that an order is missed."""
+    from verify.proof.order import Convergence
+
+    assert example.proof
+    patch.setattr(Convergence, "misses", lambda self, claimed: False)
+    return example
+
+
+def a_lost_sign(example: Example, patch: Patch) -> Example:
+    from verify.exploration.properties.numbers import results_read_back as module
+
+    true = module.scene_text
+    patch.setattr(module, "scene_text", lambda scene: true(scene).replace('"-', '"'))
+    return example
+
+
+def believes_all(example: Example, patch: Patch) -> Example:
+    """A checker for which every polynomial is zero."""
+    from verify.proof.certificates.checker import Algebra
+
+    patch.setattr(Algebra, "zero", lambda *_: None)
+    return example
+
+
+def an_order_too_high(example: Example, patch: Patch) -> Example:
+    from verify.exploration.properties.orders import every_hamiltonian as module
+
+    true = module._proved
+    patch.setattr(module, "_proved", lambda name: replace(true(name), order=4))
+    return example
+
+
+def half_a_flow(example: Example, patch: Patch) -> Example:
+    """q moves with the flow of H, and p by half of it."""
+    from verify.flows.extrapolation import Flow
+
+    true = Flow.__init__
+
+    def made(self: Flow, *given: Any) -> None:
+        true(self, *given)
+        both = self._slopes
+        self._slopes = lambda p, q: (both(p, q)[0] / 2, both(p, q)[1])
+
+    patch.setattr(Flow, "__init__", made)
+    return example
+
+
+def values_too_large(example: Example, patch: Patch) -> Example:
+    """The averaged function by a thousandth larger along the orbit."""
+    from verify.flows.closed_orbit import Orbit
+
+    true = Orbit.values
+
+    def wrong(self: Orbit, g: Any) -> Any:
+        with self.flow.arithmetic.context():
+            return [x + x / 1000 for x in true(self, g)]
+
+    patch.setattr(Orbit, "values", wrong)
+    return example
+
+
+def a_part_misprinted(example: Example, patch: Patch) -> Example:
+    from verify.studies.separation.chain import Chain
+
+    true = Chain.final
+
+    def wrong(self: Chain, name: str) -> Any:
+        value, bound = true(self, name)
+        return (2 * value if name == "trajectory" else value), bound
+
+    patch.setattr(Chain, "final", wrong)
+    return example
+
+
+PLANTED: dict[str, tuple[str, Plant]] = {
+    "area-errors-compose": ("lie2", sums_for_products),
+    "certificates": ("lie2", believes_all),
+    "claims-of-schemes": ("lie2", added(0, 1, 2)),
+    "convergence-order": ("lie3", wrong_order),
+    "every-hamiltonian": ("lie2", an_order_too_high),
+    "exact-flows": ("lie2", half_a_flow),
+    "exchange-of-p-and-q": ("lie2", added(1, 2, 3)),
+    "growth-laws": ("lie2", twice_the_potential),
+    "linear-canonical-maps": ("lie2", added(1, 2, 3)),
+    "number-systems-agree": ("lie2", off_by_a_digit),
+    "orbit-averages": ("lie2", values_too_large),
+    "order-by-jets": ("lie2", another_proof),
+    "planted-errors": ("lie2", blind),
+    "printed-parts": ("lie2", a_part_misprinted),
+    "quadratic-hamiltonians": ("lie2", added(1, 0, 4)),
+    "results-read-back": ("lie2", a_lost_sign),
+    "separated-parts-add-up": ("lie2", a_part_twice),
+    "symmetric-schemes": ("stormer-verlet", added(0, 1, 2)),
+    "symplectic-schemes": ("stormer-verlet", added(1, 0, 5)),
+    "time-scaling": ("lie2", added(0, 1, 2)),
+}
+
+
+def test_every_property_has_a_planted_error() -> None:
+    assert set(PLANTED) == set(properties.names())
+
+
+@pytest.mark.parametrize("name", properties.names())
+def test_a_property_is_a_sentence(name: str) -> None:
+    sentence = properties.get(name).sentence
+    assert sentence.endswith((".", "?")), sentence
+    assert 20 < len(sentence) <= 100
+
+
+@pytest.mark.parametrize("name", sorted(PLANTED))
+def test_a_property_holds_and_fails_with_an_error_planted(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scheme, plant = PLANTED[name]
+    kernel_for.cache_clear()
+    growth.growth_law.cache_clear()
+    asked = properties.get(name)
+    assert asked.holds(example_of(scheme)), "it speaks of the example, and holds"
+    planted = plant(example_of(scheme), monkeypatch)
+    try:
+        with pytest.raises(Violation) as found:
+            asked.holds(planted)
+    finally:
+        monkeypatch.undo()
+        kernel_for.cache_clear()
+        growth.growth_law.cache_clear()
+    assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize("name", properties.names())
+@pytest.mark.parametrize("scheme", ["lie1", "lie4", "rk4", "gauss4", "implicit-midpoint", "ruth3"])
+def test_a_property_holds_or_does_not_speak(name: str, scheme: str) -> None:
+    properties.get(name).holds(example_of(scheme))
+
+
+@pytest.mark.parametrize("name", properties.names())
+@pytest.mark.parametrize(
+    "hamiltonian", ["p", "q**2", "p*q", "-p**2 - cos(q)", "exp(p + q)", "p**2 + 1/(1 + q**2)"]
+)
+def test_a_property_holds_of_odd_hamiltonians(name: str, hamiltonian: str) -> None:
+    properties.get(name).holds(example_of("lie2", hamiltonian))
+
+
+def test_each_property_speaks_of_some_scheme() -> None:
+    shown = {name for name in properties.names() for scheme in ("lie2", "stormer-verlet", "gauss4")
+             if properties.get(name).holds(example_of(scheme))}  # fmt: skip
+    assert shown == set(properties.names())
+
+
+def test_an_unknown_property_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(ValueError, match="time-scaling"):
+        properties.get("time")
+
+
+def test_a_scheme_keeps_its_name_when_planted() -> None:
+    """The control of `with_map`: nothing changed is the same step."""
+    same = with_map(example_of("lie2"), lambda step: (step.p_next, step.q_next))
+    assert same.scheme.name == get("lie2").name
+    assert properties.get("time-scaling").holds(same)

@@ -1,0 +1,292 @@
+"""The named systems, found by themselves, and every exact flow held against its equation."""
+
+import pkgutil
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+
+from tests.helpers.flow_checks import (
+    Case,
+    energy_defect,
+    example,
+    group_defect,
+    motion_defect,
+    start_defect,
+)
+from verify.flows.closed_form import blow_up
+from verify.flows.extrapolation import Flow
+from verify.hamiltonians import systems, weierstrass
+from verify.hamiltonians.motion import Motion
+from verify.hamiltonians.systems.plane import morse, pendulum
+from verify.hamiltonians.systems.plane import twist as twist_module
+
+ALL = systems.all_systems()
+REGIMES = [(name, regime) for name, system in ALL.items() for regime in system.regimes]
+CLOSED = [(name, regime) for name, regime in REGIMES if ALL[name].flow is not None]
+every_regime = pytest.mark.parametrize(("name", "regime"), CLOSED, ids=map("-".join, CLOSED))
+TIMES = [Fraction(-9, 4), Fraction(-1, 7), Fraction(1, 1000), Fraction(1, 3), Fraction(17, 5)]
+PAIRS = [(Fraction(1, 3), Fraction(5, 7)), (Fraction(-11, 5), Fraction(3, 8))]
+KNOWN = 1e-50
+
+
+def within(case: Case, times: list[Fraction]) -> list[Fraction]:
+    """The times, drawn together where the solution ends before them."""
+    ends = {sign: blow_up(case.motion, sign, 10) for sign in (1, -1)}
+
+    def reached(time: Fraction) -> Fraction:
+        end = ends[1 if time > 0 else -1]
+        return time if end is None else time * min(1, end * Fraction(9, 40))
+
+    return [reached(time) for time in times]
+
+
+# -- discovery ------------------------------------------------------------------------------------
+
+
+def test_each_file_holds_one_system_of_its_name() -> None:
+    files = {m.name.replace("_", "-") for m in pkgutil.iter_modules(systems.__path__)}
+    assert files == set(ALL)
+    assert {"harmonic", "duffing", "pendulum", "morse", "double-well", "quartic", "cubic"} <= files
+    assert {"toda", "toda-oscillator", "lennard-jones", "twist"} <= files
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_system_explains_its_parameters_and_shows_its_orbits(name: str) -> None:
+    system = ALL[name]
+    assert system.title
+    assert system.source
+    assert set(system.hamiltonian().parameters) == set(system.parameters)
+    assert system.regimes
+    for regime in system.regimes.values():
+        assert set(regime) == {"p", "q", *system.parameters}
+    assert not (system.flow and system.goes), "a closed form says itself where it goes"
+
+
+@pytest.mark.parametrize(("name", "regime"), REGIMES, ids=map("-".join, REGIMES))
+def test_h_is_defined_in_every_example(name: str, regime: str) -> None:
+    values, p, q = ALL[name].regime(regime)
+    field, _ = ALL[name].hamiltonian(values).field()
+    flow = Flow(field, 20)
+    flow.slope((flow.number(p), flow.number(q)))
+
+
+@every_regime
+def test_what_is_called_a_separatrix_is_one(name: str, regime: str) -> None:
+    elementary = "elementary" in example(ALL[name], regime).motion.method
+    if "near-" in regime:
+        assert not elementary or name == "morse"
+    elif "separatrix" in regime:
+        assert elementary
+
+
+# -- what an exact flow satisfies -----------------------------------------------------------------
+
+
+@every_regime
+def test_h_is_constant_to_50_digits(name: str, regime: str) -> None:
+    case = example(ALL[name], regime)
+    assert energy_defect(case, within(case, TIMES)) < KNOWN
+
+
+@every_regime
+def test_the_equation_of_motion_holds_to_50_digits(name: str, regime: str) -> None:
+    case = example(ALL[name], regime)
+    assert start_defect(case) < KNOWN
+    assert motion_defect(case, within(case, TIMES)) < KNOWN
+
+
+@every_regime
+def test_the_flow_is_a_group_to_45_digits(name: str, regime: str) -> None:
+    case = example(ALL[name], regime)
+    for s, t in PAIRS:
+        s, t, _ = (*within(case, [s, t]), None)
+        assert group_defect(case, s, t) < 1e-45
+
+
+@every_regime
+def test_the_numerical_flow_agrees(name: str, regime: str) -> None:
+    case = example(ALL[name], regime)
+    flow = Flow(ALL[name].hamiltonian(case.values).field()[0], 40)
+    for time in within(case, [Fraction(-7, 3), Fraction(11, 4)]):
+        z = flow.follow((flow.number(case.p), flow.number(case.q)), time, 10_000)
+        found = case.at(time, 50)
+        for ours, theirs in zip(found, z, strict=True):
+            apart = abs(ours - flow.arithmetic.exact(theirs))
+            assert apart <= Fraction(1, 10**33) * (1 + abs(ours))
+
+
+def test_no_evaluation_changes_the_global_precision_of_mpmath() -> None:
+    before = mpmath.mp.prec
+    example(ALL["pendulum"], "libration").at(Fraction(3), 200)
+    assert mpmath.mp.prec == before
+
+
+# -- planted errors -------------------------------------------------------------------------------
+
+Checked = Callable[[Case], Any]
+
+
+def energy(case: Case) -> Any:
+    return energy_defect(case, within(case, TIMES))
+
+
+def equation(case: Case) -> Any:
+    return motion_defect(case, within(case, TIMES))
+
+
+def slightly_wrong_modulus(mp: Any, u: Any, m: Any) -> Any:
+    return RIGHT(mp, u, m * (1 + mp.mpf(10) ** -35))
+
+
+def wrong_sign_of_cn(mp: Any, u: Any, m: Any) -> Any:
+    sn, cn, dn = RIGHT(mp, u, m)
+    return sn, -cn, dn
+
+
+RIGHT = weierstrass.jacobi
+JACOBI = [
+    ("pendulum", "libration", pendulum), ("pendulum", "rotation", pendulum),
+    ("pendulum", "near-separatrix", pendulum), ("duffing", "hard", weierstrass),
+    ("duffing", "soft-inside", weierstrass), ("duffing", "soft-outside", weierstrass),
+    ("cubic", "escape", weierstrass), ("toda", "oscillation", weierstrass),
+    ("double-well", "left-well", weierstrass), ("double-well", "near-separatrix", weierstrass),
+    ("quartic", "oscillation", weierstrass),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", [slightly_wrong_modulus, wrong_sign_of_cn])
+@pytest.mark.parametrize(
+    ("name", "regime", "module"), JACOBI, ids=[f"{n}-{r}" for n, r, _ in JACOBI]
+)
+def test_a_wrong_modulus_and_a_wrong_sign_are_seen(
+    name: str, regime: str, module: Any, wrong: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "jacobi", wrong)
+    case = example(ALL[name], regime)
+    assert max(energy(case), equation(case)) > KNOWN
+
+
+def altered(case: Case, change: Callable[[Any, Any, Motion], Any]) -> Case:
+    """The case with its state changed: `change` takes the context, t and the motion."""
+
+    class Wrong(Case):
+        @property
+        def motion(self) -> Motion:
+            true = super().motion
+            return Motion(lambda mp, t: change(mp, t, true), true.method, true.lost)
+
+    return Wrong(case.system, case.values, case.p, case.q)
+
+
+def late(mp: Any, t: Any, true: Motion) -> Any:
+    return true.state(mp, t * (1 + mp.mpf(10) ** -35))
+
+
+def reflected(mp: Any, t: Any, true: Motion) -> Any:
+    p, q = true.state(mp, t)
+    return -p, q
+
+
+def backwards(mp: Any, t: Any, true: Motion) -> Any:
+    return true.state(mp, -t)
+
+
+def accelerated(mp: Any, t: Any, true: Motion) -> Any:
+    return true.state(mp, t + mp.mpf(10) ** -40 * t**2)
+
+
+def turned_once_more(mp: Any, t: Any, true: Motion) -> Any:
+    p, q = true.state(mp, t)
+    return p, q + 2 * mp.pi * (t > 1)
+
+
+PLANTED = [late, reflected, backwards, accelerated]
+EXAMPLES = [("harmonic", "oscillation"), ("morse", "bound"), ("twist", "rotation"),
+            ("pendulum", "rotation"), ("duffing", "hard"), ("toda", "oscillation")]  # fmt: skip
+
+
+@pytest.mark.parametrize("planted", PLANTED)
+@pytest.mark.parametrize(("name", "regime"), EXAMPLES, ids=map("-".join, EXAMPLES))
+def test_a_clock_or_a_sign_that_is_wrong_is_seen_by_the_equation_of_motion(
+    name: str, regime: str, planted: Any
+) -> None:
+    wrong = altered(example(ALL[name], regime), planted)
+    assert equation(wrong) > KNOWN
+
+
+@pytest.mark.parametrize(("name", "regime"), EXAMPLES, ids=map("-".join, EXAMPLES))
+def test_a_clock_that_accelerates_is_seen_by_the_group_property(name: str, regime: str) -> None:
+    case = example(ALL[name], regime)
+    wrong = altered(case, accelerated)
+
+    class Moved(type(wrong)):  # type: ignore[misc]
+        def moved(self, p: Fraction, q: Fraction) -> Case:
+            return altered(case.moved(p, q), accelerated)
+
+    moved = Moved(case.system, case.values, case.p, case.q)
+    assert group_defect(moved, Fraction(1, 3), Fraction(5, 7)) > 1e-45
+
+
+def test_a_turn_too_many_is_seen_by_the_numerical_flow_alone() -> None:
+    case = example(ALL["pendulum"], "rotation")
+    wrong = altered(case, turned_once_more)
+    assert equation(wrong) < KNOWN
+    assert abs(wrong.at(Fraction(3))[1] - case.at(Fraction(3))[1]) > 6
+
+
+def test_the_planted_modules_are_those_that_the_systems_use() -> None:
+    assert pendulum.jacobi is weierstrass.jacobi  # type: ignore[attr-defined]
+    assert morse.SYSTEM.flow is not None
+    assert twist_module.SYSTEM.flow is not None
+
+
+# -- the functions --------------------------------------------------------------------------------
+
+
+def parameters() -> Iterator[Any]:
+    for k in (1, 3, 20, 60):
+        yield mpmath.mpf(10) ** -k / 3
+        yield 1 - mpmath.mpf(10) ** -k / 3
+
+
+@pytest.mark.parametrize("u", ["1/1000", "37/3", "-5/2", "1000"])
+def test_jacobis_functions_are_those_of_mpmath(u: str) -> None:
+    with mpmath.workdps(150):
+        x = mpmath.mpf(Fraction(u).numerator) / Fraction(u).denominator
+        for m in parameters():
+            ours = weierstrass.jacobi(mpmath.mp, x, m)
+            theirs = [mpmath.ellipfun(name, x, m=m) for name in ("sn", "cn", "dn")]
+            for a, b in zip(ours, theirs, strict=True):
+                assert abs(a - b) < mpmath.mpf(10) ** -80
+
+
+@pytest.mark.parametrize("m", ["3/2", "100", "1"])
+def test_jacobis_functions_obey_their_equation_beyond_the_modulus_1(m: str) -> None:
+    with mpmath.workdps(120):
+        k, t = mpmath.mpf(Fraction(m).numerator) / Fraction(m).denominator, mpmath.mpf(7) / 5
+        sn, cn, dn = weierstrass.jacobi(mpmath.mp, t, k)
+        assert abs(sn**2 + cn**2 - 1) < mpmath.mpf(10) ** -110
+        assert abs(k * sn**2 + dn**2 - 1) < mpmath.mpf(10) ** -110
+        step = mpmath.mpf(10) ** -30
+        ahead, back = (weierstrass.jacobi(mpmath.mp, t + x, k)[0] for x in (step, -step))
+        assert abs((ahead - back) / (2 * step) - cn * dn) < mpmath.mpf(10) ** -55
+
+
+@pytest.mark.parametrize(
+    ("g2", "g3"), [(1, 0), (1, 1), (-1, 1), (4, -1), (0, 1), (0, -2), (12, 8), (12, -8), (0, 0)]
+)
+def test_weierstrasss_function_obeys_its_equations_and_inverts(g2: int, g3: int) -> None:
+    with mpmath.workdps(100):
+        mp = mpmath.mp
+        w = weierstrass.Weierstrass(mp, mp.mpf(g2), mp.mpf(g3), mp.mpf(g2**3 - 27 * g3**2))
+        half = min(w.half_period(), mp.mpf(3))
+        for t in (half / 7, half * 9 / 10, *([half * 3 / 2] if half < 3 else [])):
+            found = w.values(t)
+            assert found is not None
+            x, y = found
+            assert abs(y**2 - (4 * x**3 - g2 * x - g3)) < (1 + abs(x)) ** 3 * mp.mpf(10) ** -90
+            assert abs(w.inverse(x, y) - t) < mp.mpf(10) ** -45
+        assert w.values(mp.mpf(0)) is None

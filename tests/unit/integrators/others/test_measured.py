@@ -1,0 +1,74 @@
+"""Steps in floats: what is claimed is measured, and a library that fails refutes nothing."""
+
+import math
+from collections.abc import Callable
+
+from verify.integrators.others.claims import claims_of
+from verify.integrators.others.integrator import FINE, FloatStep, Map, Subject
+from verify.integrators.others.measured import finding
+from verify.verdict import Verdict
+
+PENDULUM = "p**2/2 - cos(q)"
+
+
+def verlet(p: float, q: float, h: float) -> tuple[float, float]:
+    p -= h / 2 * math.sin(q)
+    q += h * p
+    return p - h / 2 * math.sin(q), q
+
+
+def heun(p: float, q: float, h: float) -> tuple[float, float]:
+    a, b = -math.sin(q), p
+    c, d = -math.sin(q + h * b), p + h * a
+    return p + h / 2 * (a + c), q + h / 2 * (b + d)
+
+
+def broken(p: float, q: float, h: float) -> tuple[float, float]:
+    raise RuntimeError("no such method")
+
+
+def frozen(p: float, q: float, h: float) -> tuple[float, float]:
+    return p, q
+
+
+def judged(step: Map, order: int, area: bool | None = True) -> list[Verdict]:
+    make: Callable[[], Map] = lambda: step  # noqa: E731 - a subject makes its step
+    subject = Subject("mine", "by hand", "nowhere", FloatStep(PENDULUM, make), order, area)
+    return [claim.verdict for claim in claims_of(subject, "mine", "mine")]
+
+
+def test_true_claims_are_measured() -> None:
+    assert judged(verlet, 2) == [Verdict.MEASURED, Verdict.MEASURED]
+    assert judged(heun, 2, None) == [Verdict.MEASURED]
+
+
+def test_an_order_one_too_high_and_a_wrong_symplecticity_are_refuted() -> None:
+    assert judged(verlet, 3) == [Verdict.REFUTED, Verdict.MEASURED]
+    assert judged(heun, 2) == [Verdict.MEASURED, Verdict.REFUTED]
+
+
+def test_what_cannot_be_driven_refutes_nothing() -> None:
+    assert judged(broken, 2) == [Verdict.UNDECIDED, Verdict.UNDECIDED]
+
+    def missing() -> Map:
+        raise ModuleNotFoundError("No module named 'nothing'")
+
+    found = finding(FloatStep(PENDULUM, missing))
+    assert found.verdict is Verdict.UNDECIDED
+    assert "nothing" in found.reason
+
+
+def test_a_map_that_does_nothing_has_no_order() -> None:
+    assert Verdict.MEASURED not in judged(frozen, 1)
+
+
+def test_a_power_that_is_seen_in_passing_only_is_not_known() -> None:
+    def passing(p: float, q: float, h: float) -> tuple[float, float]:
+        """The flow nearly, with an error like h³ from 1/2 to 3/4 alone."""
+        x, y = p, q
+        for _ in range(64):
+            x, y = verlet(x, y, h / 64)
+        return x + h**3 / (1 + (h / 0.62) ** 12), y
+
+    found = finding(FloatStep(PENDULUM, lambda: passing, ladder=FINE[:14]))
+    assert not found.order_known

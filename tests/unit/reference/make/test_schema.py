@@ -1,0 +1,61 @@
+"""The published schemas are current, describe every key, and hold for the committed set."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import reference
+from verify.reference.make.make import PUBLISHED
+from verify.reference.make.writing import MANIFEST, SCHEMAS, schema_text
+
+FOLDER = Path(reference.__file__).parent
+every_schema = pytest.mark.parametrize("name", SCHEMAS)
+
+
+def keys_of(schema: Any, where: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    if isinstance(schema, dict):
+        for name, key in schema.get("properties", {}).items():
+            yield f"{where}.{name}", key
+        for name, part in schema.items():
+            yield from keys_of(part, f"{where}.{name}")
+    elif isinstance(schema, list):
+        for part in schema:
+            yield from keys_of(part, where)
+
+
+@every_schema
+def test_the_published_file_is_what_the_models_say(name: str) -> None:
+    assert (FOLDER / name).read_text(encoding="utf-8") == schema_text(name)
+    assert (PUBLISHED / name).read_text(encoding="utf-8") == schema_text(name)
+
+
+@every_schema
+def test_every_key_is_described_and_no_other_is_allowed(name: str) -> None:
+    schema = json.loads(schema_text(name))
+    assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    keys = dict(keys_of(schema))
+    assert len(keys) > 8
+    assert [where for where, key in keys.items() if not key.get("description")] == []
+    for part in (schema, *schema["$defs"].values()):
+        assert part["type"] != "object" or part["additionalProperties"] is False
+
+
+@every_schema
+def test_it_is_a_schema_and_the_committed_files_are_of_it(name: str) -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads(schema_text(name))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
+    files = sorted(PUBLISHED.glob("*.json"))
+    wanted = [
+        x for x in files if x.name not in SCHEMAS and (x.name == MANIFEST) == (name[0] == "m")
+    ]
+    assert wanted
+    for path in wanted:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        validator.validate(content)
+        content["planted"] = 1
+        assert not validator.is_valid(content)

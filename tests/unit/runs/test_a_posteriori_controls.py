@@ -1,0 +1,274 @@
+"""Lies planted in the certificate, on orbits where each of them matters: every one is caught.
+
+The orbits are such that the bound is nearly reached: in `LOST` an increment just below half a unit
+is lost at every step, so that each rounding is as large as rounding can be, and all of one sign.
+That is where a bound that is half of what it should be shows. Its twin is in the same test: without
+the lie what is certified holds.
+
+Of p, q and max |ΔJ| the bounds so come within a few per cent of the error. Those of Λ and MSE do
+not, for any orbit: errors of the state that are made at every step grow at least like k, and the
+bound takes the greatest for all of them, which is twice their mean; there the planted lies are
+larger. Two lies cannot show in any orbit. In floating point a product's rounding hides behind those
+of the sums, since it is like a change in the last bit of a factor, which was rounded when it was
+stored; `tests/property/test_rounding.py` sees it operation by operation. And the rounding of the
+tangent map, ρ, enters by e^Q with Q about 10⁻¹²; `test_certificate_edges.py` counts it.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import flint
+import pytest
+
+from tests.helpers.exact_orbits import Case, case, enclosed_finely
+from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.systems import fixed, mpfr
+from verify.kernels import rounding
+from verify.kernels import tangent_map as tangent
+from verify.kernels.kernel import kernel_for
+from verify.kernels.rounding import rounding_of
+from verify.kernels.stepping import Outcome
+from verify.runs import a_posteriori as certificate
+from verify.runs.a_posteriori import _Certificate, certify
+from verify.runs.derivatives import Derivatives
+
+ZERO = flint.arb(0)
+
+
+@dataclass(frozen=True)
+class Orbit:
+    case: Case
+    arithmetic: Arithmetic
+
+    @cache  # noqa: B019 - a few orbits
+    def run(self) -> Outcome:
+        return self.again()
+
+    def again(self) -> Outcome:
+        run = self.case.job().go(self.arithmetic, tangent=True)
+        assert run.done == self.case.steps
+        return run
+
+    def outside(self, run: Outcome | None = None) -> set[str]:
+        """The names of values that are not within what is certified; of none without one."""
+        run = run or self.run()
+        errors = certify(self.case.job(), self.arithmetic, run) or {}
+        true = enclosed_finely(self.case, errors)
+        return {n for n, e in errors.items() if abs(run.values[n] - true[n][0]) > e + true[n][1]}
+
+    def certified(self) -> dict[str, Fraction]:
+        return certify(self.case.job(), self.arithmetic, self.run()) or {}
+
+
+FREE = "p**2/2"  # an H for maps that are written down
+SINGLE, WIDE = mpfr.at_bits(24), fixed.at_bits(112)
+HALF = Fraction(1, 2) - Fraction(1, 2**10)  # of a unit, and a little less
+ULP, UNIT = Fraction(1, 2**23), Fraction(1, 2**112)  # of 1 in SINGLE; of every number in WIDE
+
+
+def shift(increment: Any) -> str:
+    return f"p_next = p; q_next = q + {increment}"
+
+
+LOST = Orbit(case(FREE, shift(HALF * ULP), 1, 0, 1, 2000), SINGLE)
+LOST_WIDE = Orbit(case(FREE, shift(HALF * UNIT), 1, 0, 1, 2000), WIDE)
+CURVED = Orbit(
+    case(FREE, shift(f"{HALF * ULP} + (q - 1)**2/1024"), 1, 0, 1, 46_000), SINGLE
+)  # an error e is made e + e²/1024
+TOO_CURVED = Orbit(
+    case(FREE, shift(f"{HALF * ULP} + (q - 1)**2/32"), 1, 0, 1, 30_000), SINGLE
+)  # more than twice what it would be without the square
+CUBIC = Orbit(
+    case(FREE, shift(f"{HALF / 2**11} + (q - 1)**3/256"), 1, 0, 1, 1500), mpfr.at_bits(12)
+)  # no second derivative at 1, where the computed orbit stays
+FIRST = Orbit(case(FREE, shift(HALF * ULP), 1 + HALF * ULP, 0, 1, 1), SINGLE)
+FIRST_WIDE = Orbit(case(FREE, "p_next = p; q_next = q + p", 1, HALF * UNIT, 1, 100), WIDE)
+DUFFING = Orbit(case("p**2/2 + q**2/2 + q**4/4", "lie2", "3/2", 0, Fraction(1, 1024), 200), WIDE)
+SADDLE = Orbit(
+    case("p**2/2 + cos(q)", "lie2", Fraction(1, 2**20) + HALF * UNIT, 0, "1/8", 112), WIDE
+)  # from near q = 0, where errors grow like e^T
+SADDLE_FLOATING = Orbit(
+    case("p**2/2 - cos(q)", "lie2", Fraction(3141592, 10**6), 0, "1/8", 112), mpfr.at_bits(100)
+)
+SQUEEZED = Orbit(case(FREE, "p_next = p + 1/64; q_next = q + p*q/2", 1, -1, 1, 128), WIDE)
+TIMES = Orbit(case(FREE, "p_next = p; q_next = q + h*1000", 0, 0, HALF * UNIT, 100), WIDE)
+STEADY = Orbit(case(FREE, "p_next = p; q_next = q + 3*h*q/4", 0, 0, "1/1048576", 2000), WIDE)
+STALLED = Orbit(case(FREE, shift("q/1024"), 0, 0, 1, 10_000), mpfr.at_bits(8))
+ORBITS = {name: orbit for name, orbit in globals().items() if isinstance(orbit, Orbit)}
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_without_a_lie_the_values_are_within_what_is_certified(name: str) -> None:
+    orbit = ORBITS[name]
+    assert orbit.outside() == set()
+    assert bool(orbit.certified()) == (orbit not in (TOO_CURVED, CUBIC))
+
+
+# -- lies that the run does not know of -----------------------------------------------------------
+
+Patch = pytest.MonkeyPatch
+_one_step, _orbit = _Certificate.one_step, _Certificate.orbit
+
+
+def half_a_step(patch: Patch) -> None:
+    """The rounding of one step is half of what it is."""
+
+    def halved(self: _Certificate) -> Any:
+        found = _one_step(self)
+        return found and replace(found, state=found.state / 2)
+
+    patch.setattr(_Certificate, "one_step", halved)
+
+
+def half_an_error(patch: Patch) -> None:
+    """The error of the state is half of what it is."""
+
+    def halved(self: _Certificate, *given: Any) -> Any:
+        found = _orbit(self, *given)
+        return found and tuple(x / 2 for x in found)
+
+    patch.setattr(_Certificate, "orbit", halved)
+
+
+def free_products(patch: Patch) -> None:
+    """A product is not rounded."""
+
+    def lying(arithmetic: Arithmetic) -> rounding.Rounding:
+        own = rounding_of(arithmetic)
+        return lambda op, size: ZERO if op.kind == "mul" else own(op, size)
+
+    patch.setattr(certificate, "rounding_of", lying)
+
+
+def free_constants(patch: Patch) -> None:
+    """A constant is held exactly."""
+
+    def lying(arithmetic: Arithmetic) -> rounding.Rounding:
+        own = rounding_of(arithmetic)
+        return lambda op, size: ZERO if op.kind == "const" else own(op, size)
+
+    patch.setattr(certificate, "rounding_of", lying)
+
+
+def exact_inputs(patch: Patch) -> None:
+    """h and the parameters are held exactly."""
+    inputs = _Certificate.inputs
+
+    def lying(self: _Certificate) -> Any:
+        return {name: replace(x, error=ZERO) for name, x in inputs(self).items()}
+
+    patch.setattr(_Certificate, "inputs", lying)
+
+
+def straight(patch: Patch) -> None:
+    """The map has no second derivatives."""
+    patch.setattr(Derivatives, "second", lambda *_: ZERO)
+
+
+def narrow(patch: Patch) -> None:
+    """The true orbit is where the computed one is."""
+    box = _Certificate.box
+    patch.setattr(_Certificate, "box", lambda self, _: box(self, ZERO))
+
+
+def level(patch: Patch) -> None:
+    """ΔJ is the same everywhere."""
+    patch.setattr(Derivatives, "gradient", lambda *_: ZERO)
+
+
+def exact_start(patch: Patch) -> None:
+    """The initial values are held exactly."""
+    patch.setattr(_Certificate, "first_error", lambda _: ZERO)
+
+
+def free_product_of_factors(patch: Patch) -> None:
+    """Λ ← Λ + ΔJ + Λ ΔJ is not rounded."""
+    patch.setattr(_Certificate, "of_product", lambda *_: ZERO)
+
+
+LIES = [
+    (half_a_step, LOST, "q"),
+    (half_a_step, LOST_WIDE, "q"),
+    (half_an_error, LOST, "q"),
+    (half_an_error, LOST_WIDE, "q"),
+    (half_an_error, FIRST_WIDE, "q"),
+    (half_an_error, CURVED, "delta_j_max"),
+    (free_products, DUFFING, "p q mse delta_j_max"),
+    (free_constants, LOST_WIDE, "q"),
+    (exact_inputs, TIMES, "q"),
+    (straight, CURVED, "q"),
+    (straight, TOO_CURVED, "q"),
+    (narrow, CUBIC, "q"),
+    (level, SADDLE, "lambda mse delta_j_max"),
+    (level, SADDLE_FLOATING, "lambda mse delta_j_max"),
+    (exact_start, FIRST, "q"),
+    (exact_start, FIRST_WIDE, "p q"),
+    (free_product_of_factors, STALLED, "lambda"),
+    (free_product_of_factors, STEADY, "lambda"),
+]
+
+
+@pytest.mark.parametrize(("lie", "orbit", "names"), LIES)
+def test_a_lie_shows_in_values_outside_their_bounds(
+    lie: Callable[[Patch], None], orbit: Orbit, names: str, monkeypatch: Patch
+) -> None:
+    lie(monkeypatch)
+    assert orbit.outside() >= set(names.split())
+
+
+# -- lies that are compiled into the run ----------------------------------------------------------
+
+
+@pytest.fixture
+def afresh() -> Iterator[None]:
+    """Kernels are made anew, and forgotten afterwards."""
+    kernel_for.cache_clear()
+    yield
+    kernel_for.cache_clear()
+
+
+_statements = tangent.statements
+
+
+@pytest.mark.parametrize("orbit", [SADDLE, SADDLE_FLOATING], ids=["fixed", "mpfr"])
+@pytest.mark.usefixtures("afresh")
+def test_a_tangent_map_that_stays_the_identity_is_caught(orbit: Orbit, monkeypatch: Patch) -> None:
+    monkeypatch.setattr(tangent, "statements", lambda _: _statements(["0"] * 4))
+    assert orbit.outside(orbit.again()) >= {"p", "q"}
+
+
+@pytest.mark.parametrize("row", [0, 1])
+@pytest.mark.usefixtures("afresh")
+def test_a_row_of_the_tangent_map_that_is_left_out_is_caught(row: int, monkeypatch: Patch) -> None:
+    def lying(change: Any) -> list[str]:
+        return _statements([c if i // 2 != row else "0" for i, c in enumerate(change)])
+
+    monkeypatch.setattr(tangent, "statements", lying)
+    assert SADDLE.outside(SADDLE.again()) >= {"p", "q"}
+
+
+@pytest.mark.usefixtures("afresh")
+def test_a_determinant_that_is_not_looked_at_is_caught(monkeypatch: Patch) -> None:
+    """Areas shrink to 10⁻⁸, and the errors made there are then magnified as much again."""
+    lying = lambda change: [x for x in _statements(change) if "det_low" not in x]  # noqa: E731
+    monkeypatch.setattr(tangent, "statements", lying)
+    assert "q" in SQUEEZED.outside(SQUEEZED.again())
+
+
+# -- how near the bounds are ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("orbit", "name", "most"),
+    [(LOST, "q", 1.05), (LOST_WIDE, "q", 1.05), (FIRST_WIDE, "q", 1.05), (CURVED, "q", 1.6),
+     (CURVED, "delta_j_max", 1.6)],
+)  # fmt: skip
+def test_where_every_rounding_is_as_large_as_can_be_the_bound_is_nearly_the_error(
+    orbit: Orbit, name: str, most: float
+) -> None:
+    errors = orbit.certified()
+    true = enclosed_finely(orbit.case, errors)
+    assert errors[name] <= most * abs(orbit.run().values[name] - true[name][0])

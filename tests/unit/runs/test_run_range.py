@@ -1,0 +1,313 @@
+"""Runs at their edges: orbits that leave the range, thinned series, memory, and what is compiled.
+
+The oracles are plain Python loops over the paper's formulas.
+"""
+
+import math
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import pytest
+from mpmath.ctx_mp import MPContext
+
+from verify import arithmetic
+from verify.arithmetic.number_system import ESCAPE_BITS
+from verify.arithmetic.systems import float64
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.run import ASKED, CLOSED_FORM, run
+from verify.scenes.results.core import RunResult
+
+DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4")
+PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
+HENON = Hamiltonian.parse("p**2/2 + q**2/2 - q**3/3")
+
+
+def duffing_steps(q: Any, p: Any, h: Any) -> Iterator[tuple[Any, Any, Any]]:
+    """(p, q) after each step of lie2 with δ = 1 (Eq. 19), and the step's ΔJ."""
+    while True:
+        dj = 3 * h * h * h * p * q + h * h * h * h * (1 + 3 * q * q) * (1 + 3 * q * q) / 4
+        p, q = (
+            p - h * (q + q * q * q) - h * h / 2 * p * (1 + 3 * q * q),
+            q + h * p - h * h / 2 * (q + q * q * q),
+        )
+        yield p, q, dj
+
+
+# -- leaving the range ----------------------------------------------------------------------------
+
+ESCAPES = [(3, 0, 1), (2, 1, 1), (Fraction(5, 2), -1, Fraction(3, 4)), (40, 0, Fraction(1, 8))]
+escapes = pytest.mark.parametrize(("q", "p", "h"), ESCAPES, ids=lambda x: str(x))
+
+
+def first_step_outside(q: Any, p: Any, h: Any, inside: Callable[[Any], bool]) -> int:
+    steps = duffing_steps(q, p, h)
+    return next(k for k, (p, q, _) in enumerate(steps, 1) if not (inside(p) and inside(q)))
+
+
+def duffing_run(name: str, steps: int, *, q: Any, p: Any, h: Any, **options: Any) -> RunResult:
+    return run(DUFFING.with_values({"delta": 1}), "lie2", q=q, p=p, step_size=h, steps=steps,
+               arithmetic=name, **options)  # fmt: skip
+
+
+@escapes
+def test_float64_says_at_which_step_the_orbit_is_no_longer_finite(q: Any, p: Any, h: Any) -> None:
+    true = first_step_outside(float(q), float(p), float(h), math.isfinite)
+    assert 3 < true < 100
+    for steps in (true, true + 1, 1000, 10**7):
+        found = duffing_run("float64", steps, q=q, p=p, h=h, observables=())
+        assert (found.status, found.failed_step, found.values) == ("left range", true, {})
+    assert duffing_run("float64", true - 1, q=q, p=p, h=h, observables=()).status == "finished"
+
+
+@escapes
+def test_float64_says_at_which_step_a_sum_is_no_longer_finite(q: Any, p: Any, h: Any) -> None:
+    squares, steps = 0.0, duffing_steps(float(q), float(p), float(h))
+    for true, (p_next, q_next, dj) in enumerate(steps, 1):  # noqa: B007 - used after the loop
+        squares += dj * dj
+        if not all(map(math.isfinite, (p_next, q_next, squares))):
+            break
+    found = duffing_run("float64", 1000, q=q, p=p, h=h, observables=("mse",))
+    assert (found.status, found.failed_step) == ("left range", true)
+
+
+@escapes
+def test_mpmath_stops_an_orbit_at_the_step_that_escapes(q: Any, p: Any, h: Any) -> None:
+    context = MPContext()
+    context.prec = 150
+    most = context.ldexp(1, ESCAPE_BITS)
+    start = (context.mpf(Fraction(x).numerator) / Fraction(x).denominator for x in (q, p, h))
+    true = first_step_outside(*start, lambda x: abs(x) < most)
+    assert 3 < true < 100
+    for steps in (true, true + 1, 5000):
+        found = duffing_run("mpmath", steps, q=q, p=p, h=h)
+        assert (found.status, found.failed_step, found.values) == ("left range", true, {})
+    assert duffing_run("mpmath", true - 1, q=q, p=p, h=h).status == "finished"
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+@pytest.mark.parametrize(
+    "text",
+    ["p**2/2 + q*sqrt(q)", "p**2/2 + q*log(q)", "p**2/2 + q**(4/3)", "p**2/2 + 1/q**2 + q"],
+    ids=["square-root", "logarithm", "cube-root", "pole"],
+)
+def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
+    name: str, text: str
+) -> None:
+    h, q, p = 0.1, 1.0, -1.0
+    found = run(Hamiltonian.parse(text), "lie1", q=1, p=-1, step_size="0.1", steps=60,
+                arithmetic=name)  # fmt: skip
+    force = {
+        "p**2/2 + q*sqrt(q)": lambda q: 1.5 * math.sqrt(q),
+        "p**2/2 + q*log(q)": lambda q: math.log(q) + 1,
+        "p**2/2 + q**(4/3)": lambda q: 4 / 3 * (q ** (1 / 3) if q >= 0 else math.nan),
+        "p**2/2 + 1/q**2 + q": lambda q: 1 - 2 / q**3,
+    }[text]
+    outside = None
+    for k in range(1, 61):
+        try:
+            p, q = p - h * force(q), q + h * p
+        except (ValueError, ZeroDivisionError):
+            p = math.nan
+        if not math.isfinite(p):
+            outside = k
+            break
+    assert found.failed_step == outside
+    assert found.status == ("left range" if outside else "finished")
+
+
+CHAOTIC = {"q": "0.01", "p": "-0.5", "step_size": 1, "steps": 1000}
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+def test_a_product_of_astronomical_size_is_not_written_out(name: str) -> None:
+    """Λ = (1 + h²)^N − 1 is known in closed form, and has billions of digits."""
+    turning = Hamiltonian.parse("p**2/2 + q**2/2")
+    for q in (1, 0):
+        found = run(turning, "lie1", q=q, p=0, step_size=1000, steps=10**9, arithmetic=name)
+        assert found.status == "left range"
+        assert not found.values
+
+
+@pytest.mark.parametrize(("name", "digits"), [("float64", 17), ("mpmath", 2)])
+def test_an_orbit_whose_escape_depends_on_rounding_is_given_no_digit(
+    name: str, digits: int
+) -> None:
+    exact = run(HENON, "symplectic-euler", **CHAOTIC, arithmetic="mpmath", digits=400)
+    assert exact.status == "left range"
+    assert exact.failed_step is not None
+    assert exact.failed_step < 800
+    found = run(HENON, "symplectic-euler", **CHAOTIC, arithmetic=name, digits=digits)
+    # Beyond that step |q| is squared at every step: no bound near a bounded value holds.
+    assert found.status in ("left range", "unresolved")
+    assert not found.values
+
+
+@pytest.mark.parametrize("steps", [200, 20_001], ids=["by-mpfr", "compensated"])
+@pytest.mark.parametrize("h", ["1e-60", "1e-400"])
+def test_an_underflow_is_not_given_as_an_exact_zero(steps: int, h: str) -> None:
+    """ΔJ is about 1.5 h³, so that ΔJ², or ΔJ itself, is too small for float64, and is not 0."""
+    found = duffing_run("float64", steps, q=1, p=Fraction(1, 2), h=Fraction(h))
+    for name in CLOSED_FORM:
+        value = found.values[name]
+        assert (value.value, value.bound) != ("0", "0"), name
+        assert found.exact == ()
+
+
+# -- series ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+@pytest.mark.parametrize(
+    ("steps", "points"),
+    [(1, 2), (2, 2), (7, 3), (100, 7), (101, 600), (600, 600), (9001, 2), (9001, 600)],
+)
+def test_a_series_covers_every_step_once_in_at_most_so_many_points(
+    name: str, steps: int, points: int
+) -> None:
+    found = duffing_run(name, steps, q=1, p=0, h=Fraction(1, 100), points=points)
+    covered = [k for point in found.series for k in range(point.first, point.last + 1)]
+    assert covered == list(range(1, steps + 1))
+    assert len(found.series) <= points
+
+
+def test_a_long_series_in_float64_has_at_most_so_many_points() -> None:
+    found = duffing_run("float64", 9_000_000, q=1, p=0, h=Fraction(1, 1000), points=2)
+    assert len(found.series) <= 2
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+@pytest.mark.parametrize(("steps", "points"), [(50, 50), (1000, 13), (1000, 999)])
+def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
+    name: str, steps: int, points: int
+) -> None:
+    found = duffing_run(name, steps, q=Fraction(3, 2), p=0, h=Fraction(1, 20), points=points)
+    lam, loop, all_dj = 0.0, duffing_steps(1.5, 0.0, 0.05), []
+    for point in found.series:
+        lams, djs = [], []
+        for _ in range(point.first, point.last + 1):
+            dj = next(loop)[2]
+            lam = lam + dj + lam * dj
+            lams.append(lam)
+            djs.append(dj)
+        all_dj += djs
+        for (low, high), true in ((point.delta_j, djs), (point.lam, lams)):
+            assert float(low) == pytest.approx(min(true), rel=1e-6, abs=1e-14)
+            assert float(high) == pytest.approx(max(true), rel=1e-6, abs=1e-14)
+    assert min(all_dj) < 0 < max(all_dj), "else least and greatest could be mixed up unseen"
+    assert float(found.values["lambda"].value) == pytest.approx(lam, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", arithmetic.names())
+def test_points_do_not_change_the_values(name: str) -> None:
+    plain = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=ASKED)
+    thinned = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=ASKED, points=40)
+    assert plain.values == thinned.values
+    assert (plain.series, len(thinned.series)) == ((), 40)
+
+
+# -- names ----------------------------------------------------------------------------------------
+
+# A kernel is text in which parameters stand beside its own names.
+OWN_NAMES = [
+    *(f"v{i}" for i in range(30)), "k", "dj", "lam", "mse", "top", "size", "plain", "steps", "add",
+    "total", "part", "p_rest", "dj_low", "lam_high", "kernel", "range", "escape", "cos_sin", "root",
+    "pq", "E", "I", "S", "N", "zoo", "beta", "True_", "self", "print",
+]  # fmt: skip
+
+
+def named(parameter: str, name: str) -> RunResult:
+    text = f"p**2/2 + {parameter}*q**2/2 + q**4/4 - cos(q)"
+    return run(Hamiltonian.parse(text, {parameter: "7/3"}), "lie2", q=1, p=0, step_size="0.1",
+               steps=20, arithmetic=name, observables=ASKED, points=3)  # fmt: skip
+
+
+@cache
+def named_a() -> RunResult:
+    return named("a", "mpmath")
+
+
+@pytest.mark.parametrize("parameter", OWN_NAMES)
+def test_the_name_of_a_parameter_does_not_change_what_is_found(parameter: str) -> None:
+    found, expected = named(parameter, "mpmath"), named_a()
+    assert expected.status == "finished"
+    assert (found.status, found.values) == ("finished", expected.values)
+    assert found.series == expected.series
+
+
+@pytest.mark.parametrize("parameter", ["v5", "k", "lam", "steps", "range"])
+def test_the_name_of_a_parameter_does_not_change_what_float64_finds(parameter: str) -> None:
+    assert named(parameter, "float64").values == named("a", "float64").values
+
+
+# -- memory and compilation -----------------------------------------------------------------------
+
+MEMORY = """
+import resource, tracemalloc
+from verify import Hamiltonian, run
+duffing = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
+def series(steps):
+    run(duffing, "lie2", q="1.5", p=0, step_size="0.001", steps=steps, points=600)
+def peak(steps):
+    tracemalloc.start()
+    series(steps)
+    own = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+series(500_000)  # compiles, which takes four times as long where it is traced
+peak(500_000)
+print(*peak(500_000), *peak(5_000_000))
+"""
+
+
+def test_memory_does_not_grow_with_the_number_of_steps() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", MEMORY], capture_output=True, text=True, check=True
+    )
+    own, resident, own_of_many, resident_of_many = map(int, done.stdout.split())
+    assert own_of_many <= 1.1 * own
+    assert resident_of_many <= 1.1 * resident
+
+
+def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # An H of this test's own, so that no other test has compiled its kernel.
+    fresh = Hamiltonian.parse("p**2/2 + a*q**2/2 + b*q**6/96 + 71*q**2/1931")
+    compiled, compile_one = [], float64._compiled
+
+    def count(*args: Any) -> Any:
+        compiled.append(compile_one(*args))
+        return compiled[-1]
+
+    monkeypatch.setattr(float64, "_REPAID", 0)
+    monkeypatch.setattr(float64, "_compiled", count)
+    for h in ("0.01", "0.02", "1/7", "3e-3"):
+        for a, b in ((1, 1), ("1/3", -2), (-1, "0.5")):
+            run(
+                fresh.with_values({"a": a, "b": b}), "lie3", q="0.1", p="0.2", step_size=h, steps=50
+            )
+    assert len(compiled) == 1
+    assert len(compiled[0].signatures) == 1, "numba compiled it for one set of types"
+    run(fresh.with_values({"a": 1, "b": 0}), "lie3", q=1, p=0, step_size="0.1", steps=50)
+    assert len(compiled) == 2, "a vanishing term has a kernel of its own"
+
+
+@pytest.mark.parametrize("name", ["float64", "mpmath"])
+def test_a_map_that_is_not_defined_at_the_step_size_leaves_the_range_at_once(name: str) -> None:
+    """What does not depend on the state is computed before the loop, and may fail there."""
+    scheme = "p_next = p - h*q/(1 - 10*h); q_next = q + h*p"
+    at: dict[str, Any] = {"q": 1, "p": 0, "steps": 3, "arithmetic": name}
+    found = run(Hamiltonian.parse("p**2/2 + q**2/2"), scheme, step_size="0.1", **at)
+    assert (found.status, found.failed_step, found.values) == ("left range", 1, {})
+    defined = run(Hamiltonian.parse("p**2/2 + q**2/2"), scheme, step_size="0.2", **at)
+    assert defined.status == "finished"
+
+
+def test_the_observables_asked_for_are_those_that_come_back() -> None:
+    for asked in ((), ("mse",), ("lambda", "mse"), CLOSED_FORM, ASKED):
+        found = duffing_run("float64", 10, q=1, p=0, h=Fraction(1, 10), observables=asked)
+        assert set(found.values) == {"p", "q", *asked}

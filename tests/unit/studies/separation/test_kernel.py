@@ -1,0 +1,100 @@
+"""The mixed kernel: its float64 lines have the bits of the real kernel, compiled by numba."""
+
+import math
+import re
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from verify import arithmetic
+from verify.arithmetic.systems import float64
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.kernel import Kernel, Writer
+from verify.kernels.stepping import Job
+from verify.schemes import get
+from verify.studies.separation.kernel import WORKING, MixedKernel, mixed_kernel
+from verify.studies.separation.working import WorkingRun, marks_of, rounded_inputs
+
+DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
+PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
+SYSTEMS = {
+    "duffing-lie2": (DUFFING, "lie2", 8000),
+    "duffing-lie4": (DUFFING, "lie4", 1500),
+    "pendulum-lie2": (PENDULUM, "lie2", 8000),
+    "pendulum-symplectic-euler": (PENDULUM, "symplectic-euler", 4000),
+    "hyperbolic": (Hamiltonian.parse("p**2/2 + cosh(q) + exp(q/2)"), "symplectic-euler", 2000),
+    "roots": (Hamiltonian.parse("p**2/2 + (1 + q**2 + p**2)**(1/3)"), "lie2", 500),
+    "functions": (Hamiltonian.parse("exp(p/3) + log(2 + q**2) + atan(p*q) + sqrt(1 + q**2)"),
+                  "lie2", 500),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["mpfr", "fixed"])
+@pytest.mark.parametrize(("hamiltonian", "scheme", "steps"), SYSTEMS.values(), ids=SYSTEMS)
+def test_states_and_products_have_the_bits_of_the_compiled_float64_kernel(
+    hamiltonian: Hamiltonian, scheme: str, steps: int, name: str
+) -> None:
+    if name == "fixed" and hamiltonian in (SYSTEMS["roots"][0], SYSTEMS["functions"][0]):
+        pytest.skip("fixed has neither these roots nor atan")
+    start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
+    found = states(hamiltonian, scheme, start, steps, name)
+    compiled = by_numba(hamiltonian, scheme)
+    inputs = [float(x) for x in (start["h"], *dict(hamiltonian.values).values())]
+    for mark in range(steps // 10, steps + 1, steps // 10):
+        begun = [float(start["p"]), float(start["q"]), *map(float, compiled.start)]
+        _, *after = compiled.function(mark, *inputs, *begun)
+        point, at = dict(zip(compiled.carried, after, strict=True)), found[mark]
+        assert (at["f_p"], at["f_q"], at["f_plain"]) == (point["p"], point["q"], point["plain"])
+
+
+def by_numba(hamiltonian: Hamiltonian, scheme: str) -> Kernel:
+    """The float64 kernel of `verify run`, by the compiler that long runs have it from."""
+    made = replace(arithmetic.get("float64", 17), compile=float64._compiled)
+    step_map = get(scheme).step_map(hamiltonian.generic())
+    return Writer(step_map, made, WORKING, compensated=False).kernel()
+
+
+def mixed(hamiltonian: Hamiltonian, scheme: str, follow: bool = True) -> MixedKernel:
+    return mixed_kernel(hamiltonian.generic(), scheme, arithmetic.get("mpfr", 40), follow)
+
+
+def states(
+    hamiltonian: Hamiltonian, scheme: str, start: dict[str, Fraction], steps: int, name: str
+) -> dict[int, dict[str, Any]]:
+    """What the mixed kernel carries, by the number of steps."""
+    job = Job(hamiltonian, scheme, start, steps, WORKING, 10)
+    made = arithmetic.get(name, 50)
+    working = WorkingRun(job, rounded_inputs(job), follow=False)
+    kernel = mixed_kernel(job.generic, scheme, made, follow=False)
+    found = working._states(kernel, made, lambda _: None)
+    return dict(zip(marks_of(steps), found, strict=True))
+
+
+def test_numbas_functions_have_the_bits_of_pythons() -> None:
+    """So that the float64 lines may run in either."""
+    numba = pytest.importorskip("numba")
+    names = ("sin", "cos", "exp", "log", "sinh", "cosh", "atan", "log1p", "expm1")
+    points = [k / 997 + 2.0 ** -(k % 30) for k in range(1, 20000)]
+    for name in names:
+        function = getattr(math, name)
+        scope = {"f": function}
+        exec("def g(x): return f(x)", scope)  # noqa: S102 - a function of its own for each name
+        compiled = numba.njit(scope["g"])
+        assert [compiled(x) for x in points] == [function(x) for x in points], name
+
+
+@pytest.mark.parametrize(("hamiltonian", "scheme", "steps"), SYSTEMS.values(), ids=SYSTEMS)
+def test_names_say_of_every_line_whether_it_is_float64_or_wide(
+    hamiltonian: Hamiltonian, scheme: str, steps: int
+) -> None:
+    lines = mixed(hamiltonian, scheme).source.strip().splitlines()
+    for line in lines[1:-1]:
+        names = set(re.findall(r"[A-Za-z_]\w*(?!\w*\()", line)) - {"for", "k", "in", "if", "steps"}
+        kinds = {name[:2] for name in names}
+        assert kinds <= {"f_", "w_"}, line
+        assert len(kinds) < 2 or "wide(" in line, "kinds do not mix"
+        for called in re.findall(r"(\w+)\(", line):
+            if called not in ("wide", "abs", "range"):
+                assert called.startswith("f_") == (kinds == {"f_"}), line

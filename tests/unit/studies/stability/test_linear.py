@@ -1,0 +1,113 @@
+"""Stability intervals on the harmonic oscillator, against known ones and against powers of M."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy
+
+from verify import schemes
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.step_map import StepMap
+from verify.studies.stability.linear import Y, linear_stability, of_map
+
+KNOWN = {
+    "lie1": 0, "lie2": 0, "lie3": sympy.sqrt(3), "lie4": 2 * sympy.sqrt(2), "lie5": 0, "lie6": 0,
+    "euler": 0, "explicit-midpoint": 0, "rk4": 2 * sympy.sqrt(2), "symplectic-euler": 2,
+    "stormer-verlet": 2, "position-verlet": 2, "implicit-midpoint": sympy.oo, "gauss4": sympy.oo,
+    "gauss6": sympy.oo, "implicit-symplectic-euler": 2,
+}  # fmt: skip
+# Limits of Taylor schemes on the imaginary axis, to the digits of the literature.
+PRINTED = {"lie7": 1.7644, "lie8": 3.3951, "yoshida4": 1.5734}
+HARMONIC = Hamiltonian.parse("p**2/2 + q**2/2")
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_interval_is_the_known_one(name: str) -> None:
+    assert linear_stability(name).interval == KNOWN[name]
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_the_interval_has_the_digits_that_are_printed_elsewhere(name: str) -> None:
+    assert abs(float(linear_stability(name).decimal()) - PRINTED[name]) < 1e-4
+
+
+def excess(eta: int, y: Fraction) -> Fraction:
+    """|R(iy)|² − 1 of the truncated exponential, exactly."""
+    real = sum((-1) ** (n // 2) * y**n / math.factorial(n) for n in range(0, eta + 1, 2))
+    imaginary = sum((-1) ** (n // 2) * y**n / math.factorial(n) for n in range(1, eta + 1, 2))
+    return Fraction(real) ** 2 + Fraction(imaginary) ** 2 - 1
+
+
+@pytest.mark.parametrize("eta", range(1, 21))
+def test_taylor_schemes_are_stable_up_to_there_and_not_beyond(eta: int) -> None:
+    found = linear_stability(f"lie{eta}")
+    if found.interval == 0:
+        assert all(excess(eta, Fraction(1, n)) > 0 for n in (1, 2, 10, 1000))
+        return
+    end = Fraction(found.decimal(40))
+    assert all(excess(eta, end * Fraction(n, 1000)) < 0 for n in range(1, 1000, 7))
+    assert excess(eta, end * Fraction(999_999, 10**6)) < 0
+    assert excess(eta, end * Fraction(1_000_001, 10**6)) > 0
+
+
+BOUNDED = ["stormer-verlet", "yoshida4", "symplectic-euler", "rk4", "lie3", "ruth3", "suzuki4",
+           "mclachlan-atela2", "mclachlan4", "mclachlan4-s4"]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BOUNDED)
+def test_powers_of_the_matrix_stay_bounded_inside_and_grow_outside(name: str) -> None:
+    found = linear_stability(name)
+    step = schemes.get(name).step_map(HARMONIC)
+    matrix = sympy.lambdify(sympy.Symbol("h", real=True), step.jacobian)
+    end = float(found.interval)
+    # `mclachlan4` is stable again a little farther on.
+    for share, grows in ((0.4, False), (0.98, False), (1.05, True)):
+        numbers = np.array(matrix(share * end), dtype=float)
+        size = np.linalg.norm(np.linalg.matrix_power(numbers, 400))
+        assert bool(size > 1e3) is grows, (share, size)
+
+
+def test_the_determinant_is_what_the_proof_gives() -> None:
+    assert sympy.expand(linear_stability("lie2").delta_j - Y**4 / 4) == 0
+    assert linear_stability("yoshida4").delta_j == 0
+
+
+def test_a_root_that_is_no_radical_is_named_by_its_polynomial() -> None:
+    found = linear_stability("lie7")
+    assert found.exact == "positive root 1 of y**6 - 35*y**4 + 504*y**2 - 1260"
+    assert found.root_of is not None
+    value = found.root_of[0].subs(Y, sympy.Float(found.decimal(40), 40))
+    assert abs(value) < 1e-30
+
+
+@pytest.mark.parametrize(
+    ("p_next", "q_next", "end"),
+    [
+        ("p - h*q", "q + h*p", 0),  # det 1 + y²
+        ("p - h*q", "q + h*p_next*(1 + h**2/1000)", None),  # a little off symplectic Euler
+        ("p", "q", sympy.oo),
+        ("-p", "-q*(1 + (1 - h)**2*0)", sympy.oo),
+        ("p*(1 + h*(h - 1))", "q", 1),  # det ≤ 1 just for y ≤ 1
+    ],
+)
+def test_maps_of_ones_own(p_next: str, q_next: str, end: object) -> None:
+    found = of_map("own", StepMap.from_formulas(HARMONIC, p_next, q_next))
+    if end is None:
+        assert 1.9 < float(found.decimal()) < 2
+    else:
+        assert found.interval == end
+
+
+@pytest.mark.parametrize("name", ["kick 1", "drift 1", "kick 1; drift 0"])
+def test_a_shear_is_stable_for_no_step_as_its_powers_grow(name: str) -> None:
+    assert linear_stability(name).interval == 0
+    nothing = linear_stability("kick 1; kick -1; drift 0")
+    assert nothing.interval == sympy.oo  # the identity, of the same trace and determinant
+
+
+def test_what_is_not_linear_is_refused() -> None:
+    with pytest.raises(InputError, match="not linear"):
+        of_map("own", StepMap.from_formulas(HARMONIC, "p - h*q**2", "q"))

@@ -1,0 +1,142 @@
+"""What a scene may ask of stability: its keys, bad input in one line, tasks, what is left out."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from tests.unit.scenes.test_scene import load
+from verify.commands.input import SUITES, target
+from verify.errors import InputError
+from verify.scenes.stability_sections import Stability, StabilityMap
+from verify.studies.plan import plan_scenes
+from verify.studies.stability.plan import plan_stability, stability_tasks
+
+HEAD = """
+hamiltonian = "p**2/2 + q**2/2 + d*q**4/4"
+parameters = { d = 2 }
+schemes = ["lie2", "stormer-verlet"]
+"""
+CASES = """
+[[stability]]
+name = "some"
+time = 10
+step_sizes = [0.1, 0.3]
+initial_values = [{ q = 1, p = 0 }, { q = 2, p = 0 }]
+"""
+LARGEST = """
+[[largest_step]]
+time = 10
+initial_value = { q = 1, p = 0 }
+"""
+MAP = """
+[[stability_map]]
+parameter = "d"
+values = { from = 0.01, to = 100, count = 5 }
+step_sizes = [0.1, 1]
+steps = 100
+initial_value = { q = 1, p = 0 }
+schemes = ["lie4"]
+"""
+
+
+def test_each_case_is_a_task_with_a_name_of_its_own(tmp_path: Path) -> None:
+    scene = load(tmp_path, HEAD + CASES)
+    found = list(stability_tasks(scene))
+    assert len(found) == 2 * 2 * 2
+    assert len({name for name, _ in found}) == len(found)
+    name, task = found[0]
+    assert name.endswith("/some/lie2/h=0.1/z0 no. 1")
+    assert (task.scheme, task.step_size, task.steps, task.q) == ("lie2", Fraction(1, 10), 100, 1)
+    assert found[1][1].steps == 33  # the whole steps that fit
+
+
+def test_a_range_is_even_on_a_logarithmic_scale(tmp_path: Path) -> None:
+    (over,) = load(tmp_path, HEAD + MAP).stability_map
+    assert isinstance(over, StabilityMap)
+    assert [str(v) for v in over.values] == ["1/100", "1/10", "1", "10", "100"]
+
+
+def test_only_what_is_asked_for_is_planned(tmp_path: Path) -> None:
+    scene = load(tmp_path, HEAD + CASES + LARGEST + MAP)
+    kinds = [task.kind for task in plan_stability([scene]).tasks.values()]
+    assert kinds.count("stability") == 8
+    assert kinds.count("largest_step") == 2
+    assert kinds.count("stability_map") == 1
+    assert set(kinds) == {"stability", "largest_step", "stability_map"}
+    whole = [task.kind for task in plan_scenes([scene]).tasks.values()]
+    assert set(whole) - set(kinds) == {"proof"}
+
+
+def test_a_scene_that_does_not_ask_is_told_what_is_left_out(tmp_path: Path) -> None:
+    plan = plan_scenes([load(tmp_path, HEAD)])
+    reasons = {why for _, why in plan.left_out}
+    assert {
+        "the scene has no [[stability]]",
+        "the scene has no [[largest_step]]",
+        "the scene has no [[stability_map]]",
+    } <= reasons
+    asked = plan_scenes([load(tmp_path, HEAD + CASES)])
+    assert "the scene has no [[stability]]" not in {why for _, why in asked.left_out}
+
+
+def test_a_map_gives_its_parameter_the_values_itself(tmp_path: Path) -> None:
+    without = HEAD.replace("parameters = { d = 2 }\n", "")
+    assert load(tmp_path, without + MAP).stability_map
+    with pytest.raises(InputError, match="parameter=d: has no value"):
+        load(tmp_path, without + MAP + CASES)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("time = 10", "time = 10\nsteps = 5", "give one of the two"),
+        ("time = 10", "", "give one of the two"),
+        ("0.1, 0.3", "100", "makes 0 steps"),
+        ("0.1, 0.3", "0", "must be greater than 0"),
+        ("0.1, 0.3", "1e-15", "steps; allowed: 1 …"),
+        ("0.1, 0.3", "", "at least 1"),
+        ('name = "some"', "nam = 1", "unknown key"),
+        ('name = "some"', 'schemes = ["lie2", "lie2"]', "stands twice"),
+        ('name = "some"', 'schemes = ["lie2x"]', "unknown; allowed"),
+    ],
+)
+def test_bad_cases_are_refused_in_one_line(
+    tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    assert old in CASES
+    with pytest.raises(InputError, match=message) as info:
+        load(tmp_path, HEAD + CASES.replace(old, new))
+    assert "\n" not in str(info.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("from = 0.01", "from = 200", "from must be less than to"),
+        ("from = 0.01", "from = 0", "must be greater than 0"),
+        ("count = 5", "count = 1", "2 … 200"),
+        ("count = 5", "count = true", "2 … 200"),
+        ("count = 5", "number = 5", "allowed: from, to, count"),
+        ('parameter = "d"', 'parameter = "e"', "H has no such; it has: d"),
+        ("steps = 100", "steps = 0", "greater than or equal to 1"),
+        ("steps = 100", "steps = 1000000", "less than or equal to 100000"),
+        ('schemes = ["lie4"]', 'schemes = ["lie4", 3]', "valid string"),
+    ],
+)
+def test_bad_maps_are_refused_in_one_line(tmp_path: Path, old: str, new: str, message: str) -> None:
+    assert old in MAP
+    with pytest.raises(InputError, match=message) as info:
+        load(tmp_path, HEAD + MAP.replace(old, new))
+    assert "\n" not in str(info.value)
+
+
+@pytest.mark.parametrize("suite", SUITES)
+def test_the_suites_are_scenes_that_ask_for_stability(suite: str) -> None:
+    scenes = target(suite)[1]
+    assert len(scenes) >= 5
+    assert len({scene.name for scene in scenes}) == len(scenes)
+    for scene in scenes:
+        assert scene.stability
+        assert all(isinstance(section, Stability) for section in scene.stability)
+        assert scene.title

@@ -1,0 +1,111 @@
+"""Trails, and the step at which something happens; against plain loops in Python."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from verify import arithmetic
+from verify.arithmetic.systems import mpfr
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.studies.stability.trail import (
+    Case,
+    Point,
+    first_apart,
+    first_step,
+    follow,
+    follow_precisely,
+)
+
+FLOAT = arithmetic.get("float64", 17)
+GROWING = Case(
+    Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), 3000, Fraction(0), Fraction(1)
+)
+
+
+def stepped(case: Case, steps: int) -> tuple[float, float]:
+    """lie1 on the harmonic oscillator, in float64."""
+    p, q, h = float(case.p), float(case.q), float(case.step_size)
+    for _ in range(steps):
+        p, q = p + -h * q, q + h * p
+    return p, q
+
+
+def test_a_trail_has_the_states_of_a_plain_loop() -> None:
+    trail = follow(GROWING, FLOAT)
+    assert trail.finished
+    assert trail.points[0] == Point(0, Fraction(0), Fraction(1))
+    assert trail.points[-1].step == GROWING.steps
+    assert len(trail.points) > 100
+    for point in trail.points[:: len(trail.points) // 5]:
+        assert (float(point.p), float(point.q)) == pytest.approx(stepped(GROWING, point.step))
+
+
+@pytest.mark.parametrize("size", [2, 100, 10**5])
+def test_the_first_step_is_found_exactly(size: int) -> None:
+    def far(point: Point) -> bool:
+        return point.p**2 + point.q**2 > size
+
+    # The square of the radius grows by 1 + h² at each step.
+    expected = next(n for n in range(1, 10**4) if Fraction(101, 100) ** n > size)
+    trail = follow(GROWING, FLOAT)
+    assert first_step(GROWING, trail, FLOAT, far) == expected
+
+
+def test_what_does_not_happen_has_no_step() -> None:
+    trail = follow(GROWING, FLOAT)
+    assert first_step(GROWING, trail, FLOAT, lambda point: False) is None
+
+
+def test_leaving_the_range_happens_at_the_step_after_the_last() -> None:
+    case = replace(GROWING, step_size=Fraction(10**30), steps=200)
+    trail = follow(case, FLOAT)
+    assert not trail.finished
+    found = first_step(case, trail, FLOAT, lambda point: False)
+    assert found == trail.done + 1
+    assert max(abs(x) for x in stepped(case, trail.done)) < float("inf")
+
+
+def test_something_within_the_last_unfinished_stretch_is_found() -> None:
+    case = replace(GROWING, step_size=Fraction(10**30), steps=200_000)
+    trail = follow(case, FLOAT)
+    assert len(trail.points) == 1  # the first stretch is not finished
+    assert first_step(case, trail, FLOAT, lambda point: abs(point.q) > 10**59) == 2
+
+
+def test_two_runs_part_where_a_plain_comparison_says() -> None:
+    coarse, fine = mpfr.at_bits(20), mpfr.at_bits(80)
+    case = replace(GROWING, steps=2500)
+    one, other = follow(case, coarse), follow(case, fine)
+
+    def apart(x: Point, y: Point) -> bool:
+        return abs(x.p - y.p) > Fraction(1, 10)
+
+    found = first_apart((case, one, coarse), (case, other, fine), apart)
+    assert found is not None
+    for steps, expected in ((found - 1, False), (found, True)):
+        pair = (follow(replace(case, steps=steps), a).points[-1] for a in (coarse, fine))
+        assert apart(*pair) is expected
+
+
+def test_two_runs_that_stay_together_part_nowhere() -> None:
+    fine = mpfr.at_bits(80)
+    trail = follow(GROWING, fine)
+    one = GROWING, trail, fine
+    assert first_apart(one, one, lambda x, y: abs(x.p - y.p) > 0) is None
+
+
+def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so() -> None:
+    hamiltonian = Hamiltonian.parse("p**2/2 + q*atan(q)")  # which fixed has not
+    case = Case(hamiltonian, "lie1", Fraction(1, 10**6), 400_000, Fraction(0), Fraction(1))
+    trail, wide = follow_precisely(case, 30)
+    assert wide.name == "mpfr"
+    assert trail.finished
+    assert trail.asked == 300_000
+
+
+def test_long_runs_are_compiled() -> None:
+    case = replace(GROWING, step_size=Fraction(1, 10**6), steps=100_000)
+    trail, wide = follow_precisely(case, 30)
+    assert wide.name == "fixed"
+    assert trail.asked == case.steps

@@ -1,0 +1,241 @@
+"""Whose fault it is: scenes where each verdict is right beyond doubt, and those beside them."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from verify.arithmetic.exact import rational
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.studies.stability import verdict_on_run as blame
+from verify.studies.stability.rounded_start import equilibrium_near
+from verify.studies.stability.trail import Case, follow_precisely
+from verify.studies.stability.verdict_on_run import Judgement, judge
+
+HARMONIC = "p**2/2 + q**2/2"
+DUFFING = "p**2/2 + q**2/2 + q**4/4"
+PENDULUM = "p**2/2 - cos(q)"
+CUBIC = "p**2/2 + q**2/2 - q**3/3"
+QUARTIC = "p**2/2 + q**4/4"
+EXPONENTIAL = "p**2/2 + exp(q) + exp(-q)"
+PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620")
+
+
+def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0") -> Case:
+    at = q if isinstance(q, Fraction) else rational(q)
+    return Case(Hamiltonian.parse(text), scheme, rational(h), steps, rational(p), at)
+
+
+def judged(*given: object) -> Judgement:
+    return judge(case(*given))  # type: ignore[arg-type]
+
+
+# -- the scheme -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("scheme", "below", "above"),
+    [
+        ("stormer-verlet", "1.9", "2.05"),
+        ("symplectic-euler", "1.9", "2.05"),
+        ("lie4", "2.7", "2.9"),
+        ("lie3", "1.7", "1.8"),
+    ],
+)
+def test_beyond_its_linear_limit_the_scheme_is_to_blame(
+    scheme: str, below: str, above: str
+) -> None:
+    assert judged(HARMONIC, scheme, above, 3000, "1").kind == "unstable: scheme"
+    assert judged(HARMONIC, scheme, below, 3000, "1").kind in ("stable", "drifts")
+
+
+def test_the_step_at_which_the_scheme_leaves_is_that_of_exact_arithmetic() -> None:
+    # lie1 multiplies p² + q² by 1 + h²; the energy scale bounds come before those of p and q.
+    found = judged(HARMONIC, "lie1", "1", 200, "1")
+    assert found.kind == "unstable: scheme"
+    p, q, step = Fraction(0), Fraction(1), 0
+    r_p, r_q = found.orbit.reach
+    while (
+        abs(p) <= 10 * r_p
+        and abs(q) <= 10 * r_q
+        and (p * p + q * q - 1) / 2 <= 100 * found.orbit.scale
+    ):
+        p, q, step = p - q, q + p, step + 1
+    assert found.step == step
+
+
+def test_a_scheme_with_a_wrong_sign_is_to_blame_and_not_float64() -> None:
+    wrong = "p_next = p + h*q; q_next = q + h*p"
+    assert judged(HARMONIC, wrong, "0.01", 2000, "1").kind == "unstable: scheme"
+
+
+# -- rounding -------------------------------------------------------------------------------------
+
+
+def test_at_the_top_of_the_pendulum_float64_is_to_blame() -> None:
+    found = judged(PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16))
+    assert found.kind == "unstable: arithmetic"
+    assert found.step is not None
+    assert 1000 < found.step < 3000
+    assert "cannot tell z0 from an equilibrium, which is 1.0e-16 away" in found.detail
+
+
+def test_farther_from_the_top_it_is_not() -> None:
+    found = judged(PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**3))
+    assert found.kind == "stable"
+
+
+def test_the_equilibrium_that_is_near_is_found_and_no_other() -> None:
+    near = equilibrium_near(case(PENDULUM, "lie1", "1", 1, PI - Fraction(1, 10**30)))
+    assert near is not None
+    assert abs(near[1] - PI) < Fraction(1, 10**70)
+    assert equilibrium_near(case(PENDULUM, "lie1", "1", 1, "3")) is None
+    assert equilibrium_near(case("p**2/2 + q", "lie1", "1", 1, "3")) is None
+
+
+# -- the exact solution ---------------------------------------------------------------------------
+
+
+def test_an_exact_solution_that_leaves_is_nobodys_fault() -> None:
+    found = judged(CUBIC, "stormer-verlet", "0.01", 1000, "3/2")
+    assert found.kind == "escapes"
+    assert found.detail == "the exact solution blows up at t = 3.14159"
+    assert judged(CUBIC, "stormer-verlet", "0.01", 100, "3/2").kind == "stable"
+
+
+def test_a_scheme_that_leaves_a_well_is_not_excused_by_the_escape_beyond_it() -> None:
+    assert judged(CUBIC, "lie2", "1", 50, "1/2").kind == "unstable: scheme"
+
+
+# -- range ----------------------------------------------------------------------------------------
+
+
+def test_a_force_beyond_float64_overflows_where_the_scheme_stays() -> None:
+    found = judged(EXPONENTIAL, "stormer-verlet", "1e-160", 2000, "720")  # e^720 = 10^312
+    assert (found.kind, found.step) == ("overflow", 1)
+    assert judged(EXPONENTIAL, "stormer-verlet", "1e-67", 2000, "300").kind == "stable"
+
+
+def test_where_the_scheme_leaves_as_well_an_overflow_is_no_excuse() -> None:
+    found = judged(EXPONENTIAL, "stormer-verlet", "0.01", 2000, "720")
+    assert found.kind == "unstable: scheme"
+    assert "float64 is out of its range from step 1 on" in found.detail
+
+
+def test_a_force_that_vanishes_in_float64_underflows() -> None:
+    found = judged(QUARTIC, "stormer-verlet", "0.01", 1000, "1e-150")  # q³ = 10^−450
+    assert found.kind == "underflow"
+    assert "all of p vanishes" in found.detail
+    assert judged(QUARTIC, "stormer-verlet", "0.01", 1000, "1e-50").kind == "stable"
+
+
+@pytest.mark.parametrize("size", ["1e-300", "1e150"])
+def test_a_linear_problem_is_the_same_at_any_size(size: str) -> None:
+    assert judged(HARMONIC, "stormer-verlet", "0.1", 2000, size).kind == "stable"
+    assert judged(HARMONIC, "stormer-verlet", "2.1", 2000, size).kind == "unstable: scheme"
+
+
+# -- drift ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("scheme", "sign"), [("lie2", 1), ("lie3", -1), ("lie4", -1)])
+def test_the_rate_of_a_drift_is_that_of_the_determinant(scheme: str, sign: int) -> None:
+    # On the harmonic oscillator H is multiplied by det J at every step.
+    found = judged(HARMONIC, scheme, "0.1", 2000, "1")
+    coefficient = {"lie2": Fraction(1, 4), "lie3": Fraction(-1, 12), "lie4": Fraction(-1, 72)}
+    power = {"lie2": 3, "lie3": 3, "lie4": 5}[scheme]
+    expected = coefficient[scheme] * Fraction(1, 10**power) / 2
+    assert found.kind == "drifts"
+    assert found.rate is not None
+    assert found.rate * sign > 0
+    assert abs(found.rate / expected - 1) < Fraction(1, 10)
+
+
+@pytest.mark.parametrize("scheme", ["symplectic-euler", "stormer-verlet", "yoshida4"])
+@pytest.mark.parametrize("text", [HARMONIC, DUFFING, PENDULUM])
+def test_what_only_swings_does_not_drift(text: str, scheme: str) -> None:
+    for h in ("0.01", "0.037", "0.1", "0.25", "1/2", "1"):
+        assert judged(text, scheme, h, 1000, "1").kind in ("stable", "unstable: scheme"), h
+
+
+def test_a_periodic_orbit_of_the_scheme_is_no_motion_that_died() -> None:
+    assert judged(DUFFING, "stormer-verlet", "1", 1000, "1").kind == "stable"
+
+
+def test_a_motion_that_dies_drifts() -> None:
+    found = judged(HARMONIC, "lie3", "1", 2000, "1")
+    assert found.kind == "drifts"
+    assert found.rate is not None
+    assert found.rate < 0
+
+
+# -- nothing --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", ["0*p", "p**2/2 + p**4/4", "sin(q)", "p*0 + 3"])
+def test_what_cannot_go_wrong_is_stable(text: str) -> None:
+    assert judged(text, "lie2", "0.1", 500, "1", "1").kind == "stable"
+
+
+def test_where_h_is_not_defined_there_is_a_verdict_and_no_traceback() -> None:
+    found = judged("p**2/2 + 1/q", "lie2", "0.1", 100, "0", "1")
+    assert found.kind == "undecided"
+    assert "not defined" in found.detail
+
+
+def test_high_precision_that_does_not_settle_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blame, "_MOST_DIGITS", 0)
+    found = judged(PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16))
+    assert found.kind == "undecided"
+
+
+def test_a_chaotic_run_that_parts_by_rounding_is_not_called_underflow() -> None:
+    # 53 bits keep with 40 digits here to the end, by chance; no number is small.
+    found = judge(case(DUFFING, "symplectic-euler", "1.4", 4000, "0.5", "0.1"))
+    assert found.kind == "unstable: arithmetic"
+
+
+def test_a_scheme_that_comes_back_to_one_point_is_seen_at_the_others_too() -> None:
+    # It turns by π − π/32 a step: after every 64th it is at z0, between them 20 times as far out.
+    found = judged(HARMONIC, "stormer-verlet", "1.997590912410", 12800, "0", "1")
+    assert found.kind == "unstable: scheme"
+    # And here by π/2: after every fourth.
+    for steps in (400, 4096):
+        found = judged(HARMONIC, "stormer-verlet", "1.414213562373095", steps, "0", "1")
+        assert found.kind == "stable"
+        assert found.energy_error is not None
+        assert found.energy_error > Fraction(1, 10)
+
+
+def test_a_step_whose_equations_have_no_solution_is_told_as_that() -> None:
+    found = judged("p**2/2 + q**2/2 + p**2*q**2", "gauss4", "0.5", 10, "1", "2")
+    assert found.kind == "unstable: scheme"
+    assert "the scheme finds no solution of its equations at step 1," in found.detail
+    assert found.detail.endswith("float64 goes no further from step 1 on")
+    beyond = judged(HARMONIC, "stormer-verlet", "2.1", 4000, "1")
+    assert "the scheme leaves the bounds at step" in beyond.detail
+    assert "float64 is out of its range from step" in beyond.detail
+
+
+def test_a_run_too_short_to_show_a_drift_says_so() -> None:
+    told = "too few times to tell a drift"
+    for steps, shown in ((200, False), (1000, False), (4000, True)):  # 0.3, 1.6 and 6 periods
+        found = judged(HARMONIC, "lie1", "0.01", steps, "1")
+        assert (found.kind, told in found.detail) == (
+            ("drifts", False) if shown else ("stable", True)
+        )
+    long = judged(HARMONIC, "stormer-verlet", "0.01", 4000, "1")
+    assert told not in long.detail
+
+
+def test_what_more_digits_agree_on_is_held_against_the_bounds_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    top = PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16)
+    assert judged(*top).kind == "unstable: arithmetic"
+
+    def elsewhere(case: Case, digits: int) -> object:
+        return follow_precisely(replace(case, q=1000 * case.q), digits)
+
+    monkeypatch.setattr(blame, "follow_precisely", elsewhere)  # 80 digits and more
+    assert judged(*top).kind == "unstable: scheme"

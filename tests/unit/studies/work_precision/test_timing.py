@@ -1,0 +1,90 @@
+"""Run times by a clock that the test moves itself: interleaved, repeated, the blank subtracted."""
+
+import gc
+from collections.abc import Callable
+
+import pytest
+
+from verify.studies.work_precision import timing
+from verify.studies.work_precision.timing import Timed, above, interleaved, less
+
+
+class Clock:
+    """A clock that calls advance; `slow` is what the whole machine loses at a moment."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 0
+        self.seen: list[str] = []
+        monkeypatch.setattr(timing, "clock", lambda: (lambda: self.now, "by hand"))
+
+    def call(self, name: str, *takes: int) -> Callable[[], None]:
+        """Takes so many nanoseconds, the last of them again and again."""
+        left = list(takes)
+
+        def made() -> None:
+            self.seen.append(name)
+            self.now += left.pop(0) if len(left) > 1 else left[0]
+
+        return made
+
+
+LONG = 50_000_000  # ns, so that one call is one timing
+
+
+def test_every_call_is_timed_in_each_round_before_any_is_timed_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock = Clock(monkeypatch)
+    found = interleaved([clock.call("a", LONG), clock.call("b", 2 * LONG)], 3)
+    assert found == [Timed(0.05, 0.05), Timed(0.1, 0.1)]
+    rounds = clock.seen[-6:]
+    assert [sorted(rounds[i : i + 2]) for i in (0, 2, 4)] == [["a", "b"]] * 3
+    assert clock.seen.count("a") > 3, "and once before, as a warm-up"
+
+
+def test_a_slow_first_call_is_the_warm_up_and_a_slow_round_moves_no_median(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock = Clock(monkeypatch)
+    # The warm-up, the count, and five rounds of which one is slow.
+    call = clock.call("a", 100 * LONG, LONG, LONG, LONG, 9 * LONG, LONG, LONG)
+    assert interleaved([call], 5) == [Timed(0.05, 0.05)]
+
+
+def test_a_short_call_is_repeated_until_its_timing_is_long_enough(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock = Clock(monkeypatch)
+    (found,) = interleaved([clock.call("a", 1000)], 1)
+    assert found == Timed(1e-6, 1e-6)
+    assert len(clock.seen) > 10_000
+
+
+def test_what_a_blank_call_takes_is_subtracted_and_nothing_becomes_negative() -> None:
+    assert less(Timed(5e-6, 6e-6), Timed(1e-6, 2e-6)) == Timed(
+        pytest.approx(4e-6), pytest.approx(5e-6)
+    )
+    gone = less(Timed(1e-6, 1e-6), Timed(2e-6, 2e-6))
+    assert 0 < gone.least <= gone.median
+
+
+def test_the_collector_is_as_it_was_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = Clock(monkeypatch)
+    collecting = []
+    interleaved([clock.call("a", LONG), lambda: collecting.append(gc.isenabled())], 1)
+    assert gc.isenabled()
+    assert not collecting[-1]
+
+
+def test_the_real_clock_moves() -> None:
+    now, name = timing.clock()
+    begun = now()
+    sum(range(200_000))
+    assert now() > begun
+    assert name
+
+
+def test_a_run_that_is_shorter_than_its_call_has_no_time() -> None:
+    blank = Timed(100e-9, 110e-9)
+    assert above(Timed(150e-9, 190e-9), blank) is None
+    assert above(Timed(150e-9, 250e-9), blank) == less(Timed(150e-9, 250e-9), blank)

@@ -1,0 +1,58 @@
+"""How large a constant expression is, before sympy is asked anything about it.
+
+sympy settles signs and identities of constants by evaluating them, which for sin(exp(exp(100)))
+never ends. Ball arithmetic says at once that such a constant is out of reach.
+"""
+
+from typing import Any
+
+import flint
+import sympy
+
+from verify.arithmetic.flint_precision import working_precision
+
+MAX_BITS = 4000
+
+_FUNCTIONS = {
+    sympy.sin: "sin",
+    sympy.cos: "cos",
+    sympy.tan: "tan",
+    sympy.exp: "exp",
+    sympy.log: "log",
+    sympy.sinh: "sinh",
+    sympy.cosh: "cosh",
+    sympy.tanh: "tanh",
+    sympy.atan: "atan",
+}
+
+
+def within_reach(constant: sympy.Expr) -> bool:
+    """Whether the constant is finite and below 2^4000 in size, shown by ball arithmetic."""
+    with working_precision(128):
+        ball = _ball(constant)
+        limit = flint.arb(2) ** MAX_BITS
+        return ball is not None and bool(ball.is_finite()) and bool(abs(ball) < limit)
+
+
+def _ball(node: sympy.Expr) -> Any:
+    """A ball around the constant, or None where this module does not know the expression."""
+    if node.is_Rational:
+        return flint.arb(flint.fmpq(int(node.p), int(node.q)))
+    if node is sympy.pi:
+        return flint.arb.pi()
+    if node is sympy.E:
+        return flint.arb(1).exp()
+    arguments = [_ball(argument) for argument in node.args]
+    if any(a is None or not a.is_finite() for a in arguments):
+        return None
+    if node.is_Add:
+        return sum(arguments, flint.arb(0))
+    if node.is_Mul:
+        total = flint.arb(1)
+        for argument in arguments:
+            total *= argument
+        return total
+    if node.is_Pow:
+        return arguments[0] ** arguments[1]
+    method = _FUNCTIONS.get(node.func)
+    return getattr(arguments[0], method)() if method else None

@@ -1,0 +1,141 @@
+"""Enclosing a ring element at a rational point by ball arithmetic, and points to look at."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import flint
+
+from verify.algebra.generator import terms_of
+from verify.arithmetic.flint_precision import working_precision
+
+if TYPE_CHECKING:
+    from verify.algebra.ring import Ring
+
+_FAR_POINTS = 200
+
+
+def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) -> Any:
+    """A ball (flint.arb) that contains x at the point, or None where x is not defined.
+
+    Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
+    """
+    if ring.in_variables(x):
+        at = [flint.fmpq()] * ring.room
+        for name, power in zip(ring.variables, x.degrees()[ring.room :], strict=True):
+            value = point[name] if power > 0 else Fraction()  # the degree of 0 is −1
+            at.append(flint.fmpq(value.numerator, value.denominator))
+        with working_precision(precision):
+            return flint.arb(x(*at))
+    with working_precision(precision):
+        exact = {
+            name: flint.arb(flint.fmpq(at.numerator, at.denominator)) for name, at in point.items()
+        }
+        return enclose_over(ring, x, exact)
+
+
+def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
+    """A ball that contains x at every point of a box of balls, or None where x may be undefined.
+
+    In flint's present precision.
+    """
+    found = enclose_all(ring, [x], box)
+    return None if found is None else found[0]
+
+
+def enclose_all(ring: "Ring", elements: Sequence[Any], box: Mapping[str, Any]) -> list[Any] | None:
+    """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
+    values: dict[int, Any] = {}
+    powers: dict[tuple[int, int], Any] = {}
+    for g in ring.used(*elements):
+        if g.kind == "variable":
+            values[g.index] = box[g.name]
+        elif g.kind == "pi":
+            values[g.index] = flint.arb.pi()
+        elif g.kind == "solved":
+            return None  # where the equations have a solution is not looked into
+        elif g.kind == "stage":
+            values[g.index] = _at(g.argument, values, powers)
+        else:
+            values[g.index] = BALLS[g.kind](_at(g.argument, values, powers), g.degree)
+        if not values[g.index].is_finite():
+            return None
+    return [_at(x, values, powers) for x in elements]
+
+
+def power_of(x: Any, n: int) -> Any:
+    # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
+    # and is then undefined around 0.
+    half = square(power_of(x, n // 2)) if n > 1 else flint.arb(1)
+    return half * x if n % 2 else half
+
+
+def square(x: Any) -> Any:
+    """x² of a ball: as narrow as its ends are, which x · x is not."""
+    low, high = x.abs_lower(), x.abs_upper()
+    return (low * low).union(high * high)
+
+
+BALLS: dict[str, Callable[[Any, int], Any]] = {
+    "sin": lambda x, _: x.sin(),
+    "cos": lambda x, _: x.cos(),
+    "exp": lambda x, _: x.exp(),
+    "sinh": lambda x, _: x.sinh(),
+    "cosh": lambda x, _: x.cosh(),
+    "log": lambda x, _: x.log(),
+    "atan": lambda x, _: x.atan(),
+    "root": lambda x, n: x.root(n),
+    "inverse": lambda x, _: 1 / x,
+}
+
+
+def _at(x: Any, values: dict[int, Any], powers: dict[tuple[int, int], Any]) -> Any:
+    """`powers`: those of the values that were made for other elements, too."""
+    total = flint.arb(0)
+    present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
+    for monomial, coefficient in terms_of(x):
+        term = flint.arb(coefficient)
+        for index in present:
+            if power := int(monomial[index]):
+                known = powers.get((index, power))
+                if known is None:
+                    known = powers[index, power] = power_of(values[index], power)
+                term *= known
+        total += term
+    return total
+
+
+def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
+    """Rational points to look for a witness at: small ones first, then ever farther ones.
+
+    Without a pattern that a formula could share, and of both signs, since a root or a logarithm
+    may be defined on one side only, or far out; the same points in every call.
+    """
+    for values in _near(len(names)):
+        yield dict(zip(names, values, strict=True))
+    state = 12345
+    for count in range(_FAR_POINTS):
+        point = {}
+        for name in names:
+            state = (1103515245 * state + 12345) % 2**31
+            reach = 2 + 10 * count // _FAR_POINTS  # up to 2^reach, and down to 2^−reach
+            scale = Fraction(2) ** (state // 4096 % (2 * reach) - reach + 1)
+            value = Fraction(state % 4096 + 1, 4096) * scale
+            point[name] = value if state >> 29 & 1 else -value
+        yield point
+
+
+@lru_cache(maxsize=16)
+def _near(count: int) -> list[tuple[Fraction, ...]]:
+    """So many coordinates of each of the first points."""
+    primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
+    size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(count)]
+    signs = list(product((1, -1), repeat=min(count, 4))) or [()]
+    found = []
+    for scale in (Fraction(1), Fraction(1, 16)):
+        for sign in signs:
+            full = (*sign, *(1 for _ in range(count - len(sign))))
+            found.append(tuple(scale * s * v for s, v in zip(full, size, strict=True)))
+    return found

@@ -1,0 +1,64 @@
+"""One generator of a ring: which function it is, of what, and how it is written."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import sympy
+
+Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+
+
+@dataclass(frozen=True)
+class Generator:
+    """One ring generator: `kind` of function, its argument, and its expression.
+
+    `kind`: variable, pi, sin, cos, exp, sinh, cosh, log, atan, root (of `degree`), inverse, or
+    stage, which is its argument itself under a name, or solved: an unknown of a system of
+    equations (see `verify.algebra.implicit_unknowns`), the `degree`-th of it, of which its argument is 0. `expression`
+    is None where it is made from the argument's when it is asked for.
+    """
+
+    index: int
+    kind: str
+    expression: sympy.Expr | None
+    argument: Poly = None
+    degree: int = 1
+
+    @property
+    def name(self) -> str:
+        """Of a variable."""
+        assert self.kind == "variable"  # noqa: S101 - the caller looks at the kind
+        return str(self.expression.name)  # type: ignore[union-attr]
+
+
+def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], Any]]:
+    """Each monomial, as the powers of all generators, with its coefficient.
+
+    Far faster than by a dictionary of flint's own making.
+    """
+    return zip(x.monoms(), x.coeffs(), strict=True)
+
+
+def written(g: Generator, argument: sympy.Expr) -> sympy.Expr:
+    """The generator's function of an expression."""
+    return _FUNCTIONS[g.kind](argument, g.degree)
+
+
+_FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
+    "sin": lambda x, _: sympy.sin(x),
+    "cos": lambda x, _: sympy.cos(x),
+    "exp": lambda x, _: sympy.exp(x),
+    "sinh": lambda x, _: sympy.sinh(x),
+    "cosh": lambda x, _: sympy.cosh(x),
+    "log": lambda x, _: sympy.log(x),
+    "atan": lambda x, _: sympy.atan(x),
+    "root": lambda x, degree: x ** sympy.Rational(1, degree),
+    "inverse": lambda x, _: 1 / x,
+    "stage": lambda x, _: x,
+}
+
+
+def rational_of(value: Any) -> sympy.Rational:
+    """A flint rational as sympy's."""
+    return sympy.Rational(int(value.numer()), int(value.denom()))

@@ -1,0 +1,283 @@
+"""From expressions to elements of one ring: which generators they need, and how to write them.
+
+`embed(expressions, variables)` builds the ring for all of them at once, since the arguments of all
+sines (and of all exponentials) decide together over which basis they are expanded.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+
+import flint
+import sympy
+
+from verify.algebra.functions_used import (
+    EXPONENTIAL,
+    OTHER,
+    TRIGONOMETRIC,
+    is_exponential_power,
+    is_natural,
+    levels_of,
+    subexpressions,
+)
+from verify.algebra.lattice import lattice
+from verify.algebra.monomials import exponents
+from verify.algebra.ring import Poly, Ring, RingFullError
+from verify.errors import InputError
+
+MAX_TERMS = 20000
+_MOST_BITS = 12  # of a number under a root, before it is scaled
+_HYPERBOLIC = (sympy.sinh, sympy.cosh, sympy.tanh)
+
+
+def embed(
+    expressions: Sequence[sympy.Expr], variables: Sequence[str], most_terms: int = MAX_TERMS
+) -> tuple[Ring, list[Poly]]:
+    """The ring of the expressions over the variables, and each expression as its element.
+
+    Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
+    """
+    nodes = subexpressions(expressions)
+    levels = levels_of(nodes)
+    powers = {node for node in nodes if node.is_Pow and not is_natural(node.exp)}
+    functions, rest = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
+    # What is multiplied out is the faster the fewer generators there are, present or not: the
+    # usual number is tried first.
+    most = 6 * (functions + rest + len(variables))
+    usual = min(2 * functions + 2 * rest, most)
+    for room in (usual, most):
+        builder = _Builder(Ring(variables, room, spare=0), _root_degrees(powers), most_terms)
+        try:
+            for level in levels:
+                builder.functions(level)
+            return builder.ring, [builder.element(e) for e in expressions]
+        except RingFullError as error:
+            problem = f"is too involved: {error}"
+    raise InputError("formula", str(expressions[0]), problem)
+
+
+def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
+    """For each base under a root, the degree of one root that all its roots are powers of."""
+    degrees: dict[sympy.Expr, int] = {}
+    for power in powers:
+        if power.exp.is_Rational:
+            degrees[power.base] = math.lcm(degrees.get(power.base, 1), int(power.exp.q))
+    return degrees
+
+
+def _argument(function: sympy.Expr) -> sympy.Expr:
+    if is_exponential_power(function):
+        return function.exp * sympy.log(function.base)
+    return function.args[0] if function.args else sympy.S.One  # e is exp(1)
+
+
+def _scale(u: Poly, degree: int) -> flint.fmpq:
+    """2^k such that u/2^(k·degree) is close to 1, for a number u that is not, and fits no fixed
+    point; else 1."""
+    number = u.leading_coefficient() if u.is_constant() else flint.fmpq(0)
+    bits = int(number.p).bit_length() - int(number.q).bit_length() if number > 0 else 0
+    return flint.fmpq(2) ** (bits // degree if abs(bits) > _MOST_BITS else 0)
+
+
+class _Builder:
+    """Holds the ring while its generators are made, and what each expression became."""
+
+    def __init__(self, ring: Ring, root_degrees: dict[sympy.Expr, int], most_terms: int) -> None:
+        self.ring = ring
+        self.root_degrees = root_degrees
+        self.most_terms = most_terms
+        self.known: dict[sympy.Expr, Poly] = {}
+
+    # -- functions ----------------------------------------------------------------------------
+
+    def functions(self, level: Sequence[sympy.Expr]) -> None:
+        """Generators for one level of functions, whose arguments are elements by now."""
+        self.family([f for f in level if isinstance(f, TRIGONOMETRIC)], self.circle)
+        exponentials = [f for f in level if isinstance(f, EXPONENTIAL) or f.is_Pow]
+        self.family(exponentials, self.exponential)
+        for function in level:
+            if isinstance(function, OTHER):
+                self.other(function)
+
+    def family(
+        self,
+        functions: Sequence[sympy.Expr],
+        make: Callable[[Poly, list[sympy.Expr]], Callable[[int], tuple[Poly, Poly]]],
+    ) -> None:
+        """Functions f(Σ kᵢ bᵢ) by their values at the basis bᵢ and the addition theorems."""
+        if not functions:
+            return
+        ring = self.ring
+        arguments = [self.element(_argument(f)) for f in functions]
+        basis, multiples = lattice(ring, arguments)
+        values = [
+            make(b, [f for f, row in zip(functions, multiples, strict=True) if row[k]])
+            for k, b in enumerate(basis)
+        ]
+        for function, row in zip(functions, multiples, strict=True):
+            trigonometric = isinstance(function, TRIGONOMETRIC)
+            even, odd = ring.one, ring.zero
+            for k, value in zip(row, values, strict=True):
+                c, s = value(k)
+                sign = -1 if trigonometric else 1
+                even, odd = (
+                    ring.reduce(even * c + sign * odd * s),
+                    ring.reduce(odd * c + even * s),
+                )
+            self.known[function] = self.select(function, even, odd)
+
+    def select(self, function: sympy.Expr, even: Poly, odd: Poly) -> Poly:
+        if isinstance(function, sympy.cos | sympy.cosh):
+            return even
+        if isinstance(function, sympy.sin | sympy.sinh):
+            return odd
+        if isinstance(function, sympy.exp | type(sympy.E)) or function.is_Pow:
+            return self.ring.reduce(even + odd)
+        return self.ring.multiply(odd, self.inverse(even, function))
+
+    def circle(self, b: Poly, _: list[sympy.Expr]) -> Callable[[int], tuple[Poly, Poly]]:
+        """cos b and sin b; returns k ↦ (cos kb, sin kb)."""
+        ring, expression = self.ring, self.ring.expression(b)
+        c, s = ring.find("cos", b), ring.find("sin", b)
+        if c is None or s is None:
+            c = ring.add("cos", sympy.cos(expression), b)
+            s = ring.add("sin", sympy.sin(expression), b)
+            ring.relate(s, 2, s**2 + c**2 - 1)
+            ring.set_gradient(c, -s, b)
+            ring.set_gradient(s, c, b)
+        return lambda k: self.multiple(c, s, k, -1)
+
+    def exponential(
+        self, b: Poly, functions: list[sympy.Expr]
+    ) -> Callable[[int], tuple[Poly, Poly]]:
+        """cosh b and sinh b where they are asked for, else exp b and where needed its inverse.
+
+        Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
+        """
+        ring, expression = self.ring, self.ring.expression(b)
+        c, s, e = (ring.find(kind, b) for kind in ("cosh", "sinh", "exp"))
+        if any(isinstance(f, _HYPERBOLIC) for f in functions) and c is None:
+            c = ring.add("cosh", sympy.cosh(expression), b)
+            s = ring.add("sinh", sympy.sinh(expression), b)
+            ring.relate(s, 2, s**2 - c**2 + 1)
+            ring.set_gradient(c, s, b)
+            ring.set_gradient(s, c, b)
+        if c is not None:
+            return lambda k: self.multiple(c, s, k, 1)
+        if e is None:
+            e = ring.add("exp", sympy.exp(expression), b)
+            ring.set_gradient(e, e, b)
+        return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
+
+    def multiple(self, c: Poly, s: Poly, k: int, sign: int) -> tuple[Poly, Poly]:
+        """(c, s) at k times the argument by the addition theorem; `sign` is that of s² in it."""
+        ring = self.ring
+        even, odd = ring.one, ring.zero
+        for _ in range(abs(k)):
+            even, odd = ring.reduce(even * c + sign * odd * s), ring.reduce(odd * c + even * s)
+        return even, odd if k >= 0 else -odd
+
+    def other(self, function: sympy.Expr) -> None:
+        ring, u = self.ring, self.element(function.args[0])
+        kind = "log" if isinstance(function, sympy.log) else "atan"
+        same = ring.find(kind, u)
+        if same is not None:
+            self.known[function] = same
+            return
+        outer = self.inverse(u if kind == "log" else ring.reduce(u * u + 1), function)
+        generator = ring.add(kind, function, u)
+        ring.set_gradient(generator, outer, u)
+        self.known[function] = generator
+
+    # -- everything else ----------------------------------------------------------------------
+
+    def element(self, node: sympy.Expr) -> Poly:
+        """The element of the expression; InputError where it is not defined or too large."""
+        if node in self.known:
+            return self.known[node]
+        result = self.build(node)
+        if len(result) > self.most_terms:
+            raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
+        self.known[node] = result
+        return result
+
+    def build(self, node: sympy.Expr) -> Poly:
+        ring = self.ring
+        if node.is_Rational:
+            return ring.context.constant(flint.fmpq(int(node.p), int(node.q)))
+        if node.is_Symbol:
+            return ring.variable(node.name)
+        if node is sympy.pi:
+            return ring.add("pi", sympy.pi)
+        if node.is_Add:
+            return self.sum(node)
+        if node.is_Mul:
+            total = ring.one
+            for argument in node.args:
+                total = self.limited(total, self.element(argument), node)
+            return total
+        if node.is_Pow and node.exp.is_Rational:
+            return self.power(node)
+        raise InputError("formula", str(node), f"{type(node).__name__} cannot be handled exactly")
+
+    def sum(self, node: sympy.Add) -> Poly:
+        ring, plain = self.ring, dict[tuple[int, ...], flint.fmpq]()
+        total, length = ring.zero, ring.room + len(ring.variables)
+        for argument in node.args:
+            found = exponents(argument, ring.places, length)
+            if found is None:
+                total += self.element(argument)
+            else:
+                monomial, number = found
+                value = flint.fmpq(int(number.p), int(number.q))
+                plain[monomial] = plain.get(monomial, 0) + value
+        return total + ring.context.from_dict(plain)
+
+    def power(self, node: sympy.Expr) -> Poly:
+        base = self.element(node.base)
+        n, degree = int(node.exp.p), int(node.exp.q)
+        if degree == 1 and n > 0 and node.base.is_Symbol:
+            return base**n
+        if degree == 1:
+            return self.repeated(base if n > 0 else self.inverse(base, node), abs(n), node)
+        finest = self.root_degrees[node.base]
+        scale = _scale(base, finest)
+        root = self.root(base / scale**finest, finest, node) * scale
+        n *= finest // degree
+        if n < 0:
+            # 1/R = R^(finest−1) / u keeps the one inverse that the derivative needs anyway.
+            inverse = self.ring.multiply(root ** (finest - 1), self.inverse(base, node))
+            return self.repeated(inverse, -n, node)
+        return self.repeated(root, n, node)
+
+    def root(self, u: Poly, degree: int, node: sympy.Expr) -> Poly:
+        ring = self.ring
+        same = ring.find("root", u, degree)
+        if same is not None:
+            return same
+        _, factors = u.factor()
+        if math.gcd(degree, *(int(n) for _, n in factors)) > 1 and factors:
+            raise InputError("formula", str(node), "is not smooth: the root of a power is |x|")
+        inverse = self.inverse(u, node)
+        root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
+        ring.relate(root, degree, root**degree - u)
+        ring.set_gradient(root, ring.multiply(root, inverse) / degree, u)
+        return root
+
+    def repeated(self, base: Poly, n: int, node: sympy.Expr) -> Poly:
+        total = self.ring.one
+        for _ in range(n):
+            total = self.limited(total, base, node)
+        return total
+
+    def limited(self, x: Poly, y: Poly, node: sympy.Expr) -> Poly:
+        result = self.ring.multiply(x, y)
+        if len(result) > self.most_terms:
+            raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
+        return result
+
+    def inverse(self, u: Poly, node: sympy.Expr) -> Poly:
+        try:
+            return self.ring.inverse(u)
+        except ZeroDivisionError:
+            problem = "division by zero, or by what cannot be shown not to vanish"
+            raise InputError("formula", str(node), problem) from None

@@ -1,0 +1,59 @@
+"""A basis for the arguments of sines or exponentials, over which they are expanded."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import flint
+
+from verify.algebra.generator import terms_of
+from verify.algebra.ring import Poly, Ring
+
+MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
+
+
+def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
+    """A basis of the lattice the arguments span, and each argument as integers over it.
+
+    Arguments are vectors of rational coefficients over their monomials; the basis is the Hermite
+    normal form of their integer multiples. Where a multiple would be large (sin(100 q) beside
+    sin(q)) each argument is a basis element of its own: nothing wrong can follow, only an
+    identity may go unseen.
+    """
+    terms = [dict(terms_of(a)) for a in arguments]
+    monomials = sorted({m for t in terms for m in t}, reverse=True)
+    common = 1
+    for t in terms:
+        for value in t.values():
+            common = int(flint.fmpz(common).lcm(value.denom()))
+    rows = [[int(t.get(m, 0) * common) for m in monomials] for t in terms]
+    basis = [r for r in _rows(flint.fmpz_mat(rows).hnf()) if any(r)]
+    multiples = [_coordinates(row, basis) for row in rows]
+    if any(abs(k) > MAX_MULTIPLE for row in multiples for k in row):
+        distinct = [a for k, a in enumerate(arguments) if a not in arguments[:k]]
+        return distinct, [[int(a == b) for b in distinct] for a in arguments]
+    for k, vector in enumerate(basis):
+        if all(row[k] <= 0 for row in multiples):  # exp(−q²) by itself, not by 1/exp(q²)
+            basis[k] = [-v for v in vector]
+            multiples = [[*row[:k], -row[k], *row[k + 1 :]] for row in multiples]
+    elements = [
+        ring.context.from_dict(
+            {m: flint.fmpq(v, common) for m, v in zip(monomials, vector, strict=True) if v}
+        )
+        for vector in basis
+    ]
+    return elements, multiples
+
+
+def _rows(matrix: Any) -> list[list[int]]:
+    return [[int(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())]
+
+
+def _coordinates(row: list[int], basis: list[list[int]]) -> list[int]:
+    """Integers k with Σ kᵢ basisᵢ = row, for a basis in echelon form that spans it."""
+    rest, result = list(row), []
+    for vector in basis:
+        pivot = next(j for j, v in enumerate(vector) if v)
+        k = rest[pivot] // vector[pivot]
+        rest = [r - k * v for r, v in zip(rest, vector, strict=True)]
+        result.append(k)
+    return result

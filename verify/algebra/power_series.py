@@ -1,0 +1,115 @@
+"""Power series in h cut off after hⁿ, and functions of (p, q) at a point given by such series.
+
+A function's Taylor series around (p, q) needs nothing but its partial derivatives, so that
+f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, whatever f is made of;
+no closed form of a composition is written down on the way.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.algebra.ring import Poly, Ring
+
+Partial = Callable[[int, int], Poly]  # (i, j) ↦ ∂ⁱ⁺ʲ f / ∂pⁱ ∂qʲ
+
+
+@dataclass(frozen=True)
+class Series:
+    """Σ hᵏ coefficients[k], the coefficients in normal form in `ring` and free of h."""
+
+    ring: Ring
+    coefficients: tuple[Poly, ...]
+
+    @classmethod
+    def of(cls, ring: Ring, coefficients: Sequence[Poly], most: int) -> "Series":
+        """With these first coefficients, as far as h^most."""
+        kept = [*coefficients[: most + 1], *[ring.zero] * (most + 1 - len(coefficients))]
+        return cls(ring, tuple(kept))
+
+    @property
+    def most(self) -> int:
+        return len(self.coefficients) - 1
+
+    def __add__(self, other: "Series") -> "Series":
+        pairs = zip(self.coefficients, other.coefficients, strict=True)
+        return Series(self.ring, tuple(x + y for x, y in pairs))
+
+    def __sub__(self, other: "Series") -> "Series":
+        return self + other.times(Fraction(-1))
+
+    def __mul__(self, other: "Series") -> "Series":
+        ring, most = self.ring, self.most
+        total = [ring.zero] * (most + 1)
+        for i, x in enumerate(self.coefficients):
+            if x != 0:
+                for j, y in enumerate(other.coefficients[: most + 1 - i]):
+                    if y != 0:
+                        total[i + j] += x * y
+        return Series(ring, tuple(map(ring.reduce, total)))
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether all coefficients that are kept are 0."""
+        return all(c == 0 for c in self.coefficients)
+
+    def times(self, x: Poly | Fraction) -> "Series":
+        """Its product with what does not depend on h."""
+        factor = self.ring.constant(x) if isinstance(x, Fraction) else x
+        multiply = self.ring.multiply
+        return Series(
+            self.ring, tuple(multiply(factor, c) if c != 0 else c for c in self.coefficients)
+        )
+
+    def shifted(self, n: int) -> "Series":
+        """Its product with hⁿ."""
+        return Series.of(self.ring, [*[self.ring.zero] * n, *self.coefficients], self.most)
+
+    def diff(self, name: str) -> "Series":
+        return Series(self.ring, tuple(self.ring.diff(c, name) for c in self.coefficients))
+
+
+def partials(ring: Ring, x: Poly) -> Partial:
+    """The partial derivatives of a ring element, each made once."""
+    known = {(0, 0): x}
+
+    def partial(i: int, j: int) -> Poly:
+        if (i, j) not in known:
+            name, below = ("q", partial(i, j - 1)) if j else ("p", partial(i - 1, 0))
+            known[i, j] = ring.diff(below, name)
+        return known[i, j]
+
+    return partial
+
+
+def at_point(partial: Partial, u: Series, v: Series) -> Series:
+    """f(p + u, q + v) for the function f with these partial derivatives; u and v are O(h)."""
+    if u.coefficients[0] != 0 or v.coefficients[0] != 0:
+        raise ValueError("the point is not (p, q) at h = 0")
+    ring, most = u.ring, u.most
+    total = Series.of(ring, [], most)
+    one = Series.of(ring, [ring.one], most)
+    along_p = one
+    for i in range(most + 1):
+        both = along_p
+        for j in range(most + 1 - i):
+            derivative = partial(i, j)
+            if derivative == 0 or both.vanishes:  # and so are all further ones by q
+                break
+            share = Fraction(1, math.factorial(i) * math.factorial(j))
+            total += both.times(derivative * ring.constant(share))
+            both = both * v
+        if partial(i, 0) == 0:
+            break
+        along_p = along_p * u
+    return total
+
+
+def delta_j(p_next: Series, q_next: Series) -> Series:
+    """ΔJ of the map with these series, by its increments."""
+    ring = p_next.ring
+    u = p_next - Series.of(ring, [ring.variable("p")], p_next.most)
+    v = q_next - Series.of(ring, [ring.variable("q")], q_next.most)
+    u_p, u_q, v_p, v_q = u.diff("p"), u.diff("q"), v.diff("p"), v.diff("q")
+    return u_p + v_q + u_p * v_q - u_q * v_p

@@ -1,0 +1,106 @@
+"""Measured values as balls (flint.arb): the printed value with its bound as radius."""
+
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.arithmetic.exact import known_digits
+from verify.arithmetic.flint_precision import working_precision
+from verify.scenes.results.core import Value
+
+Ball = Any  # flint.arb, which has no type stubs
+UNKNOWN = flint.arb.nan()
+_BITS = 256
+_MOST_EXPONENT = 1 << 17  # of what becomes a rational; a ball's exponent may itself be astronomical
+
+
+def precision() -> AbstractContextManager[None]:
+    """Ball arithmetic with enough bits for anything float64 can give."""
+    return working_precision(_BITS)
+
+
+def rational_ball(value: Fraction) -> Ball:
+    return flint.arb(flint.fmpq(value.numerator, value.denominator))
+
+
+def ball(value: Value) -> Ball:
+    """The ball of a reported value and its bound."""
+    return around(Fraction(value.value), Fraction(value.bound))
+
+
+def around(middle: Fraction, radius: Fraction) -> Ball:
+    """The ball of that middle and radius."""
+    return rational_ball(middle) + flint.arb(0, 1) * rational_ball(radius)
+
+
+def lg(x: Ball) -> Ball:
+    """The decimal logarithm; not finite where x may be 0 or negative."""
+    return x.log() / flint.arb(10).log()
+
+
+def in_reach(x: Ball) -> bool:
+    """Whether the ball is finite, and its ends are rationals that a computer can hold."""
+    if not x.is_finite():
+        return False
+    parts = x.mid().man_exp(), flint.arb(x.rad()).man_exp()
+    return all(abs(int(exponent)) <= _MOST_EXPONENT for _, exponent in parts)
+
+
+def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
+    """The ball's middle and radius as exact rationals; it must be in reach.
+
+    Raises OverflowError for one that is not: as a rational it would fill all memory.
+    """
+    middle, radius = (_rational(*part.man_exp()) for part in (x.mid(), flint.arb(x.rad())))
+    return middle, radius
+
+
+def _rational(mantissa: Any, exponent: Any) -> Fraction:
+    if abs(int(exponent)) > _MOST_EXPONENT:
+        raise OverflowError("a ball is too large, or too small, for a rational")
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def bounds(x: Ball) -> tuple[Fraction, Fraction]:
+    """The ball's end points as exact rationals; it must be in reach."""
+    middle, radius = middle_and_radius(x)
+    return middle - radius, middle + radius
+
+
+def shown(x: Ball, digits: int = 6) -> str:
+    """The known digits of a ball, at most `digits`, in scientific notation."""
+    if not in_reach(x):
+        return "unknown"
+    low, high = bounds(x)
+    return known_digits((low + high) / 2, (high - low) / 2, digits)[0]
+
+
+def fixed(x: Ball, places: int) -> str:
+    """The ball's middle with so many decimal places, where both its ends round to it."""
+    if not in_reach(x):
+        return "unknown"
+    low, high = bounds(x)
+    unit = Fraction(1, 10**places)
+    if round(low / unit) != round(high / unit):
+        return shown(x)
+    return place(round(low / unit), places)
+
+
+def place(units: int, places: int) -> str:
+    """An integer number of 10^−places as a decimal."""
+    digits = f"{abs(units):0{places + 1}d}"
+    return f"{'-' if units < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def slope(points: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """The least-squares slope of y over x and its standard error, of at least three points."""
+    count = len(points)
+    mean_x = sum(x for x, _ in points) / count
+    mean_y = sum(y for _, y in points) / count
+    spread = sum((x - mean_x) ** 2 for x, _ in points)
+    steep = sum((x - mean_x) * (y - mean_y) for x, y in points) / spread
+    residue = sum((y - mean_y - steep * (x - mean_x)) ** 2 for x, y in points)
+    return float(steep), float((residue / (count - 2) / spread) ** 0.5)

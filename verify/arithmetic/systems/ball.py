@@ -1,0 +1,67 @@
+"""Balls by Arb (python-flint): every number is a midpoint with a radius that holds the true value.
+
+A kernel's values so are rigorous enclosures of those of exact arithmetic at the exact inputs, for
+the rounding of each operation goes into the radius. Balls forget how errors belong together:
+along an orbit they widen like e^(cT), and each halving is a bit that more precision gives back.
+
+Not promised: that a ball is as narrow as it could be. What is undefined somewhere in a ball (the
+logarithm of one that touches 0) is NaN, and stays NaN in every later operation.
+"""
+
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+import flint
+
+from verify.arithmetic.balls import middle_and_radius, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.number_system import ESCAPE_BITS, Arithmetic, bits_for, interpreted
+
+NAME = "ball"
+
+
+def make(digits: int) -> Arithmetic:
+    """Balls whose midpoints have the bits for `digits` decimal digits."""
+    return at_bits(bits_for(digits))
+
+
+def at_bits(bits: int) -> Arithmetic:
+    context = partial(working_precision, bits)
+
+    def number(value: Fraction) -> Any:
+        with context():
+            return rational_ball(value)
+
+    names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt", "root")
+    with context():
+        pi = flint.arb.pi()
+    return Arithmetic(
+        name=NAME,
+        bits=bits,
+        number=number,
+        exact=lambda x: middle_and_radius(x)[0],
+        radius=lambda x: middle_and_radius(x)[1],
+        finite=_known,
+        context=context,
+        functions={
+            **{f: getattr(flint.arb, f) for f in names},
+            "pi": pi,
+            "minimum": flint.arb.min,
+            "maximum": flint.arb.max,
+        },
+        compile=interpreted,
+        # NaN stays NaN, and exponents have no end, so that looking at the end of a chunk is enough;
+        # in a chunk so short even cubing at every step makes no exponent that takes time.
+        guard=None,
+        pipelined=False,
+        chunk=1 << 9,
+    )
+
+
+_ESCAPE = flint.arb(2) ** ESCAPE_BITS
+
+
+def _known(x: Any) -> bool:
+    """In range, and not so wide that nothing is known of it: more precision is what helps then."""
+    return bool(abs(x) < _ESCAPE and (x.rel_accuracy_bits() > 0 or x.rad() < 1))

@@ -1,0 +1,146 @@
+"""IEEE double precision, compiled by numba where it repays: the arithmetic that is under test.
+
+No fast-math: operations are rounded one by one, as the source writes them. Division by zero and
+overflow give infinities and NaN, which the run finds.
+"""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from verify.arithmetic.number_system import Arithmetic, interpreted
+
+NAME = "float64"
+_REPAID = 200_000  # steps: Python takes some 2 µs each, and numba's import and compilation 1 s
+_REPAID_SOLVING = 50_000  # steps with a loop in them, which solves equations: 4 … 25 µs
+
+
+def make(digits: int) -> Arithmetic:
+    """float64 has 53 bits, whatever `digits` asks for."""
+    return Arithmetic(
+        name=NAME,
+        bits=53,
+        number=_number,
+        exact=Fraction,
+        finite=math.isfinite,
+        context=nullcontext,
+        functions={
+            **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
+            "sqrt": math.sqrt,
+            "root": _root,
+            "pi": math.pi,
+        },
+        compile=_compile,
+        guard=None,
+        pipelined=True,
+        chunk=1 << 22,
+    )
+
+
+def compiled_at_once() -> Arithmetic:
+    """The same number system, each kernel compiled at its first call: for timing it."""
+    return replace(make(17), compile=_compiled)
+
+
+def _number(value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """The kernel, compiled once it has so many steps to do that it repays.
+
+    Until then Python does them, with the same bits, as its operators and functions are those of
+    IEEE and of the same C library. What Python refuses, as 1/0, is done again with functions that
+    give infinities and NaN; what is refused even so is left to the compiled one.
+    """
+    plain = interpreted(source, name, namespace)
+
+    @cache
+    def unrefused() -> Callable[..., Any]:
+        return _unrefused(source, name, namespace)
+
+    compiled: Callable[..., Any] | None = None
+    repaid = _REPAID if source.count("for ") < 2 else _REPAID_SOLVING
+    done = 0
+
+    def kernel(first: Any, *arguments: Any) -> Any:
+        nonlocal compiled, done
+        steps = first if isinstance(first, int) else 1  # a function that is no kernel has none
+        if compiled is None and done + steps <= repaid:
+            for way in (0, 1):
+                try:
+                    result = (unrefused() if way else plain)(first, *arguments)
+                except (ArithmeticError, ValueError):
+                    continue
+                done += steps
+                return result
+        if compiled is None:
+            compiled = _compiled(source, name, namespace)
+        return compiled(first, *arguments)
+
+    return kernel
+
+
+def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """The kernel in Python that gives infinities and NaN, as IEEE and a compiled one do.
+
+    A compiled kernel stays in memory for good, and orbits that escape are no rarity.
+    """
+    own = {f: made for f, made in _IEEE.items() if f in namespace}
+    return interpreted(_DIVISION.sub(r"over(\1, \2)", source), name, {**namespace, **own, **_OVER})
+
+
+def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    import numba
+
+    scope = {**namespace, "root": numba.njit(_root)}
+    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
+    compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(scope[name])
+    return compiled
+
+
+def _either(function: Callable[[float], float], beyond: Callable[[float], float]) -> Any:
+    """The function, and `beyond` where Python's own refuses."""
+
+    def made(x: float) -> float:
+        try:
+            return function(x)
+        except (OverflowError, ValueError):
+            return beyond(x)
+
+    return made
+
+
+def _over(x: float, y: float) -> float:
+    if y:
+        return x / y
+    return math.copysign(math.inf, x) * math.copysign(1.0, y) if x and x == x else math.nan
+
+
+_DIVISION = re.compile(r"(\w+|\([^()]*\)) / (\w+|\([^()]*\))")
+_OVER = {"over": _over}
+_IEEE = {
+    "exp": _either(math.exp, lambda _: math.inf),
+    "cosh": _either(math.cosh, lambda _: math.inf),
+    "sinh": _either(math.sinh, lambda x: math.copysign(math.inf, x)),
+    "log": _either(math.log, lambda x: math.nan if x else -math.inf),
+    "sqrt": _either(math.sqrt, lambda _: math.nan),
+    "sin": _either(math.sin, lambda _: math.nan),
+    "cos": _either(math.cos, lambda _: math.nan),
+}
+
+
+def _root(x: float, n: int) -> float:
+    # 1/n is rounded, which x ** (1/n) magnifies by log x; one Newton step takes that away.
+    if x < 0.0:
+        return math.nan  # Python's power would be complex
+    root: float = x ** (1.0 / n)
+    return root - (root**n - x) / (n * root ** (n - 1)) if root > 0 else root

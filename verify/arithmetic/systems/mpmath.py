@@ -1,0 +1,80 @@
+"""mpmath at any precision, in a context of its own: the reference number system.
+
+The global `mpmath.mp` is neither used nor changed.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from functools import lru_cache
+from threading import get_ident
+from typing import Any
+
+import gmpy2
+from mpmath import libmp
+from mpmath.ctx_mp import MPContext
+
+from verify.arithmetic.exact import of_mpf
+from verify.arithmetic.number_system import (
+    ESCAPE_BITS,
+    MOST_EXPONENT,
+    Arithmetic,
+    bits_for,
+    interpreted,
+)
+
+NAME = "mpmath"
+
+
+def make(digits: int) -> Arithmetic:
+    """mpmath with the bits for `digits` decimal digits."""
+    return at_bits(bits_for(digits))
+
+
+def at_bits(bits: int) -> Arithmetic:
+    # A context takes 1 ms, and is no other thread's: mpmath's functions change it for a while.
+    return _made(bits, get_ident())
+
+
+@lru_cache(maxsize=32)
+def _made(bits: int, _thread: int) -> Arithmetic:
+    context = MPContext()
+    context.prec = bits
+
+    def number(value: Fraction) -> Any:
+        made = libmp.from_rational(value.numerator, value.denominator, bits, "n")
+        return context.make_mpf(made)
+
+    def real(function: Callable[..., Any]) -> Callable[..., Any]:
+        def checked(*arguments: Any) -> Any:
+            value = function(*arguments)
+            if not isinstance(value, context.mpf):
+                raise ValueError("a complex value")
+            return value
+
+        return checked
+
+    names = ("sin", "cos", "exp", "sinh", "cosh", "atan")
+    return Arithmetic(
+        name=NAME,
+        bits=bits,
+        number=number,
+        exact=of_mpf,
+        finite=lambda x: bool(
+            context.isfinite(x) and abs(x._mpf_[2] + x._mpf_[3]) <= MOST_EXPONENT
+        ),
+        context=gmpy2.context,  # mpmath's roots use gmpy2, and would raise what its user traps
+        functions={
+            **{f: getattr(context, f) for f in names},
+            **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
+            "cos_sin": context.cos_sin,
+            "approx": float,
+            "wide": context.mpf,  # the exact value of a float64: 53 bits at least are there
+            "pi": +context.pi,
+        },
+        compile=interpreted,
+        # |x| < 2^ESCAPE_BITS, read from x = mantissa · 2^exponent and the mantissa's bits: a
+        # comparison of two numbers takes twenty times as long.
+        guard=f"{{x}}._mpf_[2] + {{x}}._mpf_[3] <= {ESCAPE_BITS}",
+        pipelined=False,
+        chunk=1 << 12,
+    )

@@ -1,0 +1,249 @@
+"""sin, cos, exp, log, sqrt and 1/x of fixed-point numbers, as LLVM functions.
+
+A number of width W = 64 n has 16 integer bits, the sign among them, and W − 16 fraction bits; one
+unit is 2^(16 − W). Inside, values are fractions of W bits, or mantissas with W − 2 fraction bits,
+so that what products leave out stays far below one unit. `error_units` bounds each function's
+error.
+
+sin and cos: x = k·2π/4096 + r; sin and cos of the first from a table, of |r| ≤ π/4096 by Taylor
+polynomials. exp: x = k·ln 2/256 + r likewise. In the polynomials a high term is small, so that its
+leading limbs are zero, and they are not computed. log: from float64's logarithm ℓ, as
+ℓ + log(1 + δ) with δ = x e^−ℓ − 1 below 2^−44. sqrt and 1/x: Newton's iteration from float64.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import factorial
+from typing import Any
+
+import flint
+from llvmlite import ir
+
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.wide import limbs
+from verify.arithmetic.wide.limbs import I64, Value, bits, constant, resized
+from verify.arithmetic.wide.products import Products
+
+INTEGER_BITS = 16
+_ANGLES = 4096  # table steps of a full turn
+_EXPONENTIALS = 256  # table steps of a factor 2
+_NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
+_DOUBLE = ir.DoubleType()
+
+
+def arb_integer(value: Any, shift: int) -> int:
+    """An arb's middle times 2^shift, to the nearest integer."""
+    mantissa, exponent = value.mid().man_exp()
+    return round(Fraction(int(mantissa)) * Fraction(2) ** (int(exponent) + shift))
+
+
+class Functions:
+    """Defines functions of one width in a module, each when it is first asked for."""
+
+    def __init__(self, module: ir.Module, width: int) -> None:
+        self.module, self.width = module, width
+        self.count, self.fraction = width // 64, width - INTEGER_BITS
+        self.type = bits(width)
+        self.products = Products(module, width, self.fraction)
+        self._made: dict[str, ir.Function] = {}
+        self._tables: dict[str, ir.GlobalVariable] = {}
+
+    def get(self, name: str) -> ir.Function:
+        """The function of that name; it returns (value, …, valid)."""
+        if name not in self._made:
+            self._made[name] = getattr(self, f"_{name}")()
+        return self._made[name]
+
+    # -- helpers ------------------------------------------------------------------------------
+
+    def _define(self, name: str, results: int) -> tuple[ir.IRBuilder, Value]:
+        """A new function of one number that returns so many numbers and whether they are valid."""
+        kind = ir.LiteralStructType([self.type] * results + [ir.IntType(1)])
+        function = ir.Function(self.module, ir.FunctionType(kind, [self.type]), f"fixed_{name}")
+        function.linkage = "internal"
+        return ir.IRBuilder(function.append_basic_block("entry")), function.args[0]
+
+    def _result(self, b: ir.IRBuilder, valid: Value, *values: Value) -> ir.Function:
+        packed = ir.Constant(b.function.function_type.return_type, ir.Undefined)
+        for index, value in enumerate((*values, valid)):
+            packed = b.insert_value(packed, value, index)
+        b.ret(packed)
+        return b.function
+
+    def _table(self, name: str, values: Sequence[int]) -> ir.GlobalVariable:
+        """Constant integers, each its limbs from the lowest."""
+        rows = [(v >> 64 * i) & (2**64 - 1) for v in values for i in range(self.count)]
+        kind = ir.ArrayType(I64, len(rows))
+        table = ir.GlobalVariable(self.module, kind, f"fixed_{name}")
+        table.linkage, table.global_constant = "internal", True
+        table.initializer = ir.Constant(kind, rows)
+        return table
+
+    def _entry(self, b: ir.IRBuilder, table: ir.GlobalVariable, index: Value) -> Value:
+        value = constant(0, self.width)
+        first = b.mul(index, constant(self.count, 64))
+        for i in range(self.count):
+            at = b.gep(table, [constant(0, 64), b.add(first, constant(i, 64))], inbounds=True)
+            part = resized(b, b.load(at, typ=I64), self.width)
+            value = b.or_(value, limbs.shifted_up(b, part, 64 * i))
+        return value
+
+    def _multiple(
+        self, b: ir.IRBuilder, x: Value, unit: Any, offset: Fraction
+    ) -> tuple[Value, Value]:
+        """(k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W fraction
+        bits.
+
+        k is found from the highest limb alone, so that it is the floor within 2^−18, or within
+        2^−28 where |x| < 16; unit (an arb) is taken with 32 bits beyond the fraction, and k·unit is
+        right to a unit of r.
+        """
+        high = resized(b, limbs.limb(b, x, self.count - 1), 128, signed=True)  # 48 fraction bits
+        k = b.mul(high, constant(arb_integer(1 / unit, 32), 128))
+        k = b.ashr(b.add(k, constant(int(offset * 2**80), 128)), constant(80, 128))
+        wide = self.width + 64
+        stretched = constant(arb_integer(unit, self.width + 32), wide)
+        multiple = b.ashr(b.mul(resized(b, k, wide, signed=True), stretched), constant(32, wide))
+        scaled = limbs.shifted_up(b, x, INTEGER_BITS)
+        return b.trunc(k, I64), b.sub(scaled, resized(b, multiple, self.width))
+
+    def _series(
+        self, b: ir.IRBuilder, t: Value, coefficients: Sequence[Fraction], shift: int, sign: int
+    ) -> Value:
+        """c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + …, where t = τ·2^shift is a fraction, and so is
+        the result; the c are positive and fall fast, `sign` is ±1.
+
+        A coefficient cⱼ 2^(−j·shift) has its leading limbs zero, and so have the sums from there.
+        """
+        return self._series_of(b, t, [coefficients], shift, sign)[0]
+
+    def _series_of(
+        self, b: ir.IRBuilder, t: Value, series: Sequence[Sequence[Fraction]], shift: int, sign: int
+    ) -> list[Value]:
+        """Several such series, term by term in turn: what one waits for, another has time for."""
+        totals: list[Value] = [None] * len(series)
+        for j in reversed(range(max(map(len, series)))):
+            for i, coefficients in enumerate(series):
+                if j >= len(coefficients):
+                    continue
+                scaled = round(coefficients[j] * Fraction(2) ** (self.width - j * shift))
+                scaled = min(scaled, 2**self.width - 1)  # 1 is no fraction; the next is near enough
+                if scaled < _NEGLIGIBLE:
+                    continue
+                size = 64 * -(-scaled.bit_length() // 64)
+                value = constant(scaled, size)
+                if totals[i] is not None:
+                    short = limbs.top(b, t, totals[i].type.width // 64)
+                    part = resized(b, self.products.high(b, short, totals[i]), size)
+                    value = b.sub(value, part) if sign < 0 else b.add(value, part)
+                totals[i] = value
+        return totals
+
+    def _signed(self, b: ir.IRBuilder, magnitude: Value, like: Value) -> Value:
+        """The magnitude with the sign of `like`."""
+        negative = b.icmp_signed("<", like, constant(0, like.type.width))
+        return b.select(negative, b.neg(magnitude), magnitude)
+
+    def _rounded(self, b: ir.IRBuilder, mantissa: Value) -> Value:
+        """From W − 2 fraction bits to a number."""
+        by = INTEGER_BITS - 2
+        return b.ashr(
+            b.add(mantissa, constant(1 << (by - 1), self.width)), constant(by, self.width)
+        )
+
+    # -- sin and cos --------------------------------------------------------------------------
+
+    def _cos_sin(self) -> ir.Function:
+        b, x = self._define("cos_sin", 2)
+        with working_precision(self.width + 128):
+            unit = 2 * flint.arb.pi() / _ANGLES
+            sines = [arb_integer((unit * k).sin(), self.width - 2) for k in range(_ANGLES * 5 // 4)]
+            k, r = self._multiple(b, x, unit, Fraction(1, 2))
+        table = self._table("sines", sines)
+        index = b.and_(k, constant(_ANGLES - 1, 64))
+        sine = self._entry(b, table, index)
+        cosine = self._entry(b, table, b.add(index, constant(_ANGLES // 4, 64)))
+        high = self.products.high
+        s = _ANGLES.bit_length() - 3  # |r| < 2^−s: u = |r|·2^s and t = r²·2^2s are fractions.
+        u = limbs.shifted_up(b, self._signed(b, r, r), s)
+        t = high(b, u, u)
+        sine_series = [Fraction(1, factorial(2 * j + 1)) for j in range(8 * self.count)]
+        versine_series = [Fraction(1, factorial(2 * j + 2)) for j in range(8 * self.count)]
+        by_u, by_t = self._series_of(b, t, [sine_series, versine_series], 2 * s, -1)
+        small = high(b, u, by_u)
+        sin_r = self._signed(b, limbs.shifted_down(b, small, s), r)
+        versine = high(b, t, by_t)
+        versine = limbs.shifted_down(b, versine, 2 * s)  # 1 − cos r
+
+        def turned(base: Value, side: Value) -> Value:
+            back = high(b, base, versine, signed=True)
+            return b.add(b.sub(base, back), high(b, side, sin_r, signed=True))
+
+        sin_x = self._rounded(b, turned(sine, cosine))
+        cos_x = self._rounded(b, turned(cosine, b.neg(sine)))
+        return self._result(b, ir.Constant(ir.IntType(1), 1), cos_x, sin_x)
+
+    def _sin(self) -> ir.Function:
+        return self._one_of("cos_sin", 1)
+
+    def _cos(self) -> ir.Function:
+        return self._one_of("cos_sin", 0)
+
+    def _one_of(self, pair: str, index: int) -> ir.Function:
+        b, x = self._define(f"{pair}_{index}", 1)
+        both = b.call(self.get(pair), [x])
+        return self._result(b, b.extract_value(both, 2), b.extract_value(both, index))
+
+    # -- exp and its like -----------------------------------------------------------------------
+
+    def _exponential(self, b: ir.IRBuilder, x: Value) -> tuple[Value, Value]:
+        """(m, a): e^x = m·2^a with m in W − 2 fraction bits, a as i64.
+
+        m is in [1, 2], and may exceed 2 by 2^−28 just above an x for which it would be 1.
+        """
+        with working_precision(self.width + 128):
+            unit = flint.arb(2).log() / _EXPONENTIALS
+            powers = [arb_integer((unit * k).exp(), self.width - 2) for k in range(_EXPONENTIALS)]
+            # A little less than the floor, so that r is surely not negative.
+            k, r = self._multiple(b, x, unit, Fraction(-1, 2**20))
+        if "powers" not in self._tables:
+            self._tables["powers"] = self._table("powers", powers)
+        base = self._entry(b, self._tables["powers"], b.and_(k, constant(_EXPONENTIALS - 1, 64)))
+        high = self.products.high
+        u = limbs.shifted_up(b, r, 8)  # r < 2^−8
+        series = [Fraction(1, factorial(j + 2)) for j in range(8 * self.count)]
+        rest = high(b, high(b, u, u), self._series(b, u, series, 8, 1))
+        growth = b.add(r, limbs.shifted_down(b, rest, 16))  # e^r − 1
+        mantissa = b.add(base, high(b, base, growth, signed=True))
+        return mantissa, b.ashr(k, constant(8, 64))
+
+    def _exp(self) -> ir.Function:
+        b, x = self._define("exp", 1)
+        mantissa, a = self._exponential(b, x)
+        shift = b.sub(constant(INTEGER_BITS - 2, 64), a)
+        most = constant(self.width - 1, 64)
+        bounded = b.select(b.icmp_unsigned("<", shift, most), shift, most)
+        value = b.lshr(mantissa, resized(b, bounded, self.width))
+        fits = b.icmp_signed(">=", value, constant(0, self.width))
+        return self._result(b, b.and_(fits, b.icmp_signed(">=", shift, constant(0, 64))), value)
+
+    def _cosh(self) -> ir.Function:
+        return self._half_sum("cosh", b_minus=False)
+
+    def _sinh(self) -> ir.Function:
+        return self._half_sum("sinh", b_minus=True)
+
+    def _half_sum(self, name: str, *, b_minus: bool) -> ir.Function:
+        b, x = self._define(name, 1)
+        up = b.call(self.get("exp"), [x])
+        down = b.call(self.get("exp"), [b.neg(x)])
+        one, two = b.extract_value(up, 0), b.extract_value(down, 0)
+        total = b.sub(one, two) if b_minus else b.add(one, two)
+        valid = b.and_(b.extract_value(up, 1), b.extract_value(down, 1))
+        half = b.ashr(total, constant(1, self.width))
+        # Below 2^14 each, so that their sum stays in range; and not both 0, as they are where −x
+        # is not in range.
+        either = b.or_(one, two)
+        fits = b.icmp_unsigned("<", either, constant(1 << self.width - 2, self.width))
+        some = b.icmp_unsigned("!=", either, constant(0, self.width))
+        return self._result(b, b.and_(valid, b.and_(fits, some)), half)

@@ -1,0 +1,130 @@
+"""log, sqrt and 1/x of fixed-point numbers, as LLVM functions: by iteration from float64."""
+
+from typing import Any
+
+import flint
+from llvmlite import ir
+
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.wide import limbs
+from verify.arithmetic.wide.functions import INTEGER_BITS, Functions, arb_integer
+from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+
+DOUBLE = ir.DoubleType()
+_LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
+_LEAST_DIVISOR = 14
+
+
+def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
+    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^−100.
+
+    The second part is 2^−36 for a sum, whose limbs stand for 2^64 times as much.
+    """
+    width = x.type.width
+    high = b.sitofp(limbs.limb(b, x, width // 64 - 1), DOUBLE)
+    low = b.uitofp(limbs.limb(b, x, width // 64 - 2), DOUBLE)
+    unit = ir.Constant(DOUBLE, 2.0 ** (width - 64 - fraction))
+    below = ir.Constant(DOUBLE, 2.0 ** (width - 128 - fraction))
+    return b.fadd(b.fmul(high, unit), b.fmul(low, below))
+
+
+def from_double(b: ir.IRBuilder, value: Value, width: int, fraction: int) -> Value:
+    """The float64 as a number of that width; exact but for bits below 2^−fraction, which are cut.
+
+    |value| must be below 2^(width − 1 − fraction).
+    """
+    floor = b.module.declare_intrinsic("llvm.floor", [DOUBLE])
+    absolute = b.module.declare_intrinsic("llvm.fabs", [DOUBLE])
+    # The size first: what a small negative number is above −1 would be no float64.
+    rest = b.fmul(b.call(absolute, [value]), ir.Constant(DOUBLE, 2.0 ** (fraction - width + 64)))
+    total = constant(0, width)
+    for i in reversed(range(width // 64)):
+        whole = b.call(floor, [rest])
+        part = resized(b, b.fptoui(whole, I64), width)
+        total = b.or_(total, limbs.shifted_up(b, part, 64 * i))
+        rest = b.fmul(b.fsub(rest, whole), ir.Constant(DOUBLE, 2.0**64))
+    negative = b.fcmp_ordered("<", value, ir.Constant(DOUBLE, 0.0))
+    return b.select(negative, b.neg(total), total)
+
+
+class MoreFunctions(Functions):
+    """`Functions` and those found by iteration."""
+
+    def _iterations(self, *, quadratic: bool) -> int:
+        """Steps from 2^−48 to below 2^−W; each doubles the bits, or adds 48."""
+        done, steps = 48, 0
+        while done < self.width:
+            done = 2 * done if quadratic else done + 48
+            steps += 1
+        return steps
+
+    def _inverse(self) -> ir.Function:
+        b, x = self._define("inverse", 1)
+        size = self._signed(b, x, x)
+        valid = b.icmp_unsigned(
+            ">=", size, constant(1 << self.fraction - _LEAST_DIVISOR, self.width)
+        )
+        one = ir.Constant(DOUBLE, 1.0)
+        guess = b.fdiv(one, b.select(valid, to_double(b, x, self.fraction), one))
+        y = from_double(b, guess, self.width, self.fraction)
+        product = self.products.product
+        for _ in range(self._iterations(quadratic=True)):
+            error = b.sub(constant(1 << self.fraction, self.width), product(b, x, y))
+            y = b.add(y, product(b, y, error))
+        return self._result(b, valid, y)
+
+    def _sqrt(self) -> ir.Function:
+        b, x = self._define("sqrt", 1)
+        valid = b.icmp_signed(">=", x, constant(1 << self.fraction - _LEAST_ROOT, self.width))
+        root = self.module.declare_intrinsic("llvm.sqrt", [DOUBLE])
+        one = ir.Constant(DOUBLE, 1.0)
+        guess = b.call(root, [b.select(valid, to_double(b, x, self.fraction), one)])
+        half = b.fdiv(ir.Constant(DOUBLE, 0.5), guess)
+        s = from_double(b, guess, self.width, self.fraction)
+        slope = from_double(b, half, self.width, self.fraction)
+        product = self.products.product
+        for _ in range(self._iterations(quadratic=False)):
+            s = b.add(s, product(b, b.sub(x, product(b, s, s)), slope))
+        return self._result(b, valid, s)
+
+    def _log(self) -> ir.Function:
+        """log x = log m + e·ln 2 with x = m·2^e, m in [½, 1)."""
+        b, x = self._define("log", 1)
+        width, places = self.width, self.width - 2
+        valid = b.icmp_signed(">", x, constant(0, width))
+        x = b.select(valid, x, constant(1, width))
+        lead = b.ctlz(x, ir.Constant(ir.IntType(1), 0))
+        m = b.shl(x, lead)
+        near = b.uitofp(limbs.limb(b, m, self.count - 1), DOUBLE)
+        logarithm = self.module.declare_intrinsic("llvm.log", [DOUBLE])
+        guess = b.call(logarithm, [b.fmul(near, ir.Constant(DOUBLE, 2.0**-64))])
+        minus = from_double(b, b.fneg(guess), width, self.fraction)
+        mantissa, a = self._exponential(b, minus)
+        # e^−guess is m·2^a, with a = 1 near guess = −ln 2, and a = −1 near guess = 0.
+        below = b.icmp_signed("<", a, constant(0, 64))
+        doubled = b.shl(mantissa, resized(b, b.select(below, constant(0, 64), a), width))
+        power = b.select(below, limbs.shifted_down(b, mantissa, 1), doubled)
+        delta = b.sub(self.products.high(b, m, power), constant(1 << places, width))
+        total = b.add(b.neg(b.shl(minus, constant(INTEGER_BITS - 2, width))), self._log1p(b, delta))
+        # The guess may lie on either side of −½; the sum may be large: one limb more.
+        wide = width + 64
+        with working_precision(width + 128):
+            two = constant(arb_integer(flint.arb(2).log(), places + 32), wide)
+        exponent = b.sub(constant(INTEGER_BITS, wide), resized(b, lead, wide))
+        octaves = b.ashr(b.mul(exponent, two), constant(32, wide))
+        total = b.add(resized(b, total, wide, signed=True), octaves)
+        by = INTEGER_BITS - 2
+        total = b.ashr(b.add(total, constant(1 << (by - 1), wide)), constant(by, wide))
+        return self._result(b, valid, resized(b, total, width))
+
+    def _log1p(self, b: ir.IRBuilder, delta: Any) -> Value:
+        """log(1 + δ) by its series, δ below 2^−44, all in W − 2 fraction bits."""
+        width, places, high = self.width, self.width - 2, self.products.high
+        stretched = limbs.shifted_up(b, delta, 40)
+        terms = -(-width // 44)
+        total = constant((1 << places) // terms, width)
+        for j in reversed(range(1, terms)):
+            # (δ 2^(W+38)) (s 2^(W−2)) / 2^W = δ s 2^(W+36)
+            part = b.ashr(high(b, stretched, total, signed=True), constant(38, width))
+            total = b.sub(constant((1 << places) // j, width), part)
+        return b.ashr(high(b, stretched, total, signed=True), constant(38, width))

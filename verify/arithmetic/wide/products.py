@@ -1,0 +1,66 @@
+"""Products in a module: written out where they stand, or functions that are called.
+
+Written out they run fastest. But LLVM's time grows like the square of a function's length, and
+where products are long or many a call costs little beside: it makes a long kernel a tenth slower,
+or a third at most, and compiles it many times sooner.
+"""
+
+from collections.abc import Callable
+
+from llvmlite import ir
+
+from verify.arithmetic.wide import limbs
+from verify.arithmetic.wide.limbs import Value
+
+# What products may add to a kernel that has them written out, in some three instructions; functions
+# have theirs called from so many limbs on.
+_MOST_IN_KERNEL = 3500
+_LEAST_CALLED = 8
+
+
+class Products:
+    """`limbs.product` and `limbs.high_product` for the numbers of one format."""
+
+    def __init__(self, module: ir.Module, width: int, fraction: int) -> None:
+        self.module, self.width, self.fraction = module, width, fraction
+        self._made: dict[str, ir.Function] = {}
+
+    def too_many(self, count: int) -> bool:
+        """Whether a kernel of so many products had better call them."""
+        return count * ((self.width // 64) ** 2 + 4) > _MOST_IN_KERNEL
+
+    def product(self, b: ir.IRBuilder, x: Value, y: Value, *, called: bool | None = None) -> Value:
+        def written(b: ir.IRBuilder, x: Value, y: Value) -> Value:
+            return limbs.product(b, x, y, self.fraction)
+
+        if called is None:
+            called = self._long(x)
+        return self._call(b, "product", written, x, y) if called else written(b, x, y)
+
+    def high(self, b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:
+        def written(b: ir.IRBuilder, x: Value, y: Value) -> Value:
+            return limbs.high_product(b, x, y, signed=signed)
+
+        name = "signed_high" if signed else "high"
+        return self._call(b, name, written, x, y) if self._long(x) else written(b, x, y)
+
+    def _long(self, x: Value) -> bool:
+        return bool(x.type.width >= 64 * _LEAST_CALLED)
+
+    def _call(
+        self,
+        b: ir.IRBuilder,
+        name: str,
+        written: Callable[[ir.IRBuilder, Value, Value], Value],
+        x: Value,
+        y: Value,
+    ) -> Value:
+        factors = [x] if x is y else [x, y]
+        name = f"fixed_{name}_{x.type.width}_{len(factors)}"
+        if name not in self._made:
+            kind = ir.FunctionType(x.type, [x.type] * len(factors))
+            function = self._made[name] = ir.Function(self.module, kind, name)
+            function.linkage = "internal"
+            inside = ir.IRBuilder(function.append_basic_block("entry"))
+            inside.ret(written(inside, function.args[0], function.args[-1]))
+        return b.call(self._made[name], factors)

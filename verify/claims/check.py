@@ -1,0 +1,71 @@
+"""A claims file → verdicts: plans what the chosen claims need, executes it, judges."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from itertools import compress
+from operator import not_
+
+from verify.claims.file import ClaimsFile
+from verify.claims.findings import Findings
+from verify.claims.judge import check_claim
+from verify.claims.kinds import EXACT, Claim
+from verify.claims.plan import add_claims
+from verify.errors import InputError
+from verify.execution.execute import Done, Store, execute
+from verify.execution.executors import ANYWHERE, Where
+from verify.execution.perform import Result
+from verify.scenes.plan import Plan
+from verify.scenes.results.core import ClaimResult
+
+
+@dataclass(frozen=True)
+class Check:
+    """The claims of a file that are to be checked, and the plan of what they need."""
+
+    file: ClaimsFile
+    claims: tuple[Claim, ...]
+    plan: Plan
+    known: dict[str, Result]
+
+    def run(
+        self, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
+    ) -> list[ClaimResult]:
+        """Each claim's verdict, in their order. InputError names the claim and its line.
+
+        What algebra decides comes first: a formula that turns out to be none costs no run.
+        """
+        found: dict[str, ClaimResult] = {}
+        exact = [isinstance(claim, EXACT) for claim in self.claims]
+        for claim in compress(self.claims, exact):
+            found[claim.id] = self._judge(claim, {})
+        results = execute(self.plan, store, where=where, done=done)
+        for claim in compress(self.claims, map(not_, exact)):
+            found[claim.id] = self._judge(claim, {**self.known, **results})
+        return [found[claim.id] for claim in self.claims]
+
+    def _judge(self, claim: Claim, results: Mapping[str, Result]) -> ClaimResult:
+        try:
+            return check_claim(claim, Findings(self.file.scenes, results))
+        except InputError as error:
+            index = self.file.claims.index(claim)
+            raise self.file.located(index, claim.id, error) from None
+
+
+def prepare(file: ClaimsFile, only: Sequence[str] = ()) -> Check:
+    """All claims of the file, or those whose ids `only` names; `eq-*` names several.
+
+    Raises InputError for a name that no claim has.
+    """
+    for wanted in only:
+        if not any(_named(claim, wanted) for claim in file.claims):
+            names = ", ".join(claim.id for claim in file.claims)
+            raise InputError("--only", wanted, f"no claim has this id; there are: {names}")
+    chosen = [c for c in file.claims if not only or any(_named(c, name) for name in only)]
+    plan = Plan()
+    known = add_claims(plan, chosen, file.scenes)
+    return Check(file, tuple(chosen), plan, known)
+
+
+def _named(claim: Claim, wanted: str) -> bool:
+    return claim.id == wanted or fnmatchcase(claim.id, wanted)

@@ -1,0 +1,111 @@
+"""What was found for the scenes that claims speak of, and how a claim's result is written."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from verify.errors import InputError
+from verify.execution.perform import Result
+from verify.scenes.results.core import (
+    AverageResult,
+    ClaimResult,
+    CriterionResult,
+    ProofResult,
+    RunResult,
+    SeparationResult,
+)
+from verify.scenes.scene import Grid, Scene
+from verify.scenes.tasks import key
+from verify.studies.criteria import judge
+from verify.studies.plan import grid_task, growth_task, proof_task, separation_task
+from verify.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Findings:
+    """The scenes with all results that were computed for them."""
+
+    scenes: Mapping[str, Scene]
+    results: Mapping[str, Result] = field(default_factory=dict)
+
+    def scene(self, name: str) -> Scene:
+        if name not in self.scenes:
+            raise InputError("claim.scene", name, f"unknown; allowed: {', '.join(self.scenes)}")
+        return self.scenes[name]
+
+    def scene_of(self, claim: Any) -> Scene:
+        """The claim's scene, which must have its scheme."""
+        scene = self.scene(claim.scene)
+        _has_scheme(scene, claim.scheme)
+        return scene
+
+    def proof(self, scene: Scene, scheme: str) -> ProofResult:
+        _has_scheme(scene, scheme)
+        result = self.results[key(proof_task(scene, scheme))]
+        assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's
+        return result
+
+    def runs(self, scene: Scene, scheme: str) -> list[RunResult]:
+        """The grid's runs by initial value, then step size; empty where none were needed."""
+        if scene.grid is None:
+            return []
+        names = [
+            key(grid_task(scene, scheme, h, start))
+            for start in range(len(scene.grid.initial_values))
+            for h in scene.grid.step_sizes
+        ]
+        found = [self.results.get(name) for name in names]
+        return [r for r in found if isinstance(r, RunResult)]
+
+    def separations(self, scene: Scene, scheme: str, grid: Grid) -> list[SeparationResult]:
+        """The separations over a grid by initial value, then step size."""
+        names = [
+            key(separation_task(scene, scheme, grid, h, start))
+            for start in range(len(grid.initial_values))
+            for h in grid.step_sizes
+        ]
+        found = [self.results.get(name) for name in names]
+        return [r for r in found if isinstance(r, SeparationResult)]
+
+    def growth_laws(self, scene: Scene, scheme: str) -> list[AverageResult]:
+        """The growth laws of the grid's orbits, by initial value; empty where none were asked."""
+        if scene.grid is None:
+            return []
+        starts = range(len(scene.grid.initial_values))
+        found = [self.results.get(key(growth_task(scene, scheme, start))) for start in starts]
+        return [r for r in found if isinstance(r, AverageResult)]
+
+    def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:
+        return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))
+
+
+# The check of each kind of claim, by its model.
+Checks = dict[Any, Callable[[Any, Findings], ClaimResult]]
+
+
+def _has_scheme(scene: Scene, scheme: str) -> None:
+    if scheme not in scene.schemes:
+        known = ", ".join(scene.schemes)
+        raise InputError("claim.scheme", scheme, f"is not in scene {scene.name}: {known}")
+
+
+def result(
+    claim: Any,
+    verdict: Verdict,
+    evidence: str,
+    details: Sequence[Sequence[str]] = (),
+    proof: str = "",
+) -> ClaimResult:
+    """The result for a claim; `details` is a table whose first row is its head."""
+    return ClaimResult(
+        id=claim.id,
+        kind=claim.kind,
+        source=claim.source,
+        section=claim.section,
+        statement=claim.statement,
+        scene=claim.scene,
+        verdict=verdict,
+        evidence=evidence,
+        details=tuple(tuple(row) for row in details),
+        proof=proof,
+    )

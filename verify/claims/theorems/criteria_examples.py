@@ -1,0 +1,155 @@
+"""Maps that tell the criteria apart: each with the closed form of its ΔJ, MSE and Λ.
+
+T is fixed, N = T/h steps. Every closed form is held against the map itself, run in Fractions.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+from verify.arithmetic.exact import decimal
+from verify.claims.theorems.argument import Check
+from verify.claims.theorems.exact_maps import Areas, Point, areas, made_map
+
+Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ
+
+
+@dataclass(frozen=True)
+class Example:
+    """A map from `start`, run over T = 1 with N steps for each N in `steps`.
+
+    `closed(h)`: what max |ΔJ|, MSE and Λ are; `says`: the same in words, and what follows.
+    """
+
+    name: str
+    p_next: str
+    q_next: str
+    start: Point
+    steps: tuple[int, ...]
+    closed: Callable[[Fraction], Numbers]
+    says: str
+
+    def run(self, steps: int) -> Areas:
+        return _run(self.p_next, self.q_next, self.start, steps)
+
+    def check(self) -> Check:
+        """Whether the map has the numbers that are said of it, exactly, for each N."""
+        holds, shown = True, []
+        for n in self.steps:
+            found = self.run(n)
+            holds = holds and (found.largest, found.mse, found.lam) == self.closed(Fraction(1, n))
+            shown.append(
+                f"N = {n}: max |ΔJ| = {_short(found.largest)}, MSE = {_short(found.mse)}, "
+                f"Λ = {_short(found.lam)}"
+            )
+        what = f"{self.name}: p' = {self.p_next}, q' = {self.q_next}, from {self.start}, T = 1"
+        return Check(f"{what}: {self.says}", holds, "; ".join(shown))
+
+
+@cache
+def _run(p_next: str, q_next: str, start: Point, steps: int) -> Areas:
+    return areas(made_map(p_next, q_next), start, Fraction(1, steps), steps)
+
+
+def _short(x: Fraction) -> str:
+    return decimal(x, 3)
+
+
+def _root(h: Fraction) -> Fraction:
+    """√h of an h = 1/n²."""
+    n = round(h.denominator**0.5)
+    if n * n * h != 1:
+        raise ValueError("h is not 1/n²")
+    return Fraction(1, n)
+
+
+def _friction(h: Fraction) -> Numbers:
+    x = -h + h * h
+    return abs(x), x * x, (1 + x) ** int(1 / h) - 1
+
+
+def _to_and_fro(h: Fraction) -> Numbers:
+    """ΔJ alternates between −2ε/(1 + ε) and 2ε/(1 − ε), ε = √h; N is even."""
+    e = _root(h)
+    down, up = -2 * e / (1 + e), 2 * e / (1 - e)
+    return up, (down**2 + up**2) / 2, Fraction(0)
+
+
+def _to_and_fro_odd(h: Fraction) -> Numbers:
+    """The same for odd N: one contraction more than expansions."""
+    e, n = _root(h), int(1 / h)
+    down, up = -2 * e / (1 + e), 2 * e / (1 - e)
+    return up, ((n + 1) * down**2 + (n - 1) * up**2) / (2 * n), down
+
+
+def _compensated(h: Fraction) -> Numbers:
+    """ΔJ_k = h(1/2 − kh), whose sum is h/2; Λ stays as the product."""
+    n = int(1 / h)
+    values = [h * (Fraction(1, 2) - k * h) for k in range(n)]
+    product = Fraction(1)
+    for x in values:
+        product *= 1 + x
+    mse = h * h * (1 + 2 * h * h) / 12  # Σ (1/2 − kh)² h = (1 + 2h²)/12
+    assert sum(values) == h / 2  # noqa: S101 - the sum that the argument uses
+    return h / 2, mse, product - 1
+
+
+def _not_uniform(h: Fraction) -> Numbers:
+    """ΔJ_k = (kh)², with Σ k⁴ in closed form."""
+    n = int(1 / h)
+    fourth = Fraction((n - 1) * n * (2 * n - 1) * (3 * n * n - 3 * n - 1), 30)
+    product = Fraction(1)
+    for k in range(n):
+        product *= 1 + (k * h) ** 2
+    return ((n - 1) * h) ** 2, fourth * h**4 / n, product - 1
+
+
+_ORIGIN = Point(p=Fraction(0), q=Fraction(0))
+_UNIT = Point(p=Fraction(0), q=Fraction(1))
+
+FRICTION = Example(
+    "friction",
+    "p - h*(q + p)",
+    "q + h*p",
+    _UNIT,
+    (4, 16, 64),
+    _friction,
+    "ΔJ = −h + h², so MSE = o(h) while Λ → 1/e − 1",
+)
+TO_AND_FRO = Example(
+    "to and fro",
+    "-p*(1 - sqrt(h)*q)/(1 + sqrt(h)*q)",
+    "-q",
+    _UNIT,
+    (4, 16, 64),
+    _to_and_fro,
+    "max |ΔJ| > 2√h and MSE > 4h, while Λ = 0 for even N",
+)
+TO_AND_FRO_ODD = Example(
+    "to and fro, odd N",
+    TO_AND_FRO.p_next,
+    TO_AND_FRO.q_next,
+    _UNIT,
+    (9, 25, 81),
+    _to_and_fro_odd,
+    "Λ = −2√h/(1 + √h) → 0 for odd N",
+)
+COMPENSATED = Example(
+    "near the identity, compensated",
+    "p*(1 + h*(1/2 - q))",
+    "q + h",
+    _ORIGIN,
+    (4, 16, 64),
+    _compensated,
+    "max |ΔJ| = h/2, Σ ΔJ = h/2 and 0 < Λ < h, so that Λ → 0",
+)
+NOT_UNIFORM = Example(
+    "small for each k, not uniformly",
+    "p*(1 + q**2)",
+    "q + h",
+    _ORIGIN,
+    (4, 16, 64),
+    _not_uniform,
+    "ΔJ_k = (kh)², which is O(h²) for each fixed k, while MSE → 1/5",
+)

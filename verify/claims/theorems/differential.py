@@ -1,0 +1,170 @@
+"""Polynomials over the rationals in variables whose derivatives are given: identities for every H.
+
+The partial derivatives of a generic H are independent variables H_ij = ∂^(i+j)H/∂pⁱ∂qʲ, with
+∂H_ij/∂p = H_(i+1)j and ∂H_ij/∂q = H_i(j+1). An identity that holds for them as polynomials holds
+for every smooth H. Other families, such as H = F(u) for a generic F of a given u, have variables
+for the derivatives of F.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import flint
+
+from verify.algebra.formula import parse, symbol
+from verify.algebra.generator import terms_of
+
+Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+
+
+class Differential:
+    """The ring over `names`; `set_gradient` gives a variable's partial derivatives by name.
+
+    A variable without a gradient is a constant. `relate` adds relations, whose leading terms (in
+    the lexicographic order of `names`) must be coprime: then dividing by each once is a normal
+    form.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = tuple(names)
+        self.context = flint.fmpq_mpoly_ctx.get(list(names), flint.Ordering.lex)
+        self._gens = dict(zip(names, self.context.gens(), strict=True))
+        self._gradients: dict[str, Mapping[str, Poly]] = {}
+        self._relations: list[Poly] = []
+
+    def __getitem__(self, name: str) -> Poly:
+        return self._gens[name]
+
+    @property
+    def zero(self) -> Poly:
+        return self.context.constant(0)
+
+    def set_gradient(self, name: str, **partials: Poly) -> None:
+        self._gradients[name] = partials
+
+    def relate(self, *relations: Poly) -> None:
+        """Each relation = 0."""
+        self._relations += relations
+
+    def reduce(self, x: Poly) -> Poly:
+        for relation in self._relations:
+            x = divmod(x, relation)[1]
+        return x
+
+    def diff(self, x: Poly, by: str) -> Poly:
+        """∂x/∂by in normal form. KeyError where a variable in x has no such derivative known."""
+        total, degrees = self.zero, x.degrees()
+        for index, name in enumerate(self.names):
+            if degrees[index] > 0 and name in self._gradients:
+                total += x.derivative(index) * self._gradients[name][by]
+        return self.reduce(total)
+
+    def bracket(self, x: Poly, y: Poly, by: tuple[str, str] = ("p", "q")) -> Poly:
+        """∂(x, y)/∂(p, q), or by another pair of variables."""
+        first, second = by
+        return self.reduce(
+            self.diff(x, first) * self.diff(y, second) - self.diff(x, second) * self.diff(y, first)
+        )
+
+    def powers(self, x: Poly, name: str) -> dict[int, Poly]:
+        """x by powers of a constant: {power: coefficient}, the coefficients non-zero."""
+        at = self.names.index(name)
+        parts: dict[int, Poly] = {}
+        for monomial, coefficient in terms_of(x):
+            rest = (*monomial[:at], 0, *monomial[at + 1 :])
+            term = self.context.from_dict({rest: coefficient})
+            power = int(monomial[at])
+            parts[power] = parts[power] + term if power in parts else term
+        return parts
+
+
+@dataclass(frozen=True)
+class Flow:
+    """X = H_p ∂_q − H_q ∂_p over such a ring: p' = −H_q, q' = H_p (Eq. 1)."""
+
+    ring: Differential
+    h_p: Poly
+    h_q: Poly
+
+    def derive(self, y: Poly) -> Poly:
+        """X y."""
+        diff = self.ring.diff
+        return self.ring.reduce(self.h_p * diff(y, "q") - self.h_q * diff(y, "p"))
+
+    def along(self, name: str, most: int) -> list[Poly]:
+        """[y, X y, …, X^most y] of y = p or q."""
+        result = [self.ring[name]]
+        for _ in range(most):
+            result.append(self.derive(result[-1]))
+        return result
+
+    def bracket(self, x: Poly, y: Poly) -> Poly:
+        return self.ring.bracket(x, y)
+
+    @property
+    def hessian(self) -> tuple[Poly, Poly, Poly]:
+        """H_pp, H_pq, H_qq."""
+        diff = self.ring.diff
+        return diff(self.h_p, "p"), diff(self.h_p, "q"), diff(self.h_q, "q")
+
+    @property
+    def hessian_determinant(self) -> Poly:
+        pp, pq, qq = self.hessian
+        return self.ring.reduce(pp * qq - pq * pq)
+
+    def delta_j(self, p_next: Poly, q_next: Poly) -> dict[int, Poly]:
+        """ΔJ of the map (p, q) → (p_next, q_next), by powers of h."""
+        return self.ring.powers(self.bracket(p_next, q_next) - 1, "h")
+
+    def lie(self, eta: int) -> tuple[Poly, Poly]:
+        """p', q' of the scheme lieη (Eq. 2)."""
+        h = self.ring["h"]
+        both = []
+        for name in ("p", "q"):
+            total, factor = self.ring.zero, self.ring.context.constant(1)
+            for n, term in enumerate(self.along(name, eta)):
+                factor = factor * h / n if n else factor
+                total += factor * term
+            both.append(total)
+        return both[0], both[1]
+
+
+def generic(order: int, more: Sequence[str] = ()) -> Flow:
+    """The flow of a generic H, whose partial derivatives up to `order` are variables."""
+    pairs = [(i, n - i) for n in range(1, order + 1) for i in range(n, -1, -1)]
+    ring = Differential(["h", *more, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])
+    _plane(ring)
+    for i, j in pairs:
+        if i + j < order:
+            ring.set_gradient(f"H{i}_{j}", p=ring[f"H{i + 1}_{j}"], q=ring[f"H{i}_{j + 1}"])
+        else:
+            ring.set_gradient(f"H{i}_{j}")  # its derivatives are beyond the order
+    return Flow(ring, ring["H1_0"], ring["H0_1"])
+
+
+def _plane(ring: Differential) -> None:
+    ring.set_gradient("p", p=ring.context.constant(1), q=ring.zero)
+    ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
+
+
+def of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4) -> Flow:
+    """The flow of H = F(u) + rest for a generic F: u and rest are polynomials in p, q, constants.
+
+    The derivatives of F at u up to `order` are the variables F1, F2, …
+    """
+    ring = Differential(["h", *constants, "p", "q", *(f"F{k}" for k in range(1, order + 1))])
+    _plane(ring)
+    inner, outer = (_polynomial(ring, text) for text in (u, rest))
+    u_p, u_q = ring.diff(inner, "p"), ring.diff(inner, "q")
+    for k in range(1, order):
+        ring.set_gradient(f"F{k}", p=ring[f"F{k + 1}"] * u_p, q=ring[f"F{k + 1}"] * u_q)
+    ring.set_gradient(f"F{order}")
+    f1 = ring["F1"]
+    return Flow(ring, f1 * u_p + ring.diff(outer, "p"), f1 * u_q + ring.diff(outer, "q"))
+
+
+def _polynomial(ring: Differential, text: str) -> Poly:
+    expression = parse(text, ring.names, source="u").as_poly(*map(symbol, ring.names))
+    terms = {m: flint.fmpq(int(c.p), int(c.q)) for m, c in expression.terms()}
+    return ring.context.from_dict(terms)

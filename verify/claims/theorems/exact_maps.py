@@ -1,0 +1,73 @@
+"""Step maps at rational points, in Fractions: points, Jacobians, and the areas along an orbit."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy
+
+from verify.arithmetic.exact import text
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.step_map import H_STEP, P, Q, StepMap
+
+
+@dataclass(frozen=True)
+class Point:
+    p: Fraction
+    q: Fraction
+
+    def __str__(self) -> str:
+        return f"({text(self.p)}, {text(self.q)})"
+
+
+@dataclass(frozen=True)
+class Areas:
+    """ΔJ along an orbit of N steps, with the three numbers that the criteria speak of."""
+
+    delta_j: tuple[Fraction, ...]
+
+    @property
+    def largest(self) -> Fraction:
+        return max(map(abs, self.delta_j))
+
+    @property
+    def mse(self) -> Fraction:
+        return sum((x * x for x in self.delta_j), Fraction(0)) / len(self.delta_j)
+
+    @property
+    def lam(self) -> Fraction:
+        product = Fraction(1)
+        for x in self.delta_j:
+            product *= 1 + x
+        return product - 1
+
+
+def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:
+    """The expression at a rational point; ValueError where its value is not rational."""
+    put = {P: point.p, Q: point.q, H_STEP: h}
+    found = expression.subs({s: sympy.Rational(v.numerator, v.denominator) for s, v in put.items()})
+    if not found.is_Rational:
+        raise ValueError(f"{found} is not rational")
+    return Fraction(int(found.p), int(found.q))
+
+
+def next_point(step: StepMap, point: Point, h: Fraction) -> Point:
+    return Point(value(step.p_next, point, h), value(step.q_next, point, h))
+
+
+def jacobian(step: StepMap, point: Point, h: Fraction) -> tuple[Fraction, ...]:
+    """∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q."""
+    return tuple(value(x, point, h) for x in step.jacobian)
+
+
+def areas(step: StepMap, start: Point, h: Fraction, steps: int) -> Areas:
+    """ΔJ_k at z_k, k = 0 … steps − 1, exactly."""
+    found, point, delta_j = [], start, step.delta_j
+    for _ in range(steps):
+        found.append(value(delta_j, point, h))
+        point = next_point(step, point, h)
+    return Areas(tuple(found))
+
+
+def made_map(p_next: str, q_next: str) -> StepMap:
+    """A map by formulas in p, q and h; the H that it is made with says nothing of it."""
+    return StepMap.from_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), p_next, q_next)

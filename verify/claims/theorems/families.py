@@ -1,0 +1,98 @@
+"""The Hamiltonians for which lie2 preserves area exactly: the identities of their classification.
+
+Notation: w = ∇H = (H_p, H_q), D = det Hess H, N = −X²z, the negative of the acceleration z''. In
+the plane N = adj(Hess H) w, and J = 1 + hA − (h²/2) N' with A = (−H_q, H_p)'.
+"""
+
+from verify.claims.theorems.argument import Check, vanishes
+from verify.claims.theorems.differential import Differential, Flow, generic, of_one_function
+
+LINEAR = ("a*p + b*q", "c*p + d*q")  # H = F(u) + rest
+PARABOLIC = ("a*p + b*q + (c*p + d*q)**2/2", "0")
+_CONSTANTS = ("a", "b", "c", "d")
+
+
+def family(name: str, u: str, rest: str) -> Check:
+    """ΔJ of lie2 is zero for H = F(u) + rest, for a generic F and all constants."""
+    flow = of_one_function(_CONSTANTS, u, rest)
+    delta_j = flow.delta_j(*flow.lie(2))
+    return vanishes(f"ΔJ of lie2 for {name}, F generic", *delta_j.values())
+
+
+def linear() -> Check:
+    return family("H = F(ap + bq) + cp + dq", *LINEAR)
+
+
+def parabolic() -> Check:
+    return family("H = F(ap + bq + (cp + dq)²/2)", *PARABOLIC)
+
+
+def exact_flow() -> Check:
+    """lie2 is the flow itself where X³z = 0."""
+    flow = of_one_function(_CONSTANTS, *PARABOLIC, 5)
+    third = [flow.along(z, 3)[3] for z in ("p", "q")]
+    return vanishes("X³p and X³q for H = F(ap + bq + (cp + dq)²/2): lie2 is its exact flow", *third)
+
+
+def separable() -> Check:
+    """ΔJ of lie2 for H = T(p) + V(q), T and V generic; T1 stands for T', and so on."""
+    names = [f"{f}{k}" for f in "TV" for k in range(1, 5)]
+    ring = Differential(["h", "p", "q", *names])
+    one, zero = ring.context.constant(1), ring.zero
+    ring.set_gradient("p", p=one, q=zero)
+    ring.set_gradient("q", p=zero, q=one)
+    for k in range(1, 4):
+        ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=zero)
+        ring.set_gradient(f"V{k}", p=zero, q=ring[f"V{k + 1}"])
+    t1, t2, t3, v1, v2, v3 = (ring[f"{f}{k}"] for f in "TV" for k in (1, 2, 3))
+    flow = Flow(ring, t1, v1)
+    delta_j = flow.delta_j(*flow.lie(2))
+    return vanishes(
+        "H = T(p) + V(q): ΔJ = (h³/2)(T'T''V''' − V'V''T''') + (h⁴/4)(T''²V''² − T'T'''V'V''')",
+        delta_j.pop(3) - (t1 * t2 * v3 - v1 * v2 * t3) / 2,
+        delta_j.pop(4) - (t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4,
+        *delta_j.values(),
+    )
+
+
+def equilibrium() -> Check:
+    """At a critical point of a generic H, ΔJ of lie2 is h⁴D²/4."""
+    flow = generic(4)
+    at = {"H1_0": 0, "H0_1": 0}
+    delta_j = {n: x.subs(at) for n, x in flow.delta_j(*flow.lie(2)).items()}
+    fourth = delta_j.pop(4) - flow.hessian_determinant**2 / 4
+    return vanishes("ΔJ of lie2 where ∇H = 0 is h⁴D²/4, for a generic H", fourth, *delta_j.values())
+
+
+def coefficients() -> Check:
+    """ΔJ = (h³/2) X D + (h⁴/4)(D² + det T), T_ij = Σ_k ∂_j adj(Hess H)_ik w_k, for a generic H."""
+    flow = generic(4)
+    ring, w = flow.ring, (flow.h_p, flow.h_q)
+    pp, pq, qq = flow.hessian
+    adjugate = ((qq, -pq), (-pq, pp))
+    t = [
+        [sum((ring.diff(row[k], z) * w[k] for k in (0, 1)), ring.zero) for z in ("p", "q")]
+        for row in adjugate
+    ]
+    d = flow.hessian_determinant
+    delta_j = flow.delta_j(*flow.lie(2))
+    fourth = (d * d + t[0][0] * t[1][1] - t[0][1] * t[1][0]) / 4
+    return vanishes(
+        "ΔJ = (h³/2) X D + (h⁴/4) (D² + det T) for a generic H, and no other powers",
+        delta_j.pop(3) - flow.derive(d) / 2,
+        delta_j.pop(4) - fourth,
+        *delta_j.values(),
+    )
+
+
+def acceleration() -> Check:
+    """−X²z = adj(Hess H) ∇H, and div N = 2 D, for a generic H."""
+    flow = generic(4)
+    pp, pq, qq = flow.hessian
+    n_p, n_q = (-flow.along(z, 2)[2] for z in ("p", "q"))
+    return vanishes(
+        "−X²z = adj(Hess H) ∇H, and its divergence is 2 D, for a generic H",
+        n_p - (qq * flow.h_p - pq * flow.h_q),
+        n_q - (-pq * flow.h_p + pp * flow.h_q),
+        flow.ring.diff(n_p, "p") + flow.ring.diff(n_q, "q") - 2 * flow.hessian_determinant,
+    )

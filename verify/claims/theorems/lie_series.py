@@ -1,0 +1,141 @@
+"""Eq. 2–5: the scheme is the truncated exponential of hX; Eq. 3 as printed is not."""
+
+from collections.abc import Callable
+
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.algebra.generators import embed
+from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
+from verify.claims.theorems.differential import Flow, Poly, generic
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.schemes.step_map import H_STEP, P, Q
+from verify.verdict import Verdict
+
+MOST = 5  # powers of X looked at for a generic H; the rest is by induction
+SYSTEMS = ("duffing", "pendulum")
+Recursion = Callable[[Flow, Poly], Poly]
+
+
+def eq_4(flow: Flow, y: Poly) -> Poly:
+    """Lⁿ from y = Lⁿ⁻¹ by Eq. 4, with both operators as Eq. 5 defines them."""
+    along_q = flow.h_p * flow.ring.diff(y, "q")
+    along_p = -flow.h_q * flow.ring.diff(y, "p")
+    return along_p + along_q
+
+
+def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.Expr]:
+    """p', q' by Eq. 2, 4 and 5 with sympy's own derivatives, started by L q = H_p, L p = −H_q."""
+    h_p, h_q = (sympy.diff(hamiltonian.expression, z) for z in (P, Q))
+    both = []
+    for start, first in ((P, -h_q), (Q, h_p)):
+        total, power = start, first
+        for n in range(1, eta + 1):
+            total += H_STEP**n / sympy.factorial(n) * power
+            power = h_p * sympy.diff(power, Q) - h_q * sympy.diff(power, P)
+        both.append(total)
+    return both[0], both[1]
+
+
+def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
+    """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
+    flow = generic(MOST)
+    checks = [_generic(flow, name, recursion) for name in ("p", "q")]
+    for name in SYSTEMS:
+        hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
+        for order in range(1, eta + 1):
+            checks.append(_same(name, hamiltonian, order))
+    return concluded(
+        "lie-exponential",
+        "Eq. 2, 4 and 5",
+        "The discretization scheme is the series Σ hⁿ/n! Lⁿ, n = 0 … η: the Lie exponential "
+        "expansion of order η.",
+        Verdict.PROVED,
+        "with L p = −H_q and L q = H_p to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. 2 "
+        f"is exp(hX) cut off after h^η; checked for a generic H up to X^{MOST}",
+        """By Eq. 5 the two operators are L_{H_p} = H_p ∂_q and L_{−H_q} = −H_q ∂_p; their sum is
+        the Lie derivative X = H_p ∂_q − H_q ∂_p of the Hamiltonian vector field. Eq. 4 applies
+        this same sum in both of its lines, Lⁿ = X Lⁿ⁻¹. Starting from L¹ = H_p = X q in the line
+        of q and from L¹ = −H_q = X p in the line of p, induction gives Lⁿ_{H_p} = Xⁿ q and
+        Lⁿ_{−H_q} = Xⁿ p for every n ≥ 1. Along a solution d/dt y(z(t)) = (X y)(z(t)), so that Xⁿ p
+        and Xⁿ q are the n-th time derivatives of p and q, and Eq. 2 is the Taylor polynomial of
+        degree η of the exact flow: exp(hX) applied to the two coordinates and cut off after h^η.
+        Nothing in this uses that H is separable. (Lⁿ_{H_p} is not the n-th power of the operator
+        L_{H_p} of Eq. 5, although it is written so: Eq. 4 mixes the two operators.) ∎""",
+        checks,
+    )
+
+
+def _generic(flow: Flow, name: str, recursion: Recursion) -> Check:
+    powers = flow.along(name, MOST)
+    gaps = [recursion(flow, powers[n - 1]) - powers[n] for n in range(1, MOST + 1)]
+    return vanishes(f"Eq. 4 and 5 give Lⁿ = Xⁿ {name} for a generic H, n = 1 … {MOST}", *gaps)
+
+
+def _same(name: str, hamiltonian: Hamiltonian, eta: int) -> Check:
+    step = lie_map(hamiltonian, eta)
+    printed = printed_step(hamiltonian, eta)
+    gaps = [x - y for x, y in zip(printed, (step.p_next, step.q_next), strict=True)]
+    ring, elements = embed(gaps, ("p", "q", "h", *hamiltonian.parameters))
+    wrong = [x for x in elements if ring.decide(x).zero is not True]
+    what = f"{name}: Eq. 2–5 by plain differentiation against the step map of lie{eta}"
+    return Check(what, not wrong, "the same" if not wrong else "different")
+
+
+def eq_3(coordinate: str = "p") -> Argument:
+    """Eq. 3 as printed: L_{H_p}(p_k) = H_p ∂q/∂p = H_p. `coordinate`: what L_{H_p} is applied to.
+
+    With `q` the equation is right, and so it is not refuted.
+    """
+    flow = generic(2)
+    ring, h_p = flow.ring, flow.h_p
+    literal = h_p * ring.diff(ring["q"], coordinate)
+    by_eq_5 = h_p * ring.diff(ring[coordinate], "q")
+    checks = [
+        Check(
+            f"H_p ∂q/∂{coordinate} is not H_p, p and q being independent",
+            literal != h_p,
+            str(literal),
+        ),
+        Check(
+            f"by Eq. 5, L_{{H_p}}({coordinate}) = H_p ∂{coordinate}/∂q is not H_p",
+            by_eq_5 != h_p,
+            str(by_eq_5),
+        ),
+        vanishes("by Eq. 5, L_{H_p}(q) = H_p ∂q/∂q is H_p", h_p * ring.diff(ring["q"], "q") - h_p),
+        _example(),
+    ]
+    return concluded(
+        "eq-3",
+        "Eq. 3",
+        "L_{H_p}(p_k) = H_p ∂q/∂p = H_p (as printed).",
+        Verdict.REFUTED,
+        "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not H_p; with "
+        "q for p, L_{H_p}(q_k) = H_p ∂q/∂q = H_p, it is what Eq. 2 needs",
+        """In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 and
+        H_p ∂q/∂p = 0. By Eq. 5, too, L_{H_p}(p) = H_p ∂p/∂q = 0. The printed equality therefore
+        holds only where H_p = 0. Taken at its word it would give L_{H_p} = 0, and with Eq. 2
+        q_{k+1} = q_k: no scheme for Eq. 1. What is meant is L_{H_p}(q_k) = H_p ∂q/∂q = H_p; so
+        read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and nothing that
+        follows in the paper is affected. The second line, L_{−H_q}(p_k) = −H_q ∂p/∂p = −H_q, is
+        right. ∎""",
+        checks,
+    )
+
+
+def _example() -> Check:
+    """H = p²/2 + q²/2 at (p, q) = (1, 0): the printed sides are 0 and 1."""
+    at = {symbol("p"): sympy.Integer(1), symbol("q"): sympy.Integer(0)}
+    energy = P**2 / 2 + Q**2 / 2
+    left = (sympy.diff(energy, P) * sympy.diff(Q, P)).subs(at)
+    right = sympy.diff(energy, P).subs(at)
+    return Check(
+        "H = (p² + q²)/2 at (p, q) = (1, 0): H_p ∂q/∂p against H_p",
+        left != right,
+        f"{left} against {right}",
+    )
+
+
+THEOREMS = {"lie-exponential": lie_exponential, "eq-3": eq_3}

@@ -1,0 +1,91 @@
+"""The command `verify check`: the claims of a paper, one verdict each."""
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import paper_folder, writable
+from verify.commands.tasks import told, with_tasks
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.scenes.results.core import ClaimResult
+
+REFUTED = 1  # exit status
+
+
+@click.command()
+@click.argument("claims", metavar="CLAIMS")
+@click.option(
+    "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
+)
+@with_tasks
+def check(
+    claims: str, only: tuple[str, ...], keep: Path | None, where: "Where", as_json: bool
+) -> None:
+    """Check the claims in CLAIMS (a TOML file, or `paper`); exit status 1 where one is refuted.
+
+    \b
+    [defaults]                        # what the claims share
+    scheme = "lie2"
+    system = "duffing"                # or hamiltonian = "…", with parameters = { … }
+
+    \b
+    [[claim]]
+    id = "eq-21"
+    kind = "delta_j"
+    formula = "3*h**3*delta*p*q"
+    up_to = 4                         # + O(h⁴); without it, exactly
+
+    \b
+    [[claim]]
+    id = "order-of-every-H"
+    kind = "order"                    # ΔJ = c h³ + …
+    order = 3
+    every = "hamiltonian"             # or "separable hamiltonian"
+
+    \b
+    [[claim]]
+    id = "area-error"
+    kind = "lambda"
+    parameters = { delta = 1 }
+    step_size = 0.001
+    steps = 20000
+    q = 1.5
+    p = 0
+    printed = "-2.666e-06"            # or lg_printed
+
+    \b
+    Kinds: step_map jacobian delta_j order convergence_order area_preserving
+           mse lambda table bounded growth spread monotone less magnitude criteria theorem
+    """
+    from verify.claims.check import prepare
+    from verify.claims.file import load_claims
+    from verify.execution.execute import Store
+
+    path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
+    prepared = prepare(load_claims(path), only)
+    if keep is not None:
+        writable(keep, "--keep")
+    with told(prepared.plan.tasks, keep) as done:
+        found = prepared.run(Store(keep), where=where, done=done)
+    if as_json:
+        keys = {"id", "kind", "source", "statement", "verdict", "evidence"}
+        show.print_json({"claims": [c.model_dump(mode="json", include=keys) for c in found]})
+    else:
+        _print(found)
+    if any(claim.verdict == "REFUTED" for claim in found):
+        raise SystemExit(REFUTED)
+
+
+def _print(found: "list[ClaimResult]") -> None:
+    width = max(len(claim.id) for claim in found)
+    for claim in found:
+        source = f"{claim.source}: " if claim.source else ""
+        click.echo(f"{claim.verdict:9}  {claim.id:{width}}  {source}{claim.evidence}")
+    counted = Counter(str(claim.verdict) for claim in found)
+    of = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
+    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in counted.most_common()))

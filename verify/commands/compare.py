@@ -1,0 +1,255 @@
+"""The command `verify reference compare`: somebody's numbers beside ours."""
+
+import math
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands.tasks import json_option
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from verify.reference.compare.compare import Column, Compared, Explained, Separated
+    from verify.reference.compare.submitted import Theirs
+
+DIFFERENT = 1  # exit status
+_MOST_SHOWN = 5
+_MOST_NAMED = 4  # mistakes of which one fits
+_SHOWN = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
+_SAYS = (
+    "agrees in all digits that are printed",
+    "says nothing: rounding may have taken every digit",
+    "differs by what float64 rounding explains",
+    "differs by more than rounding usually does, and no more than it may do",
+    "DIFFERS by more than rounding",
+)
+_NONE_LEFT = {
+    "rounding": "differs by what float64 rounding explains, which leaves no digit",
+    "perhaps rounding": "may differ by no more than rounding, which leaves no digit",
+}
+_LONG = re.compile(r"[0-9]+/[0-9]{20,}|[0-9]{25,}(?:/[0-9]+)?")
+_MOST_DIGITS, _DIGITS_SHOWN = 400, 36
+_ANY = 0.5  # digits: with fewer, none agrees
+_PARTS = ("input", "trajectory", "determinant", "product")
+_KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
+
+
+@click.command()
+@click.argument("theirs", type=click.Path(path_type=Path), metavar="THEIRS.csv")
+@click.option("--data", type=click.Path(path_type=Path), metavar="DIR",
+              help="The reference data; without it, the committed set.")  # fmt: skip
+@click.option("--scene", metavar="NAME", help="The scene of all rows, such as duffing.")
+@click.option("--scheme", metavar="NAME", help="The scheme of all rows.")
+@click.option("--step-size", metavar="H", help="Their step size.")
+@click.option("--q", "q0", metavar="X", help="Their initial q.")
+@click.option("--p", "p0", metavar="X", help="Their initial p.")
+@click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
+              help="What the table calls a column, such as q=position; repeatable.")  # fmt: skip
+@json_option
+def compare(
+    theirs: Path,
+    data: Path | None,
+    scene: str | None,
+    columns: tuple[str, ...],
+    as_json: bool,
+    **given: str | None,
+) -> None:
+    """Compare the numbers in THEIRS.csv, somebody's own, with the reference data.
+
+    THEIRS.csv has a header line; columns step (or time), some of p, q, delta_j, mse and lambda, and
+    scene, scheme, step_size, q0 and p0 where the options do not say them. All rows that the
+    reference data have, too, are compared: digits that agree, where they part, and whether float64
+    rounding explains it. Where it does not, known mistakes are tried: the double 0.001 for h =
+    1/1000, p and q swapped, a step index off by one, another scheme or η, … Exit status 1 where
+    more than rounding differs.
+
+    verify reference compare mine.csv --scene duffing --scheme lie2
+    """
+    from verify.commands.progress import progress_bar
+    from verify.reference.compare.compare import compare as compared
+    from verify.reference.compare.published import load
+    from verify.reference.compare.submitted import read
+    from verify.reference.make.make import PUBLISHED
+
+    ours = load(data or PUBLISHED, scene)
+    said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
+    table = read(theirs, ours, said, _names(columns))
+    with progress_bar("compared", len(table.runs), unit="run") as advance:
+        found = compared(ours, table, lambda *_: advance(1))
+    if as_json:
+        show.print_json(_as_json(table, found))
+    else:
+        _print(table, found)
+    if not found.agrees:
+        raise SystemExit(DIFFERENT)
+
+
+def _names(columns: tuple[str, ...]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for text in columns:
+        ours, equals, theirs = text.partition("=")
+        if not (ours and equals and theirs):
+            raise InputError("--column", text, "write it as OURS=THEIRS, such as q=position")
+        if ours in found:
+            raise InputError("--column", text, f"{ours} is given twice")
+        found[ours] = theirs
+    return found
+
+
+# -- for programs ---------------------------------------------------------------------------------
+
+
+def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
+    return {
+        "agrees": found.agrees,
+        "rows": found.rows,
+        "runs": found.runs,
+        "rows_read": table.rows,
+        "other_steps": table.other_steps,
+        "outside": table.outside,
+        "first_outside": table.first_outside or None,
+        "ignored_columns": list(table.ignored),
+        "columns": [
+            {
+                "column": x.name,
+                "verdict": _KEYS[x.verdict],
+                "rows": x.rows,
+                "digits": None if math.isinf(x.digits) else f"{x.digits:.1f}",
+                "run": x.run,
+                "step": x.step,
+                "parts_in": x.parts_run,
+                "parts_at": x.parts_at,
+            }
+            for x in found.columns
+        ],
+        "diagnoses": [
+            {
+                "runs": x.runs,
+                "mistakes": [{"id": name, "says": says} for name, says in x.mistakes],
+                "certain": len(x.mistakes) == 1,
+            }
+            for x in found.diagnoses
+        ],
+        "unexplained": found.unexplained,
+        "lost": found.lost,
+        "overflows": found.overflows,
+        "separation": found.separated and _separation_json(found.separated),
+    }
+
+
+def _separation_json(x: "Separated") -> dict[str, Any]:
+    from verify.arithmetic.exact import decimal
+
+    ways = {"plain": x.result.plain, "closed_form": x.result.closed_form}
+    parts = {n: way.parts.model_dump(mode="json") if way else None for n, way in ways.items()}
+    return {"run": x.run, "step": x.step, "difference": decimal(x.apart, 3), **parts}
+
+
+# -- for people -----------------------------------------------------------------------------------
+
+
+def _print(table: "Theirs", found: "Compared") -> None:
+    of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"
+    click.echo(f"{of}; {_count(table.rows, 'row')} read")
+    if table.other_steps:
+        click.echo(
+            f"of steps that the reference data do not have: {_count(table.other_steps, 'row')}"
+        )
+    if table.outside:
+        first = table.first_outside
+        count = _count(table.outside, "row")
+        click.echo(f"of runs that they do not have: {count}, the first {first}")
+    if table.ignored:
+        click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
+    for name, (theirs, ours) in table.read_as.items():
+        click.echo(f"your {name} {_exact(theirs)} is taken for {_exact(ours)}")
+    for column in found.columns:
+        click.echo(_column(column))
+    if found.separated is not None:
+        click.echo(_separated(found.separated))
+    _listed(found.lost, "from step {step} on rounding may have taken every digit; not judged")
+    _listed(found.overflows, "not finite at step {step}, where doubles may overflow")
+    for diagnosis in found.diagnoses:
+        click.echo(_diagnosis(diagnosis))
+    unknown = [f"{_run(label)}: no known mistake fits" for label in found.unexplained]
+    _few(unknown, " that none fits")
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number:,} {what}" + ("" if number == 1 else "s")
+
+
+def _run(label: str) -> str:
+    """A run's label, in which no number is very long."""
+    return _LONG.sub(lambda found: _compact(found[0]), label)
+
+
+def _compact(text: str) -> str:
+    """A long decimal or quotient as a decimal with an exponent, its middle left out."""
+    from verify.arithmetic.exact import decimal, rational
+
+    exact = decimal(rational(text), _MOST_DIGITS)
+    digits, _, exponent = exact.partition("e")
+    short = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    if len(short) > _DIGITS_SHOWN:
+        short = f"{short[: _DIGITS_SHOWN // 2]}…{short[-_DIGITS_SHOWN // 2 :]}"
+    return f"{short}e{exponent}" if exponent.strip("+0") else short
+
+
+def _exact(x: Any) -> str:
+    from verify.arithmetic.exact import short
+
+    return short(x)
+
+
+def _column(x: "Column") -> str:
+    name, verdict = _SHOWN.get(x.name, x.name), _KEYS[x.verdict]
+    if verdict == "lost":
+        return f"{name:>3}  {_SAYS[x.verdict]}"
+    shown = "all" if math.isinf(x.digits) else f"{x.digits:.1f}" if x.digits >= _ANY else "no"
+    line = f"{name:>3}  {shown:>5} digits  {_SAYS[x.verdict]}"
+    if x.parts_run is not None:
+        return f"{line}, first at step {x.parts_at} ({_run(x.parts_run)})"
+    if shown == "no":
+        return f"{name:>3}  {_NONE_LEFT[verdict]} at step {x.step} ({_run(x.run)})"
+    return line if verdict == "agrees" else f"{line}; the fewest at step {x.step} ({_run(x.run)})"
+
+
+def _listed(steps: "Mapping[str, int]", says: str) -> None:
+    lines = [f"{_run(label)}: {says.format(step=step)}" for label, step in steps.items()]
+    _few(lines, ", likewise")
+
+
+def _few(lines: "Sequence[str]", rest: str) -> None:
+    """The first of the runs' lines, and how many more there are."""
+    for line in lines[:_MOST_SHOWN]:
+        click.echo(line)
+    if len(lines) > _MOST_SHOWN:
+        click.echo(f"… and {_count(len(lines) - _MOST_SHOWN, 'more run')}{rest}")
+
+
+def _separated(x: "Separated") -> str:
+    from verify.arithmetic.exact import decimal
+
+    plain = x.result.plain
+    assert plain is not None  # noqa: S101 - it is not shown without
+    parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in _PARTS)
+    return (
+        f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_run(x.run)}); rounding "
+        f"makes {plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"
+    )
+
+
+def _diagnosis(x: "Explained") -> str:
+    many = _count(x.runs, "run")
+    says = [says for _, says in x.mistakes]
+    if len(says) == 1:
+        return f"in {many}: {says[0]}"
+    if len(says) > _MOST_NAMED:
+        says = [*says[: _MOST_NAMED - 1], f"{len(says) - _MOST_NAMED + 1} others"]
+    return f"in {many} one of these, which the table does not tell apart: " + "; or ".join(says)

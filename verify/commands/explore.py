@@ -1,0 +1,189 @@
+"""The command `verify explore`: properties, or a user's claims, over many drawn scenes."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands.hunt import STEPS, hunt
+from verify.commands.input import writable, writable_later
+from verify.commands.tasks import told, with_tasks
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.scenes.results.exploration import ExploreReport
+
+FAILED = 1  # exit status
+_SEEDS = 2**32
+
+
+@click.command()
+@click.argument("claims", metavar="[CLAIMS]", required=False)
+@click.option(
+    "--property",
+    "names",
+    multiple=True,
+    metavar="NAME",
+    help="Only this property; repeatable. A wrong name lists them.",
+)
+@click.option("--examples", type=int, default=1000, metavar="N", help="Scenes; 1000.")
+@click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
+@click.option("--scheme", "schemes", multiple=True, metavar="NAME", help="Only this; repeatable.")
+@click.option(
+    "--kind",
+    "kinds",
+    multiple=True,
+    metavar="KIND",
+    help="polynomial, trigonometric, exponential or rational H only; repeatable.",
+)
+@click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most; 6.")
+@click.option(
+    "--maximise",
+    metavar="MEASURE",
+    help="Hunt for the worst scenes instead: rounding-share, digits-lost or growth.",
+)
+@click.option("--steps", type=int, metavar="N", help="Of each scene that is hunted; 100.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default=Path("explored"),
+    metavar="DIR",
+    help="Where scenes that fail are written, and looked at again first; explored.",
+)
+@with_tasks
+def explore(
+    claims: str | None,
+    names: tuple[str, ...],
+    examples: int,
+    seed: int | None,
+    schemes: tuple[str, ...],
+    kinds: tuple[str, ...],
+    degree: int,
+    maximise: str | None,
+    steps: int | None,
+    output: Path,
+    keep: Path | None,
+    where: "Where",
+    as_json: bool,
+) -> None:
+    """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
+
+    A scene is a Hamiltonian, a scheme, a step size, an initial value and some steps. Scene K of
+    seed S is the same everywhere. Of each property that fails one scene is shrunk to the simplest,
+    and written as a file that `verify report` takes; exit status 1.
+
+    \b
+    verify explore --examples 100000 --workers 2 --seed 7
+    verify explore --property order-by-jets --scheme lie2 --kind polynomial
+    verify explore claims.toml --examples 500
+
+    With --maximise scenes are sought, of |q|, |p| up to 2 and step sizes 1/1000 … 1/10, in which
+    float64 or the scheme (lie2, or those of --scheme) does worst: rounding against truncation in Λ,
+    digits of p and q that float64 loses, |Λ|. DIR/index.html shows them.
+
+    \b
+    verify explore --maximise rounding-share --examples 2000 --seed 7 -o worst
+    """
+    import random
+
+    from verify.execution.execute import Store
+    from verify.exploration.explore import Exploration, explore, found_earlier, keep_found
+    from verify.scenes.tasks import Drawn
+
+    seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
+    looks, left_out = _looks(claims, names) if maximise is None else ({}, {})
+    drawn = Drawn(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
+    if maximise is not None:
+        if claims or names:
+            raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
+        steps = STEPS if steps is None else steps
+        hunt(maximise, seed, examples, steps, drawn, output, keep, where, as_json)
+        return
+    if steps is not None:
+        raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
+    asked = Exploration(seed=seed, examples=examples, **looks, drawn=drawn)
+    writable_later(output)
+    if keep is not None:
+        writable(keep, "--keep")
+    earlier = found_earlier(output) if output.is_dir() else []
+    with told(asked.plan.tasks, keep) as done:
+        report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)
+    unwritten, written = None, [""] * len(report.failures)
+    try:
+        written = [str(path) for path in keep_found(report, output)]
+    except OSError as error:  # what was found is told all the same
+        unwritten = InputError("--output", str(output), error.strerror or "cannot be written to")
+    if as_json:
+        show.print_json(_as_json(report, written, left_out))
+    else:
+        _print(report, written, left_out)
+    if unwritten is not None:
+        raise unwritten
+    if report.failures or any(each.message for each in report.again):
+        raise SystemExit(FAILED)
+
+
+def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """The properties and claims that are asked for: all properties where nothing is named.
+
+    And the claims that can be asked of no other scene, by the reason.
+    """
+    from verify.claims.file import load_claims
+    from verify.exploration import properties
+    from verify.exploration.claims import claim_texts, left_out
+
+    for name in names:
+        properties.get(name)
+    named = tuple(dict.fromkeys(names))
+    if claims is None:
+        return {"properties": named or properties.names()}, {}
+    path = Path(claims)
+    if not path.is_file():
+        raise InputError("CLAIMS", claims, "is no file")
+    given = load_claims(path).claims
+    return {"properties": named, "claims": claim_texts(given)}, left_out(given)
+
+
+def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:
+    """The schemes that the claims speak of, where nothing else is looked at; else any."""
+    from verify.exploration.claims import scheme_of
+
+    if looks.get("properties") or not looks.get("claims"):
+        return ()
+    return tuple(dict.fromkeys(map(scheme_of, looks["claims"])))
+
+
+def _as_json(
+    report: "ExploreReport", written: Sequence[str], left_out: Mapping[str, Sequence[str]]
+) -> dict[str, Any]:
+    found = report.model_dump(mode="json")
+    for failure, path in zip(found["failures"], written, strict=True):
+        failure["file"] = path
+    without = [{"claim": name, "reason": why} for why, names in left_out.items() for name in names]
+    return found | {"left_out": without}
+
+
+def _print(
+    report: "ExploreReport", written: Sequence[str], left_out: Mapping[str, Sequence[str]]
+) -> None:
+    width = max(len(each.name) for each in report.properties)
+    for each in report.properties:
+        verdict = f"FAILS for {each.failures:,}" if each.failures else "holds"
+        of = f"{verdict} of {each.looked_at:,}" if each.looked_at else "speaks of none of them"
+        click.echo(f"{each.name:{width}}  {of}")
+    for why, names in left_out.items():
+        click.echo(f"left out, as {why}: {', '.join(names)}")
+    for again in report.again:
+        now = f"still fails: {again.message}" if again.message else "holds now"
+        click.echo(f"{again.file}: {again.property} {now}")
+    for failure, path in zip(report.failures, written, strict=True):
+        click.echo(f"\n{failure.property} fails at example {failure.example}, shrunk:")
+        click.echo("".join(f"  {line}\n" for line in failure.scene.splitlines()), nl=False)
+        click.echo(f"  → {path}, which `verify report` takes" if path else "  → not written")
+    failing = sum(1 for each in report.properties if each.failures)
+    of = f"{report.examples:,} scenes of seed {report.seed}"
+    click.echo(f"{of}: {failing or 'no'} propert{'y fails' if failing == 1 else 'ies fail'}")

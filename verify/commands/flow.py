@@ -1,0 +1,89 @@
+"""The command `verify flow`: regions carried by maps, and their areas."""
+
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.arithmetic.exact import short
+from verify.commands import output as show
+from verify.commands.input import target, writable
+from verify.commands.tasks import told, with_tasks
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.scenes.results.regions import FlowImage, FlowResult
+
+NO_RESULT = 1  # exit status
+
+
+@click.command()
+@click.argument("scene", metavar="SCENE")
+@with_tasks
+def flow(scene: str, keep: Path | None, where: "Where", as_json: bool) -> None:
+    """Carry the regions of SCENE by its maps, and measure what these do to their areas.
+
+    SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
+    1 where a map's area could not be measured far more finely than it changes.
+
+    \b
+    [[flow]]
+    shape = "cat"                     # circle, square; polygon = [[0, 0], …]; path = "M 0 0 …"
+    centre = { q = 1, p = 0 }
+    scale = 0.5
+    step_size = 0.01
+    steps = [5000, 20000]             # or times = [1, 2, 3]
+    """
+    from verify.execution.execute import Store, execute
+    from verify.studies.regions.findings import flow_json, flows_of
+    from verify.studies.regions.plan import plan_flows
+
+    scenes = target(scene)[1]
+    plan = plan_flows(scenes)
+    if not plan.tasks:
+        raise InputError("SCENE", scene, "asks for no [[flow]]")
+    if keep is not None:
+        writable(keep, "--keep")
+    with told(plan.tasks, keep) as done:
+        results = execute(plan, Store(keep), where=where, done=done)
+    found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
+    if as_json:
+        show.print_json(flow_json(found))
+    else:
+        for name, result in found:
+            _print(name, result)
+    if any(image.problem for _, flow in found for image in flow.images):
+        raise SystemExit(NO_RESULT)
+
+
+def _print(name: str, result: "FlowResult") -> None:
+    q, p = result.centre
+    title = f"{name}: " + (f"{result.source}, " if result.source else "")
+    where = f"{result.shape} at (q, p) = ({q}, {p}), scale {short(Fraction(result.scale))}"
+    click.echo(f"{title}{where}, h = {result.step_size}")
+    rows = [_HEAD, *map(_row, result.images)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row, image in zip(rows, (None, *result.images), strict=True):
+        line = "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
+        click.echo(f"  {line.rstrip()}")
+        if image is not None and image.problem:
+            click.echo(f"    {image.problem}")
+
+
+_HEAD = ("map", "N", "t", "area changes by", "mean of Λ", "from the exact flow")
+
+
+def _row(image: "FlowImage") -> tuple[str, ...]:
+    change = _with_error(image.area_change, image.probe_error)
+    if image.area_preserving and change:
+        change = f"0, proved ({change})"
+    mean = _with_error(image.mean_lambda, image.mean_lambda_error)
+    mean += "" if image.agree is not False else "  NOT THE SAME"
+    distance = _with_error(image.distance, image.distance_error)
+    return image.map, str(image.steps), image.time, change, mean, distance
+
+
+def _with_error(value: str | None, error: str | None) -> str:
+    return "" if value is None else f"{value} ± {error}"

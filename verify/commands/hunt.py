@@ -1,0 +1,106 @@
+"""`verify explore --maximise`: the worst scenes for a measure, as files and as a page."""
+
+import re
+import shlex
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import writable
+from verify.commands.tasks import told
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.exploration.hunting import Hunt
+    from verify.scenes.results.exploration import Gallery, GalleryScene
+    from verify.scenes.tasks import Drawn
+
+STEPS = 100  # of each scene, where nothing else is asked for
+_OWN = re.compile(r"worst-([0-9]+)\.toml")
+
+
+def hunt(
+    measure: str,
+    seed: int,
+    examples: int,
+    steps: int,
+    drawn: "Drawn",
+    output: Path,
+    keep: Path | None,
+    where: "Where",
+    as_json: bool,
+) -> None:
+    """Hunts, writes the worst scenes and the page that shows them, and tells what was found."""
+    from verify.claims.report import gallery_report
+    from verify.execution.execute import Store
+    from verify.exploration.gallery import gallery
+    from verify.exploration.hunting import Hunt, hunt
+    from verify.pages.page import write
+
+    asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
+    writable(output)
+    if keep is not None:
+        writable(keep, "--keep")
+    store, begun, tasks = Store(keep), time.perf_counter(), asked.plan.tasks
+    with told(tasks, keep) as done:
+        found = hunt(asked, store, where=where, done=done)
+    shown = gallery(asked, found, store, where=where)
+    _keep_scenes(shown, output)
+    report = gallery_report(shown, _command(asked), begun, store.taken, len(tasks), where)
+    page = write(report, output)
+    if as_json:
+        show.print_json({"examples": shown.examples, "failures": [], "seed": seed}
+                        | {"gallery": shown.model_dump(mode="json")})  # fmt: skip
+    else:
+        _print(shown, output, page)
+
+
+def _command(asked: "Hunt") -> str:
+    """What makes the same hunt again."""
+    own = [f"--maximise {asked.measure} --examples {asked.examples} --seed {asked.seed}"]
+    own += [f"--steps {asked.steps}"] if asked.steps != STEPS else []
+    own += [f"--scheme {shlex.quote(name)}" for name in asked.drawn.schemes]
+    own += [f"--kind {name}" for name in asked.drawn.kinds]
+    if asked.drawn.degree != type(asked.drawn)().degree:
+        own.append(f"--degree {asked.drawn.degree}")
+    return f"verify explore {' '.join(own)}"
+
+
+def _keep_scenes(shown: "Gallery", output: Path) -> None:
+    """Writes worst-1.toml and so on; those of an earlier hunt that had more do not stay."""
+    from verify.execution.keeping import write_atomically
+
+    for place, each in enumerate(shown.scenes, start=1):
+        write_atomically(output / f"worst-{place}.toml", each.scene)
+    for file in output.glob("worst-*.toml"):
+        own = _OWN.fullmatch(file.name)
+        if own and int(own[1]) > len(shown.scenes):
+            file.unlink()
+
+
+def _print(shown: "Gallery", output: Path, page: Path) -> None:
+    for place, each in enumerate(shown.scenes, start=1):
+        of = each.separation
+        click.echo(f"{place}. 10^{each.value:.2f}  H = {of.hamiltonian}")
+        start = f"h = {of.step_size}, q = {of.q}, p = {of.p}"
+        click.echo(f"   {of.scheme}, {start}: {_when(each)}; {output / f'worst-{place}.toml'}")
+    if not shown.scenes:
+        click.echo("no scene that was drawn can be measured so")
+    click.echo(f"{shown.examples:,} scenes of seed {shown.seed}, by {shown.sentence} → {page}")
+
+
+def _when(each: "GalleryScene") -> str:
+    of, after = each.separation, each.meaningless_after
+    longer = each.longer
+    beyond = f", and over {longer.steps:,} steps it is {longer.status}" if longer else ""
+    if of.plain is None:
+        return f"over {of.steps:,} steps it is {of.status}"
+    if all(at.total == at.truncation == "0" for at in of.plain.series):
+        return f"over {of.steps:,} steps no digit of a part of Λ is known but 0{beyond}"
+    if after is None:
+        return f"over {of.steps:,} steps truncation is the larger part of Λ{beyond}"
+    until = f" until {each.meaningful_from:,}" if each.meaningful_from else ""
+    return f"Λ of float64 is meaningless after {after:,} steps{until}{beyond}"

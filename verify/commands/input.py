@@ -1,0 +1,106 @@
+"""Options that commands share, and what they stand for."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.content import content
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.claims.file import ClaimsFile
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.scenes.scene import Scene
+
+SUITES = {"stiff": "Stiff scenes, judged", "extreme": "Extreme scenes, judged"}
+
+_SYSTEM_OPTIONS = (
+    click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
+    click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
+    click.option(
+        "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
+    ),
+    click.option(
+        "--scheme",
+        required=True,
+        help="lie1, lie2, …, stormer-verlet, rk4, gauss4, … or 'p_next = …; q_next = …'.",
+    ),
+    click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output."),
+)
+
+
+def with_system(command: Any) -> Any:
+    """The command with the options that name a system and a scheme, and --json."""
+    for option in reversed(_SYSTEM_OPTIONS):
+        command = option(command)
+    return command
+
+
+def hamiltonian_of(
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
+) -> "Hamiltonian":
+    """The Hamiltonian that the options name; InputError unless they name one."""
+    from verify.hamiltonians import systems
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+
+    if (system is None) == (hamiltonian is None):
+        raise InputError("--system, --hamiltonian", system or "", "give one of the two")
+    values: dict[str, str | None] = {}
+    for text in params:
+        name, given, value = text.partition("=")
+        if name in values:
+            raise InputError("--param", text, f"{name} is given twice")
+        values[name] = value if given else None
+    if system is not None:
+        return systems.get(system).hamiltonian(values)
+    return Hamiltonian.parse(hamiltonian or "", values)
+
+
+def paper_folder() -> Path:
+    """Where the paper's own scenes and claims are."""
+    return content("reports", "paper")
+
+
+def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
+    """Title, scenes and claims of `paper`, of a suite, or of a scene's file."""
+    from verify.scenes.scene import load_scene
+
+    if scene in SUITES:
+        return SUITES[scene], _suite(scene), None
+    if scene != "paper":
+        loaded = load_scene(Path(scene))
+        return loaded.title or loaded.name, [loaded], None
+    from verify.claims.file import load_claims
+
+    folder = paper_folder()
+    scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]
+    title = "A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, verified"
+    return title, scenes, load_claims(folder / "claims.toml")
+
+
+def _suite(name: str) -> "list[Scene]":
+    from verify.scenes.scene import load_scene
+
+    return [load_scene(path) for path in sorted(content("reports", "suites", name).glob("*.toml"))]
+
+
+def writable(folder: Path, option: str = "--output") -> None:
+    """Makes the folder, and sees that a file can be made in it; InputError where that cannot be."""
+    from tempfile import TemporaryFile
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        problem = error.strerror or "cannot be written to"
+        raise InputError(option, str(folder), problem) from None
+
+
+def writable_later(folder: Path) -> None:
+    """As `writable` for --output, and leaves no folder that was not there."""
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
+    writable(folder)
+    for path in made:
+        path.rmdir()

@@ -1,0 +1,154 @@
+"""The command `verify check-integrator`: a user's own step(p, q, h)."""
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import hamiltonian_of
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.integrators.results import Finding
+
+REFUTED = 1  # exit status
+_CLAIMED = click.IntRange(1, 12)
+
+
+@click.command("check-integrator")
+@click.argument("target", metavar="MODULE:FUNCTION")
+@click.option("--system", help="A named system, such as duffing; a wrong name lists them.")
+@click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'.")
+@click.option(
+    "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
+)
+@click.option(
+    "--arguments",
+    metavar="ORDER",
+    help="How it takes p, q and h, such as q,p,h; it returns p' and q' in that order too. Without "
+    "it the names of its arguments tell.",
+)
+@click.option("--q", "q", metavar="Q", help="An initial value to look at beside others.")
+@click.option("--p", "p", metavar="P")
+@click.option("--order", type=_CLAIMED, metavar="K", help="Claimed order of convergence.")
+@click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
+@click.option("--area-order", type=_CLAIMED, metavar="K", help="Claimed: ΔJ = O(h^K).")
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(0.01),
+    default=60.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="For all calls of the function.",
+)
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+def check_integrator(
+    target: str,
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    arguments: str | None,
+    q: str | None,
+    p: str | None,
+    order: int | None,
+    area_preserving: bool,
+    area_order: int | None,
+    time_limit: float,
+    as_json: bool,
+) -> None:
+    """Check a Python function step(p, q, h) → (p', q') of your own: its order and that of ΔJ.
+
+    THIS RUNS YOUR CODE, which no other command does: MODULE is imported, from the current folder
+    too, or file.py:FUNCTION is loaded, and the function is called.
+
+    Where its code allows it, the function is called with symbols, and all is proved; else it is
+    measured. Exit status 1 where the verdict is REFUTED, or what is claimed is not decided.
+
+    \b
+    verify check-integrator mine:step --system pendulum
+    verify check-integrator mine.py:step --hamiltonian 'p**2/2 + q**4/4' --order 2 --area-preserving
+    """
+    from verify.arithmetic.exact import rational
+    from verify.integrators.check import check_integrator as check
+    from verify.integrators.loading import load, made_step
+    from verify.integrators.results import Claims
+
+    begun = time.perf_counter()
+    exact = hamiltonian_of(system, hamiltonian, params)
+    if (p is None) != (q is None):
+        raise InputError("--p, --q", p or q or "", "give both or none")
+    start = None if p is None or q is None else (rational(p, "--p"), rational(q, "--q"))
+    if exact.symbols:
+        raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
+    step, notes = made_step(load(target), arguments, dict(exact.values), time_limit)
+    claims = Claims(order, area_order, area_preserving)
+    found = check(step, exact, claims, start).noting(*notes)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    if as_json:
+        show.print_json(_json(exact, target, found, seconds))
+    else:
+        _print(exact, target, found)
+    claimed = claims != Claims()
+    if found.verdict.value == "REFUTED" or (claimed and not found.verdict.holds):
+        raise SystemExit(REFUTED)
+
+
+def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> dict[str, Any]:
+    from verify.arithmetic.exact import text
+    from verify.integrators.potential import potential_of_finding
+
+    potential = potential_of_finding(found)
+    witness = found.proof.witness if found.proof else {}
+    example = found.counterexample
+    return {
+        "verdict": found.verdict.value,
+        "reason": found.reason,
+        **exact.written,
+        "integrator": target,
+        "how": found.how,
+        "order": found.order,
+        "leading": found.leading,
+        "delta_j": found.delta_j,
+        "area_preserving": found.area_preserving,
+        "convergence_order": found.convergence_order,
+        "convergence_order_known": found.order_known,
+        "witness": {name: text(value) for name, value in witness.items()},
+        "telescopes": potential.holds,
+        "potential": potential.text,
+        "delta_j_max": None if found.largest is None else f"{found.largest:.6e}",
+        "probe_error": None if found.probe_error is None else f"{found.probe_error:.1e}",
+        "counterexample": example and {
+            "p": text(example.p),
+            "q": text(example.q),
+            "h": text(example.h),
+            "quantity": example.quantity,
+            "found": example.found,
+            "expected": example.expected,
+        },
+        "faults": list(found.faults),
+        "notes": list(found.notes),
+        "seconds": seconds,
+    }  # fmt: skip
+
+
+def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
+    from verify.integrators.potential import potential_of_finding
+
+    if found.proof is not None and found.counterexample is None:
+        show.print_proof(exact, target, found.proof, potential_of_finding(found))
+    else:
+        click.echo(f"{found.verdict}: {found.reason}")
+        click.echo(f"  H        {exact.formula}")
+        for name, value in exact.written["parameters"].items():
+            click.echo(f"  {name:8} {value}")
+        click.echo(f"  scheme   {target}")
+        if found.leading is not None and found.order is not None:
+            click.echo(f"  ΔJ       ({show.cut(found.leading)})·h^{found.order} + …")
+        if found.probe_error is not None:
+            click.echo(f"  probe    error of a measured ΔJ: {found.probe_error:.1e}, estimated")
+    if found.counterexample is not None:
+        click.echo(f"  against  {found.counterexample}")
+    for note in found.notes:
+        click.echo(f"  note     {note}")

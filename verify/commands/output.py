@@ -1,0 +1,226 @@
+"""What the command line prints: JSON objects with decimal strings, and short texts for people."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.proof.order import Proof
+    from verify.proof.potential import Potential
+    from verify.scenes.results.core import (
+        CrossoverResult,
+        EvaluationResult,
+        RunResult,
+        SeparationGrid,
+        SeparationResult,
+    )
+    from verify.scenes.results.report import Report
+
+_LONGEST = 400  # characters of a formula on the terminal
+_LABELS = {
+    "lambda": "Λ",
+    "lambda_plain": "Λ, plain",
+    "mse": "MSE",
+    "delta_j_max": "max |ΔJ|",
+    "q": "q",
+    "p": "p",
+}
+_PARTS = {
+    "lambda_working": "Λ in float64",
+    "truncation": "truncation",
+    "total": "rounding",
+    "input": "  input",
+    "trajectory": "  trajectory",
+    "determinant": "  determinant",
+    "product": "  product",
+}
+
+
+def print_json(data: dict[str, Any]) -> None:
+    click.echo(json.dumps(data, ensure_ascii=False))
+
+
+def cut(formula: str) -> str:
+    """A formula as it is, or its beginning where it is long: the JSON has all of it."""
+    if len(formula) <= _LONGEST:
+        return formula
+    terms = formula.count(" + ") + formula.count(" - ") + 1
+    return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} … ({terms} terms; --json has them)"
+
+
+def proof_json(
+    exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential", seconds: str
+) -> dict[str, Any]:
+    from verify.arithmetic.exact import text
+
+    return {
+        "verdict": proof.verdict.value,
+        "reason": proof.reason,
+        **exact.written,
+        "scheme": scheme,
+        "order": proof.order,
+        "leading": proof.first.text,
+        "delta_j": proof.step_map.delta_j_text,
+        "area_preserving": proof.area_preserving,
+        "convergence_order": proof.convergence_order,
+        "witness": {name: text(value) for name, value in proof.witness.items()},
+        "telescopes": potential.holds,
+        "potential": potential.text,
+        "seconds": seconds,
+    }
+
+
+def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential") -> None:
+    from verify.algebra.formula import to_text
+    from verify.arithmetic.exact import text
+
+    click.echo(f"{proof.verdict}: {proof.reason}")
+    click.echo(f"  H        {to_text(exact.expression)}")
+    for name, value in exact.values:
+        click.echo(f"  {name:8} {text(value)}")
+    click.echo(f"  scheme   {scheme}")
+    if proof.order is not None:
+        click.echo(f"  ΔJ       ({cut(proof.first.text)})·h^{proof.order} + O(h^{proof.order + 1})")
+        at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
+        click.echo(f"  witness  {at or 'any point'}: the coefficient is {proof.enclosure}")
+    closed = proof.step_map.delta_j_text
+    shown = "left out: the closed form is too large" if closed is None else cut(closed)
+    click.echo(f"  exactly  ΔJ = {shown}")
+    if potential.text is not None and proof.order is not None:
+        click.echo(
+            f"  along an orbit the leading term telescopes: it is X·G, G = {cut(potential.text)}"
+        )
+    elif potential.holds is False:
+        click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")
+    order = proof.convergence_order
+    agreement = "to every order looked at" if order is None else f"up to h^{order}"
+    click.echo(f"  the map  agrees with the exact flow {agreement}")
+
+
+def run_json(result: "RunResult") -> dict[str, Any]:
+    values = {name: result.values.get(name) for name in _LABELS}
+    return {
+        **{name: value.value if value else None for name, value in values.items()},
+        "steps": result.steps,
+        "digits": result.digits,
+        "arithmetic": result.arithmetic,
+        "fallback": result.fallback,
+        "error_bound": {name: value.bound for name, value in values.items() if value},
+        "error_kind": result.error_kind,
+        "error_method": result.error_method,
+        "exact": list(result.exact),  # what a proof gave, and no run
+        "status": result.status,
+        "failed_step": result.failed_step,
+        "seconds": f"{result.seconds:.6f}",
+    }
+
+
+def print_run(result: "RunResult") -> None:
+    if result.status == "unresolved":
+        click.echo(f"no digit is known: {result.error_method}")
+        return
+    if result.status != "finished":
+        click.echo(
+            f"at step {result.failed_step} the orbit leaves the domain of H or the range of "
+            f"{result.arithmetic} (other than float64 stops beyond 2^4000)"
+        )
+        return
+    for name, label in _LABELS.items():
+        if name in result.values:
+            value = result.values[name]
+            click.echo(f"{label:10} {value.value}  ± {value.bound}")
+    click.echo(
+        f"{result.steps} steps in {result.arithmetic}, {result.seconds:.3g} s; bounds "
+        f"{result.error_kind} ({result.error_method})"
+    )
+    if result.fallback:
+        click.echo(f"taken instead of what was asked for: {result.fallback}")
+
+
+def separation_json(found: "SeparationGrid") -> dict[str, Any]:
+    """The first step size's parts, and those of all of them as `grid`."""
+    points = [_separated(point) for point in found.points]
+    ways = {"plain": found.plain, "closed_form": found.closed_form}
+    crossover = {name: way.model_dump(mode="json") for name, way in ways.items()}
+    seconds = f"{sum(point.seconds for point in found.points):.6f}"
+    return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
+
+
+def _separated(point: "SeparationResult") -> dict[str, Any]:
+    return {
+        **_evaluated(point.plain),
+        "closed_form": _evaluated(point.closed_form),
+        "step_size": point.step_size,
+        "steps": point.steps,
+        "digits": point.digits,
+        "working_arithmetic": "float64",
+        "arithmetic": point.arithmetic,
+        "error_method": point.error_method,
+        "status": point.status,
+        "failed_step": point.failed_step,
+        "reason": point.reason,
+        "seconds": f"{point.seconds:.6f}",
+    }
+
+
+def _evaluated(way: "EvaluationResult | None") -> dict[str, Any]:
+    values = {n: getattr(way.parts, n) if way else None for n in _PARTS}
+    shown = {n: value.value if value else None for n, value in values.items()}
+    return {
+        "lambda_working": shown.pop("lambda_working"),
+        "truncation": shown.pop("truncation"),
+        "rounding": shown,
+        "error_bound": {n: value.bound for n, value in values.items() if value},
+        "error_kind": way.error_kind if way else None,
+        "largest": way.largest if way else None,
+        "growth": {n: g.model_dump(mode="json") for n, g in way.growth.items()} if way else None,
+        "series": [point.model_dump(mode="json") for point in way.series] if way else [],
+    }
+
+
+def print_separation(found: "SeparationGrid") -> None:
+    for point in found.points:
+        click.echo(f"h = {point.step_size}, {point.steps} steps")
+        if point.status == "finished":
+            _print_parts(point)
+        else:
+            at = f" at step {point.failed_step}" if point.failed_step else ""
+            click.echo(f"  {point.status}{at}: {point.reason}")
+    if len(found.points) > 1:
+        for label, way in (("plain", found.plain), ("closed form", found.closed_form)):
+            click.echo(f"rounding overtakes truncation, {label}: {_crossed(way)}")
+
+
+def _print_parts(point: "SeparationResult") -> None:
+    ways = [way for way in (point.plain, point.closed_form) if way]
+    click.echo(f"  {'':16}{'plain':26}{'closed form' if len(ways) > 1 else ''}")
+    for name, label in _PARTS.items():
+        values = [getattr(way.parts, name) for way in ways]
+        click.echo(f"  {label:16}" + "".join(f"{value.value:26}" for value in values).rstrip())
+    for label, way in zip(("plain", "closed form"), ways, strict=False):
+        growth = way.growth["total"]
+        click.echo(f"  rounding with N, {label}: {growth.name} ({growth.reason})")
+    if len(ways) < 2:
+        click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
+    click.echo(f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
+               f"bounds {ways[0].error_kind} ({point.error_method})")  # fmt: skip
+
+
+def _crossed(way: "CrossoverResult") -> str:
+    if way.bracket is None:
+        return way.reason
+    return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
+
+
+def print_report(made: "Report", *pages: Path) -> None:
+    for line in made.preface:
+        click.echo(line)
+    for claim in made.claims:
+        click.echo(f"{claim.verdict:9}  {claim.source}: {claim.evidence}")
+    for scene in made.scenes:
+        for c in scene.criteria:
+            click.echo(f"{c.verdict:9}  {scene.name}, {c.scheme}, criterion {c.number}")
+    click.echo(f"{', '.join(map(str, pages))} ({made.provenance.seconds:.3g} s)")

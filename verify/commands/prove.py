@@ -1,0 +1,139 @@
+"""The command `verify prove`, for one Hamiltonian or for every one."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands import output_every as show_every
+from verify.commands.input import hamiltonian_of, with_system
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.proof.order import Proof
+    from verify.proof.potential import Potential
+    from verify.schemes.scheme import Scheme
+
+
+@click.command()
+@with_system
+@click.option(
+    "--every-hamiltonian",
+    is_flag=True,
+    help="For every smooth H, its derivatives as free variables, instead of one.",
+)
+@click.option(
+    "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
+)
+@click.option(
+    "--certificate",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write the identities there, for `verify certificate check`; where H has functions other "
+    "than sin, cos, exp and quotients, those of the proof for every H.",
+)
+def prove(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    as_json: bool,
+    every_hamiltonian: bool,
+    separable: bool,
+    certificate: Path | None,
+) -> None:
+    """Prove the order in h of ΔJ = det J − 1, and of the map itself.
+
+    A parameter without a value stays a symbol, and the proof holds for all its values.
+
+    \b
+    verify prove --system duffing --scheme lie2
+    verify prove --every-hamiltonian --scheme lie6
+    """
+    if not every_hamiltonian:
+        if separable:
+            raise InputError("--separable", "", "goes with --every-hamiltonian")
+        _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, as_json, certificate)
+        return
+    if system is not None or hamiltonian is not None or params:
+        raise InputError("--every-hamiltonian", "", "goes without --system, --hamiltonian, --param")
+    from verify.proof.every import prove_every
+
+    begun = time.perf_counter()
+    proof = prove_every(scheme, separable)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    if certificate is not None:
+        from verify.proof.certificates.every import of_every
+
+        _write(of_every(proof), certificate)
+    if as_json:
+        show.print_json(show_every.every_json(proof, seconds))
+    else:
+        show_every.print_every(proof)
+
+
+def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Path | None) -> None:
+    from verify.proof.order import prove as prove_order
+    from verify.proof.potential import potential_of
+    from verify.schemes import get
+
+    begun = time.perf_counter()
+    chosen = get(scheme)
+    proof = prove_order(chosen.step_map(exact), chosen)
+    potential = potential_of(proof, chosen)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    if certificate is not None:
+        _write(_certificate(proof, potential, chosen), certificate)
+    if as_json:
+        show.print_json(show.proof_json(exact, chosen.name, proof, potential, seconds))
+    else:
+        show.print_proof(exact, chosen.name, proof, potential)
+
+
+def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> dict[str, Any]:
+    """Of this proof; or, where the checker does not know H's functions, of that for every H."""
+    from verify.proof.certificates.every import of_every
+    from verify.proof.certificates.one import of_one
+    from verify.proof.every import prove_every
+
+    try:
+        return of_one(proof, potential)
+    except InputError as error:
+        if scheme.generic is None or proof.verdict != "PROVED":
+            raise
+        click.echo(f"the certificate is of the proof for every H: {error}", err=True)
+        return of_every(prove_every(scheme.name))
+
+
+# -- certificates ---------------------------------------------------------------------------------
+
+
+def _write(data: dict[str, Any], path: Path) -> None:
+    import json
+
+    from verify.execution.keeping import write_atomically
+
+    write_atomically(path, json.dumps(data, ensure_ascii=False, indent=1) + "\n")
+
+
+@click.group()
+def certificate() -> None:
+    """Certificates of proofs: `verify prove … --certificate FILE` writes one."""
+
+
+@certificate.command()
+@click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+def check(file: Path, as_json: bool) -> None:
+    """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
+    from verify.proof.certificates.file import checked
+
+    accepted, said = checked(file)
+    if as_json:
+        show.print_json({"accepted": accepted, "statement" if accepted else "reason": said})
+    else:
+        click.echo(f"{'holds' if accepted else 'refused'}: {said}")
+    raise SystemExit(0 if accepted else 1)

@@ -1,0 +1,175 @@
+"""The commands `verify reference make` and `check`: numbers for others to test against; `compare`
+is in `verify.commands.compare`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands.compare import compare
+from verify.commands.input import writable
+from verify.commands.tasks import json_option, told, with_tasks, with_where
+from verify.errors import InputError, without_controls
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.reference.check.check import Checked
+
+DIFFERENT = 1  # exit status
+_SHARE = 0.05
+_MOST_STEPS = 10**6  # a minute or two
+
+
+@click.group()
+def reference() -> None:
+    """Reference data: numbers whose every digit is known, to test an integrator against."""
+
+
+reference.add_command(compare)
+
+
+@reference.command()
+@click.argument("scenes", nargs=-1, metavar="[SCENE]...")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR")
+@click.option("--parquet", is_flag=True, help="The tables as Parquet, too; wants pyarrow.")
+@with_tasks
+def make(
+    scenes: tuple[str, ...],
+    output: Path | None,
+    parquet: bool,
+    keep: Path | None,
+    where: "Where",
+    as_json: bool,
+) -> None:
+    """Make the reference data that SCENE asks for, in DIR; without SCENE, the committed set.
+
+    SCENE is a TOML file with [[reference]] sections. The same scene gives the same bytes, however
+    many workers there are. With --keep an interrupted command goes on from what is finished.
+
+    \b
+    [[reference]]
+    step_sizes = [0.001, 0.01]
+    initial_values = [{ q = 1.5, p = 0 }]
+    steps = [0, 1, 10, 100, 1000]     # after which state, ΔJ, MSE and Λ are given
+    digits = 30
+    """
+    from verify.execution.execute import Store, execute
+    from verify.reference.make import make as making
+    from verify.reference.make.scene_plan import plan_references
+
+    if parquet:
+        from verify.reference.make.parquet import require
+
+        require()
+    asked = making.load([Path(x) for x in scenes] or making.committed_scenes())
+    folder = output or Path(f"{asked[0].scene.name}-reference" if scenes else "reference-data")
+    writable(folder)
+    making.alone(folder, asked, parquet=parquet)
+    if keep is not None:
+        writable(keep, "--keep")
+    plan = plan_references([x.scene for x in asked])
+    with told(plan.tasks, keep) as done:
+        results = execute(plan, Store(keep), where=where, done=done)
+    data = [making.data_of(x.scene, results) for x in asked]
+    files = making.files_of(data, parquet=parquet)
+    manifest = making.manifest_of(asked, files, making.command_of(scenes, parquet))
+    making.write(folder, files, manifest)
+    rows = sum(each.count for each in data)
+    size = sum(map(len, files.values()))
+    if as_json:
+        found: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}
+        show.print_json(found | {"files": [x.model_dump(mode="json") for x in manifest.files]})
+    else:
+        click.echo(f"{rows:,} rows in {len(files)} files, {size:,} bytes → {folder}")
+
+
+@reference.command()
+@click.argument("folder", required=False, type=click.Path(path_type=Path), metavar="[DIR]")
+@click.option("--share", default=_SHARE, metavar="X", help="Of the data, recomputed; 0.05.")
+@click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
+@click.option(
+    "--most-steps",
+    type=click.IntRange(1),
+    metavar="N",
+    help=f"Of all runs recomputed; the others are named. {_MOST_STEPS:,}; none with --all.",
+)
+@click.option("--seed", type=click.IntRange(0), help="Of the random sample; without it, any.")
+@with_where
+@json_option
+def check(
+    folder: Path | None,
+    share: float,
+    everything: bool,
+    most_steps: int | None,
+    seed: int | None,
+    where: "Where",
+    as_json: bool,
+) -> None:
+    """Check the reference data in DIR; without it, the committed set.
+
+    Hashes, sizes, schemas, each form against the other, how every number is printed, and a random
+    sample computed again in ball arithmetic from the textbook's formulas. Exit status 1 where
+    anything differs, with the first difference.
+    """
+    from random import SystemRandom
+
+    from verify.commands.progress import progress_bar
+    from verify.reference.check import check as checking
+    from verify.reference.make.make import PUBLISHED, SCENES
+
+    if not 0 <= share <= 1:
+        raise InputError("--share", share, "must be 0 … 1")
+    if everything and share != _SHARE:
+        raise InputError("--all", "", "goes without --share")
+    if most_steps is None and not everything:
+        most_steps = _MOST_STEPS
+    seed = SystemRandom().randrange(10**6) if seed is None else seed
+    with progress_bar("recomputed", 1000, unit="") as advance:
+        before = 0
+
+        def done(count: int, of: int) -> None:
+            nonlocal before
+            now = 1000 * count // of
+            advance(now - before)
+            before = now
+
+        found = checking.check(
+            folder or PUBLISHED,
+            share=1.0 if everything else share,
+            seed=seed,
+            own=SCENES if folder is None else None,
+            most_steps=most_steps,
+            where=where,
+            done=done,
+        )
+    if as_json:
+        show.print_json(_as_json(found))
+    else:
+        _print(found)
+    if found.differences:
+        raise SystemExit(DIFFERENT)
+
+
+def _as_json(found: "Checked") -> dict[str, Any]:
+    return {
+        "agrees": not found.differences,
+        "files": found.files,
+        "rows": found.rows,
+        "recomputed": found.recomputed,
+        "seed": found.seed,
+        "differences": [x.as_json() for x in found.differences],
+        "not_recomputed": found.not_recomputed,
+        "not_compared": found.not_compared,
+    }
+
+
+def _print(found: "Checked") -> None:
+    for line in (*found.not_recomputed, *found.not_compared):
+        click.echo(f"not looked at: {without_controls(line)}")
+    again = f"{found.recomputed:,} computed again (--seed {found.seed})"
+    if found.differences:
+        more = len(found.differences) - 1
+        click.echo(f"DIFFERS: {found.differences[0]}" + (f"; and {more:,} more" if more else ""))
+    else:
+        click.echo(f"agrees: {found.files} files, {found.rows:,} rows, of which {again}")

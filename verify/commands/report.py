@@ -1,0 +1,113 @@
+"""The command `verify report`: a page, and the same results as JSON beside it."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import target, writable
+from verify.commands.tasks import json_option, told, with_where
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.scenes.results.report import Report
+
+_INTEGRATORS = "integrators"
+
+
+@click.command()
+@click.argument("scene", metavar="SCENE")
+@click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
+@click.option(
+    "--format",
+    "formats",
+    type=click.Choice(["html", "md"]),
+    multiple=True,
+    default=["html"],
+    help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
+    "repository; given twice, both.",
+)
+@with_where
+@json_option
+def report(
+    scene: str, output: Path | None, formats: tuple[str, ...], where: "Where", as_json: bool
+) -> None:
+    """Verify SCENE and write DIR/index.html and DIR/results.json.
+
+    SCENE is a TOML file, `paper`, `stiff`, `extreme` or `integrators`.
+
+    What is finished is kept in DIR/kept; an interrupted report goes on from there.
+
+    `integrators` holds what other libraries claim of their integrators, order and symplecticity,
+    against what is found: scipy, heyoka, galpy, rebound and nodepy, where they are installed, and
+    coefficient tables of splitting methods as they are printed. It runs their code.
+    """
+    asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
+    folder, made = (_integrators if scene == _INTEGRATORS else _scene)(scene, output, asked, where)
+    written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
+    if as_json:
+        show.print_json(made.model_dump(mode="json"))
+    else:
+        show.print_report(made, *written)
+
+
+def _scene(scene: str, output: Path | None, asked: str, where: "Where") -> "tuple[Path, Report]":
+    from verify.claims.plan import add_claims
+    from verify.claims.report import make_report
+    from verify.execution.execute import Store
+    from verify.studies.plan import plan_scenes
+
+    title, scenes, file = target(scene)
+    claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
+    folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
+    writable(folder)
+    planned = plan_scenes(scenes)
+    add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
+    with told(planned.tasks, folder / "kept") as done:
+        made = make_report(
+            title,
+            scenes,
+            claims,
+            Store(folder / "kept"),
+            command=f"verify report {scene} -o {folder.name}{asked}",
+            claim_scenes=claim_scenes,
+            figures=file.figures if file else (),
+            plan=planned,
+            where=where,
+            done=done,
+        )
+    return folder, made
+
+
+def _integrators(
+    scene: str, output: Path | None, asked: str, where: "Where"
+) -> "tuple[Path, Report]":
+    """Other libraries run here, in this process: they are not sent to workers."""
+    from verify.integrators.others.report import make_integrators_report
+
+    if where.cluster is not None:
+        raise InputError("--cluster", where.cluster, "the integrators of others are run here")
+    folder = output or Path(f"{scene}-report")
+    writable(folder)
+    command = f"verify report {scene} -o {folder.name}{asked}"
+    return folder, make_integrators_report(command, _tell)
+
+
+def _tell(name: str) -> None:
+    """Progress, on a terminal only."""
+    if sys.stderr.isatty():
+        click.echo(f"{name} …", err=True)
+
+
+def _writer(name: str) -> Any:
+    """What writes a report in that format; only what is asked for is imported."""
+    if name == "md":
+        from verify.pages.text.markdown import write as write_markdown
+
+        return write_markdown
+    from verify.pages.page import write as write_page
+
+    return write_page

@@ -1,0 +1,118 @@
+"""The command `verify stability`: the runs of a scene, judged, and linear theory, exactly."""
+
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import target, writable
+from verify.commands.tasks import told, with_tasks
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.execution.executors import Where
+    from verify.scenes.scene import Scene
+    from verify.studies.stability.findings import StabilityFindings
+
+_PLAIN = ("stable", "drifts")  # verdicts that say all there is
+_WIDTH, _IN = 100, " " * 6
+
+
+@click.command()
+@click.argument("scene", required=False, metavar="[SCENE]")
+@click.option("--linear", is_flag=True, help="On the harmonic oscillator, by exact algebra.")
+@click.option("--scheme", help="With --linear: lie1, lie2, …, stormer-verlet, rk4, …")
+@with_tasks
+def stability(
+    scene: str | None,
+    linear: bool,
+    scheme: str | None,
+    keep: Path | None,
+    where: "Where",
+    as_json: bool,
+) -> None:
+    """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
+
+    stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow.
+    Nothing of the scene is done but its [[stability]], [[largest_step]] and [[stability_map]].
+
+    \b
+    verify stability stiff
+    verify stability --linear --scheme lie4
+    """
+    if linear:
+        if scene is not None:
+            raise InputError("SCENE", scene, "does not go with --linear")
+        if scheme is None:
+            raise InputError("--scheme", "", "is missing")
+        _linear(scheme, as_json)
+        return
+    if scene is None:
+        raise InputError("SCENE", "", "is missing; or give --linear --scheme NAME")
+    if scheme is not None:
+        raise InputError("--scheme", scheme, "goes with --linear; a scene names its own schemes")
+    _of_scenes(scene, target(scene)[1], keep, where, as_json)
+
+
+def _of_scenes(
+    given: str, scenes: "list[Scene]", keep: Path | None, where: "Where", as_json: bool
+) -> None:
+    from verify.execution.execute import Store, execute
+    from verify.studies.stability.findings import findings_of
+    from verify.studies.stability.plan import plan_stability
+
+    plan = plan_stability(scenes)
+    if not plan.tasks:
+        problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
+        raise InputError("SCENE", given, problem)
+    if keep is not None:
+        writable(keep, "--keep")
+    with told(plan.tasks, keep) as done:
+        results = execute(plan, Store(keep), where=where, done=done)
+    found = findings_of(scenes, results)
+    if as_json:
+        show.print_json(found.as_json())
+    else:
+        _print(found)
+
+
+def _print(found: "StabilityFindings") -> None:
+    width = max((len(case.verdict) for case in found.cases), default=0)
+    for case in found.cases:
+        click.echo(f"{case.verdict:{width}}  {case.id}")
+        if case.kind not in _PLAIN:
+            told = textwrap.fill(case.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
+            click.echo(told)
+    for step in found.largest_steps:
+        measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"
+        linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"
+        click.echo(f"{step.scheme}: {measured} until t = {step.time}; {linear}  {step.detail}")
+    for over in found.maps:
+        counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
+        click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
+
+
+def _linear(scheme: str, as_json: bool) -> None:
+    from verify.algebra.formula import to_text
+    from verify.studies.stability.linear import linear_stability
+
+    found = linear_stability(scheme)
+    if as_json:
+        show.print_json(
+            {
+                "scheme": found.scheme,
+                "interval": found.decimal(),
+                "interval_exact": found.exact,
+                "delta_j": to_text(found.delta_j),
+            }
+        )
+        return
+    shown = f"for 0 < hω < {found.decimal(12)}"
+    if found.interval.is_infinite or found.interval == 0:
+        shown = "for every hω > 0" if found.interval else "for no hω > 0"
+    click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
+    if found.interval.is_finite and not found.interval.is_rational:
+        click.echo(f"  exactly  {found.exact}")
+    click.echo(f"  ΔJ       {to_text(found.delta_j)}, y = hω")

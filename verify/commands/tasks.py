@@ -1,0 +1,70 @@
+"""What commands that do a plan's tasks share: options, the progress shown, what is kept."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from verify.execution.execute import Done
+    from verify.scenes.tasks import Task
+
+keep_option = click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep what is finished there; the same command goes on from it.",
+)
+workers_option = click.option(
+    "--workers", type=click.IntRange(1, 256), help="Processes; by the work there is."
+)
+cluster_option = click.option(
+    "--cluster",
+    metavar="ADDRESS",
+    help="Run them on the Dask cluster whose scheduler is there, tcp://HOST:PORT.",
+)
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="One JSON object on standard output."
+)
+
+
+def with_where(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with --workers and --cluster, which it gets as one `where`."""
+
+    @wraps(command)
+    def given(*args: Any, workers: int | None, cluster: str | None, **options: Any) -> Any:
+        from verify.execution.executors import Where
+
+        return command(*args, where=Where(workers, cluster), **options)
+
+    return workers_option(cluster_option(given))
+
+
+def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with --keep, --workers, --cluster and --json."""
+    return keep_option(with_where(json_option(command)))
+
+
+@contextmanager
+def told(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[Done]":
+    """Yields what is called with each finished task; an interruption says what is kept where."""
+    from verify.commands.progress import progress_bar
+    from verify.execution.execute import Store, cost
+
+    with progress_bar(f"{len(tasks)} tasks", sum(map(cost, tasks.values())), unit="") as advance:
+
+        def done(name: str, _: object) -> None:
+            advance(cost(tasks[name]))
+
+        try:
+            yield done
+        except KeyboardInterrupt:
+            if kept is not None:
+                paths = map(Store(kept).path, tasks)  # one may be written and not yet told
+                finished = sum(path is not None and path.exists() for path in paths)
+                text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {kept}"
+                click.echo(f"{text}; the same command goes on from there", err=True)
+            raise

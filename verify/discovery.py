@@ -1,0 +1,50 @@
+"""Kinds that are found by themselves: one file each, known by its name before it is imported."""
+
+import pkgutil
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib import import_module
+from pathlib import PurePath
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """The files of a package and of the folders in it, whatever these are called.
+
+    `package` is its dotted name, `path` its `__path__`. No two files have the same name. A file is
+    called by its name with dashes: `double_well.py` is `double-well`.
+    """
+
+    package: str
+    path: Iterable[str] = field(compare=False)
+
+    @cached_property
+    def _modules(self) -> dict[str, str]:
+        return dict(sorted(_files(self.package, self.path)))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names, in alphabetical order of their files; nothing is imported."""
+        return tuple(self._modules)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._modules
+
+    def module(self, name: str) -> Any:
+        """The module of that name, imported. Raises KeyError where there is none."""
+        return import_module(self._modules[name])
+
+    def folder(self, name: str) -> str:
+        """The name of the folder that its file lies in."""
+        return self._modules[name].split(".")[-2]
+
+
+def _files(package: str, path: Iterable[str]) -> Iterator[tuple[str, str]]:
+    for module in pkgutil.iter_modules(path):
+        dotted = f"{package}.{module.name}"
+        if module.ispkg:
+            yield from _files(dotted, [str(PurePath(p, module.name)) for p in path])
+        else:
+            yield module.name.replace("_", "-"), dotted

@@ -1,0 +1,141 @@
+"""What is kept on disk, so that an interruption loses little: atomically, one file a thing."""
+
+import contextlib
+import hashlib
+import json
+import os
+import platform
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from verify.content import shipped_files
+
+_VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
+_DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
+_SECONDS = 5.0  # between two checkpoints of a run
+
+
+def write_atomically(path: Path, content: str | bytes) -> None:
+    """The whole content or the old one, never a part: written beside it, then renamed."""
+    raw = content.encode() if isinstance(content, str) else content
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(raw)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException as error:
+        Path(temporary).unlink(missing_ok=True)
+        if isinstance(error, OSError):  # a full disk names no file
+            error.filename = str(path)
+        raise
+
+
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    python = ".".join(map(str, sys.version_info[:3]))
+    return {"Python": python} | {name: version(name) for name in _VERSIONED}
+
+
+def machine() -> str:
+    """What this process runs on, as a report tells it."""
+    return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+
+
+@cache
+def fingerprint() -> str:
+    """A name for this package, its content and its libraries: no result of others is taken up."""
+    drawing = {name: version(name) for name in _DRAWING}
+    return digest_of(shipped_files(), json.dumps(versions() | drawing))
+
+
+def digest_of(files: Mapping[str, Path], others: str = "") -> str:
+    """A name for what these files hold, each under its name, and for `others`."""
+    digest = hashlib.sha256(others.encode())
+    for name, path in sorted(files.items()):
+        raw = path.read_bytes()
+        digest.update(f"\n{name} {len(raw)}\n".encode() + raw)
+    return digest.hexdigest()[:12]
+
+
+def name_of(asked: object) -> str:
+    """A file's name for what is asked."""
+    return hashlib.sha256(repr(asked).encode()).hexdigest()[:24]
+
+
+def fraction_text(x: Fraction) -> str:
+    """An exact text of any length."""
+    return f"{x.numerator:x}/{x.denominator:x}"  # decimal texts end at 4300 digits
+
+
+def fraction_of(x: str) -> Fraction:
+    """What `fraction_text` has written."""
+    numerator, denominator = (int(part, 16) for part in x.split("/"))
+    return Fraction(numerator, denominator)
+
+
+def _digest(content: str) -> str:
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+class Keeper:
+    """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
+
+    A checkpoint is written every few seconds and where the run is interrupted, and is of use to the
+    same task and the same code only.
+    """
+
+    def __init__(self, folder: Path | None, name: str) -> None:
+        self._folder, self._name = folder, name
+        self._written: dict[str, float] = {}
+
+    def _path(self, label: str) -> Path | None:
+        if self._folder is None:
+            return None
+        short = hashlib.sha256(label.encode()).hexdigest()[:12]
+        return self._folder / f"{self._name}-{fingerprint()}-{short}.checkpoint"
+
+    def load(self, label: str) -> dict[str, Any] | None:
+        """What was kept under the label; None where that is nothing, or damaged."""
+        path = self._path(label)
+        if path is None:
+            return None
+        try:
+            digest, _, content = path.read_text().partition("\n")
+            found = json.loads(content)
+        except (OSError, ValueError):
+            return None
+        intact = digest == _digest(content)
+        return found["data"] if intact and found["label"] == label else None
+
+    def due(self, label: str) -> bool:
+        """Whether some seconds have passed since the last checkpoint under the label."""
+        last = self._written.setdefault(label, time.monotonic())
+        return self._folder is not None and time.monotonic() - last >= _SECONDS
+
+    def save(self, label: str, data: dict[str, Any]) -> None:
+        path = self._path(label)
+        if path is not None:
+            content = json.dumps({"label": label, "data": data})
+            write_atomically(path, f"{_digest(content)}\n{content}")
+            self._written[label] = time.monotonic()
+
+    def clear(self) -> None:
+        """Forgets all checkpoints of the task, which is done."""
+        if self._folder is not None:
+            for path in self._folder.glob(f"{self._name}-*.checkpoint"):
+                with contextlib.suppress(OSError):
+                    path.unlink()
+
+
+NOTHING = Keeper(None, "")

@@ -1,0 +1,138 @@
+"""Processes on this machine, as a place where calls are performed."""
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import cached_property
+from multiprocessing import forkserver, resource_tracker
+from typing import Any
+
+_SAFE_PATH = "PYTHONSAFEPATH"  # Python's own variable, read as it starts
+
+
+class Processes:
+    """See `verify.execution.executors.Place`. Each process is a pool of one, which has one call at a time.
+
+    A pool of several is broken as a whole when one of its workers is killed, and does not tell
+    which call that was; of a pool of one nothing else is lost, and there is nothing to guess.
+    """
+
+    local, attempts, blames = True, 3, True
+
+    def __init__(self, workers: int) -> None:
+        self.room = workers
+        self._idle: list[ProcessPoolExecutor] = []
+        self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        context = self._context  # made before both are held, which workers would inherit
+        # What is half begun could not be ended.
+        with safe_path(), _held(signal.SIGINT, signal.SIGTERM):
+            pool = self._idle.pop() if self._idle else _process(context)
+            try:
+                future = pool.submit(function, *arguments)
+            except BrokenExecutor:  # lost while it was idle
+                pool = _process(context)
+                future = pool.submit(function, *arguments)
+            self._busy[future] = pool
+        return future
+
+    @cached_property
+    def _context(self) -> Any:
+        return _forked_beside_this()
+
+    def release(self, future: "Future[Any]") -> None:
+        pool = self._busy.pop(future)
+        if isinstance(future.exception(), BrokenExecutor):
+            pool.shutdown(wait=False)
+        else:
+            self._idle.append(pool)
+
+    def lost(self, error: BaseException) -> bool:
+        return isinstance(error, BrokenExecutor)
+
+    def look(self) -> None: ...
+
+    def end(self) -> None:
+        """Ends the processes at once, whatever they are at."""
+        for pool in (*self._idle, *self._busy.values()):
+            # The executor has no public way to end a task that is running.
+            for process in (pool._processes or {}).values():
+                process.terminate()
+            pool.shutdown(wait=False, cancel_futures=True)
+
+    def close(self) -> None:
+        """Ends the processes, which are idle, together."""
+        if self._idle:
+            with ThreadPoolExecutor(len(self._idle)) as threads:
+                list(threads.map(ProcessPoolExecutor.shutdown, self._idle))
+
+
+def _process(context: Any) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
+
+
+def _forked_beside_this() -> Any:
+    """How a process comes to be: forked, but not from this one.
+
+    This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported
+    once what every worker needs, and ends with this one. Where there is none, each is spawned.
+    """
+    methods = multiprocessing.get_all_start_methods()
+    if sys.platform == "darwin" or "forkserver" not in methods:  # macOS's libraries start threads
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["verify.execution.perform"])
+    with safe_path(), _held(signal.SIGINT):  # which it and the workers then never get
+        forkserver.ensure_running()
+    return context
+
+
+@contextmanager
+def safe_path() -> Iterator[None]:
+    """Processes that are started meanwhile import nothing from the current folder.
+
+    Python puts it first on the path of `python -c`, which is how `multiprocessing` starts the fork
+    server, the resource tracker and spawned workers: a `random.py` that lies there would be run.
+    Once a worker is there, its path is this process's own.
+    """
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(_SAFE_PATH, None)
+        else:
+            os.environ[_SAFE_PATH] = before
+
+
+@contextmanager
+def _held(*signals: signal.Signals) -> Iterator[None]:
+    """Those signals come afterwards; a process that is begun meanwhile does not get them."""
+    resource_tracker.ensure_running()  # begun later, it would let them through
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin() -> None:
+    # Ctrl-C reaches the whole process group; the parent alone answers it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})  # held where it was spawned
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """A parent that is killed can end no worker, and none would see that no more calls come."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

@@ -1,0 +1,79 @@
+"""Steps of a map in ball arithmetic, term by term from the ring's own elements.
+
+No kernel is written for them: an oracle for the number systems that shares no code with those, and
+rigorous. ΔJ is taken from the four entries of J, not from its closed form.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import flint
+
+from verify.algebra.enclosure import enclose_all
+from verify.arithmetic.balls import Ball, rational_ball, shown
+from verify.arithmetic.flint_precision import working_precision
+from verify.schemes.step_map import StepMap
+
+BITS = 320
+_SHARP = 120  # bits that a ball must know to be worth comparing
+
+
+@dataclass(frozen=True)
+class BallState:
+    """After so many steps: p, q, and Π det J_k over the steps done."""
+
+    p: Ball
+    q: Ball
+    product: Ball
+
+    @property
+    def sharp(self) -> bool:
+        """Whether all three are known well enough to tell numbers apart."""
+        return all(map(sharp, (self.p, self.q, self.product)))
+
+
+def ball_steps(
+    step_map: StepMap, p: Fraction, q: Fraction, h: Fraction, steps: int, bits: int = BITS
+) -> Sequence[BallState] | None:
+    """The states after 0, 1, … steps; None where the map solves equations, or is not defined.
+
+    h may be negative. Raises nothing: a pole on the way gives None.
+    """
+    if step_map.solved:
+        return None
+    with working_precision(bits):
+        states = [BallState(rational_ball(p), rational_ball(q), flint.arb(1))]
+        size = rational_ball(h)
+        for _ in range(steps):
+            after = stepped(step_map, states[-1], size)
+            if after is None:
+                return None
+            states.append(after)
+    return states
+
+
+def stepped(step_map: StepMap, state: BallState, h: Ball) -> BallState | None:
+    """One step from a state, in flint's present precision; None where it is not defined."""
+    p, q, product = state.p, state.q, state.product
+    for step in step_map.substeps:
+        wanted = step.p_next, step.q_next, *step.jacobian
+        found = enclose_all(step.ring, wanted, {"p": p, "q": q, "h": h})
+        if found is None or not all(x.is_finite() for x in found):
+            return None
+        p, q, a, b, c, d = found
+        product = product * (a * d - b * c)
+    return BallState(p, q, product)
+
+
+def unlike(found: Ball, wanted: Ball) -> str:
+    """`found` and what it should be, with their difference, which 12 digits may not show."""
+    with working_precision(BITS):
+        difference = found - wanted
+    given = f"{shown(found, 12)}, and should be {shown(wanted, 12)}"
+    return f"{given} (too large by {shown(difference, 3)})"
+
+
+def sharp(x: Ball) -> bool:
+    """Whether a ball is narrow: relative to numbers beyond 1, and absolute below."""
+    return bool(x.is_finite()) and x.rad() * 2**_SHARP < 1 + x.abs_lower()

@@ -1,0 +1,242 @@
+"""Properties, or a user's claims, held against many drawn scenes.
+
+The work is cut into tasks of a stretch of scenes each. What is found does not depend on how it is
+cut, as scene k is made of the seed and k alone (see `verify.exploration.scenes`). Of every property that
+fails the first scene by number is shrunk.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from verify.claims.scenes import slug
+from verify.errors import InputError
+from verify.execution.execute import Done, Store, execute
+from verify.execution.executors import ANYWHERE, Where
+from verify.execution.keeping import name_of, write_atomically
+from verify.exploration import properties
+from verify.exploration.claims import claim_property
+from verify.exploration.property import Property, Violation
+from verify.exploration.sample import Example
+from verify.exploration.scenes import drawn_scene, scenes_of, simplest
+from verify.scenes.plan import Plan
+from verify.scenes.results.exploration import (
+    ExploreReport,
+    ExploreResult,
+    Failure,
+    FoundAgain,
+    PropertySummary,
+    ShrunkResult,
+)
+from verify.scenes.scene import Scene, load_scene
+from verify.scenes.tasks import Drawn, ExploreTask, ShrinkTask
+from verify.scenes.toml_text import scene_text
+
+MOST_EXAMPLES = 10**12
+_STRETCH, _MOST_TASKS = 50, 20_000  # scenes of a task, and tasks
+
+
+@dataclass(frozen=True)
+class Exploration:
+    """What is asked for: so many scenes of a seed, held against properties and claims.
+
+    `claims`: each as JSON, by `verify.exploration.claims`. Raises InputError for an unknown property,
+    none at all, two of one name, fewer than one example, and what scenes cannot be drawn of.
+    """
+
+    seed: int
+    examples: int
+    properties: tuple[str, ...]
+    claims: tuple[str, ...] = ()
+    drawn: Drawn = field(default_factory=Drawn)
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.examples <= MOST_EXAMPLES:
+            raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
+        if self.seed < 0:
+            raise InputError("seed", self.seed, "must be 0 or more")
+        names = [each.name for each in self.looks]
+        if not names:
+            raise InputError("properties", "", "give one at least")
+        for name, count in Counter(names).items():
+            if count > 1:
+                raise InputError("properties", name, f"{count} of them have this name")
+        scenes_of(self.drawn)
+
+    @property
+    def looks(self) -> tuple[Property, ...]:
+        return _looks(self.properties, self.claims)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The tasks, each of a stretch of scenes."""
+        plan = Plan()
+        size = max(_STRETCH, -(-self.examples // _MOST_TASKS))
+        for first in range(0, self.examples, size):
+            count = min(size, self.examples - first)
+            task = ExploreTask(
+                drawn=self.drawn,
+                seed=self.seed,
+                properties=self.properties,
+                claims=self.claims,
+                first=first,
+                count=count,
+            )
+            plan.need(task, "a stretch of drawn scenes")
+        return plan
+
+    def shrinking(self, failures: Sequence[Failure]) -> Plan:
+        """The tasks that shrink these failures."""
+        plan = Plan()
+        for failure in failures:
+            claims = tuple(c for c in self.claims if claim_property(c).name == failure.property)
+            task = ShrinkTask(
+                drawn=self.drawn,
+                seed=self.seed,
+                properties=() if claims else (failure.property,),
+                claims=claims,
+                example=failure.example,
+            )
+            plan.need(task, "it failed")
+        return plan
+
+
+def _looks(names: Sequence[str], claims: Sequence[str]) -> tuple[Property, ...]:
+    return (*map(properties.get, names), *map(claim_property, claims))
+
+
+# -- tasks ----------------------------------------------------------------------------------------
+
+
+def look(task: ExploreTask) -> ExploreResult:
+    """Holds each of the task's properties against each of its scenes."""
+    looked_at, failed = Counter[str](), Counter[str]()
+    first: dict[str, Failure] = {}
+    asked = _looks(task.properties, task.claims)
+    for number in range(task.first, task.first + task.count):
+        example = Example.of(drawn_scene(task.drawn, task.seed, number))
+        for each in asked:
+            spoke, wrong = outcome(each, example)
+            looked_at[each.name] += spoke
+            if wrong:
+                failed[each.name] += 1
+                found = Failure(property=each.name, example=number, message=wrong)
+                first.setdefault(each.name, found)
+    names = [each.name for each in asked]
+    return ExploreResult(
+        looked_at={name: looked_at[name] for name in names},
+        failed={name: failed[name] for name in names},
+        first=tuple(first.values()),
+    )
+
+
+def outcome(asked: Property, example: Example) -> tuple[bool, str]:
+    """Whether the property speaks of the example, and what is wrong; empty where nothing is."""
+    try:
+        return asked.holds(example), ""
+    except Violation as violation:
+        return True, str(violation)
+    except Exception as error:  # whatever the code under test may raise is a finding
+        return True, f"raised {type(error).__name__}: {' '.join(str(error).split())}"
+
+
+def shrink(task: ShrinkTask) -> ShrunkResult:
+    """The simplest scene for which the task's one property fails."""
+    (asked,) = _looks(task.properties, task.claims)
+    scene, message = simplest(
+        task.drawn, task.seed, task.example, lambda scene: outcome(asked, Example.of(scene))[1]
+    )
+    # Another scheme may have been drawn than the one that a claim speaks of.
+    named = scene.model_copy(
+        update={"name": slug(asked.name), "schemes": (asked.scheme or scene.schemes[0],)}
+    )
+    origin = f"example {task.example} of seed {task.seed}, shrunk"
+    comment = f"{asked.name}: {asked.sentence}\n{message}\n{origin}"
+    return ShrunkResult(
+        property=asked.name,
+        example=task.example,
+        message=message,
+        scene=scene_text(named, comment=comment),
+    )
+
+
+# -- the whole ------------------------------------------------------------------------------------
+
+
+def explore(
+    asked: Exploration,
+    store: Store,
+    *,
+    where: Where = ANYWHERE,
+    done: Done | None = None,
+    earlier: Sequence[tuple[str, Scene]] = (),
+) -> ExploreReport:
+    """Looks at all examples, and shrinks the first failure of each property.
+
+    `earlier`: scenes found before, each with the name of the property that failed.
+    """
+    again = tuple(_again(asked, earlier))
+    plan = asked.plan
+    results = execute(plan, store, where=where, done=done)
+    found = [r for r in map(results.get, plan.tasks) if isinstance(r, ExploreResult)]
+    first: dict[str, Failure] = {}
+    for result in found:
+        for failure in result.first:
+            first.setdefault(failure.property, failure)
+    shrinking = asked.shrinking(list(first.values()))
+    shrunk = execute(shrinking, store, where=where)
+    return ExploreReport(
+        seed=asked.seed,
+        examples=asked.examples,
+        properties=tuple(
+            PropertySummary(
+                name=each.name,
+                sentence=each.sentence,
+                looked_at=sum(r.looked_at[each.name] for r in found),
+                failures=sum(r.failed[each.name] for r in found),
+            )
+            for each in asked.looks
+        ),
+        failures=tuple(r for r in map(shrunk.get, shrinking.tasks) if isinstance(r, ShrunkResult)),
+        again=again,
+    )
+
+
+def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator[FoundAgain]:
+    for name, scene in earlier:
+        for each in asked.looks:
+            if slug(each.name) == name:
+                wrong = outcome(each, Example.of(scene))[1]
+                yield FoundAgain(file=f"{scene.name}.toml", property=each.name, message=wrong)
+
+
+# -- the scenes that were found -------------------------------------------------------------------
+
+
+_FOUND = re.compile(r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml")  # what is written, and no other file
+
+
+def keep_found(report: ExploreReport, folder: Path) -> list[Path]:
+    """Writes each shrunk scene into the folder, under its property's name."""
+    written = []
+    for failure in report.failures:
+        path = folder / f"{slug(failure.property)}.{name_of(failure.scene)[:8]}.toml"
+        write_atomically(path, failure.scene)
+        written.append(path)
+    return written
+
+
+def found_earlier(folder: Path) -> list[tuple[str, Scene]]:
+    """The scenes that earlier explorations wrote there, each with its property's name as the file
+    has it. InputError for one that was changed into what is no scene, or has no [grid]."""
+    found = []
+    for path in sorted(folder.glob("*.toml")):
+        if own := _FOUND.fullmatch(path.name):
+            scene = load_scene(path)
+            if scene.grid is None:
+                raise InputError("scene", str(path), "has no [grid], which gives step and start")
+            found.append((own[1], scene.model_copy(update={"name": path.stem})))
+    return found

@@ -1,0 +1,118 @@
+"""How bad a scene is for float64, or for its scheme: what worst-case hunting makes as large as can.
+
+Each is a decimal logarithm, None where the scene has none: its orbit leaves a bounded part of the
+plane, or what is divided, or what it is divided by, is 0 or of no known digit.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.exact import magnitude
+from verify.exploration.sample import Example
+from verify.kernels.stepping import Job, Outcome
+from verify.studies.separation.chain import Separation
+from verify.studies.separation.working import Stopped
+
+DIGITS = 40  # of what stands for exact arithmetic
+_SHARE = 10  # of them, a digit of Λ's parts: these need more by themselves
+_POINTS = 100  # of an orbit that is drawn
+_FAR = 10  # a run that goes farther from the origin is of no ordinary scene
+_ROUNDOFF = Fraction(1, 2**53)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """`value(example, digits)`: lg of it, or None; `sentence`: what it is."""
+
+    name: str
+    sentence: str
+    value: Callable[[Example, int], float | None]
+
+
+def rounding_share(example: Example, digits: int = DIGITS) -> float | None:
+    """lg of the greatest rounding part over the greatest truncation part, at checkpoints of a run.
+
+    The greatest ones, as Λ itself may pass through 0, where any error is infinitely large.
+    """
+    if _stays(example, digits) is None:
+        return None
+    try:
+        chain = Separation(*example.given).chains(max(1, digits // _SHARE)).plain
+    except Stopped:
+        return None
+    truncation, rounding = (_greatest(*chain.trail(n)) for n in ("truncation", "total"))
+    return None if not truncation or not rounding else _lg(rounding / truncation)
+
+
+def _greatest(trail: Sequence[Fraction], bound: Fraction) -> Fraction:
+    """The greatest |value|; 0 where no digit of it is known, since noise is not what is hunted."""
+    top = max(map(abs, trail))
+    return top if top > 10 * bound else Fraction(0)
+
+
+def digits_lost(example: Example, digits: int = DIGITS) -> float | None:
+    """lg of the error of float64's p and q after the run, in units of its roundoff.
+
+    Relative to the farthest that the orbit is from (0, 0): where it comes near to that, no digit is
+    lost that anything hangs on.
+    """
+    exact = _stays(example, digits)
+    if exact is None:
+        return None
+    found = _job(example, frozenset()).go(number_systems.get("float64", 17))
+    if found.done < example.steps:
+        return None
+    points = ({"p": example.p, "q": example.q}, *exact.trail)
+    size = max(abs(x[n]) for x in points for n in "pq")
+    error = max(abs(found.values[n] - exact.values[n]) for n in "pq")
+    return None if not size or not error else _lg(error / (size * _ROUNDOFF))
+
+
+def growth(example: Example, digits: int = DIGITS) -> float | None:
+    """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it."""
+    found = _stays(example, digits)
+    if found is None or not found.values["lambda_max"]:
+        return None
+    return _lg(found.values["lambda_max"])
+
+
+def orbit(example: Example) -> list[tuple[Fraction, Fraction]]:
+    """Points (q, p) of the run with 40 digits, from the initial value on."""
+    job = Job(*example.given, frozenset(), 0, sections=_POINTS)
+    trail = job.go(number_systems.get("mpfr", DIGITS)).trail
+    return [(example.q, example.p), *((x["q"], x["p"]) for x in trail)]
+
+
+def _stays(example: Example, digits: int) -> Outcome | None:
+    """The run with so many digits; None where it goes far."""
+    found = _job(example, frozenset({"lambda_max"})).go(number_systems.get("mpfr", digits))
+    if found.done < example.steps:
+        return None
+    near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
+    return found if near else None
+
+
+def _job(example: Example, observables: frozenset[str]) -> Job:
+    return Job(*example.given, observables, 0)
+
+
+def _lg(x: Fraction) -> float:
+    e = magnitude(x)
+    return e + math.log10(x / Fraction(10) ** e)
+
+
+MEASURES = {
+    measure.name: measure
+    for measure in (
+        Measure(
+            "rounding-share",
+            "greatest rounding part of Λ over its greatest truncation part",
+            rounding_share,
+        ),
+        Measure("digits-lost", "error of float64's p and q at the end, in roundoffs", digits_lost),
+        Measure("growth", "greatest |Λ| of the run", growth),
+    )
+}

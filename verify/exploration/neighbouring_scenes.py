@@ -1,0 +1,82 @@
+"""Scenes that differ from one in a single number, a little: where a local search looks next."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.formula import to_text
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.scene import Scene, scene_from
+
+_FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(5, 4), Fraction(2))
+_MOVES = tuple(sign * Fraction(1, 10**k) for k in (1, 2) for sign in (1, -1))
+_PLACES = 3  # decimals of a coefficient or a step size
+
+
+def neighbours(
+    scene: Scene,
+    *,
+    reach: Fraction,
+    steps: tuple[Fraction, Fraction],
+    coefficients: tuple[Fraction, Fraction],
+) -> Iterator[Scene]:
+    """Each once: with another initial value in reach, step size within `steps`, or |coefficient| of
+    H within `coefficients`; without that last bound a search would only make H ever larger."""
+    assert scene.grid is not None  # noqa: S101 - the caller's scenes are drawn
+    start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
+    seen = {(scene.hamiltonian, start.q, start.p, h)}
+
+    def made(formula: str, q: Fraction, p: Fraction, size: Fraction) -> Iterator[Scene]:
+        if (formula, q, p, size) in seen:
+            return
+        seen.add((formula, q, p, size))
+        try:
+            yield _made(scene, formula, q, p, size)
+        except InputError:  # such as an H that is not defined there
+            return
+
+    formula = scene.hamiltonian or ""
+    for factor in _FACTORS:
+        size = min(max(_rounded(h * factor), steps[0]), steps[1])
+        yield from made(formula, start.q, start.p, size)
+    for move in _MOVES:
+        for q, p in ((start.q + move, start.p), (start.q, start.p + move)):
+            if max(abs(q), abs(p)) <= reach:
+                yield from made(formula, q, p, h)
+    for other in _formulas(scene.exact_hamiltonian(), coefficients):
+        yield from made(other, start.q, start.p, h)
+
+
+def _made(scene: Scene, formula: str, q: Fraction, p: Fraction, h: Fraction) -> Scene:
+    assert scene.grid is not None  # noqa: S101 - as above
+    grid = {
+        "steps": scene.grid.steps,
+        "step_sizes": [text(h)],
+        "initial_values": [{"q": text(q), "p": text(p)}],
+    }
+    return scene_from({"hamiltonian": formula, "schemes": scene.schemes, "grid": grid}, "neighbour")
+
+
+def _formulas(hamiltonian: Hamiltonian, within: tuple[Fraction, Fraction]) -> Iterator[str]:
+    """H with one coefficient of its sum changed."""
+    least, most = within
+    terms = sympy.Add.make_args(hamiltonian.exact)
+    for k, term in enumerate(terms):
+        content, primitive = term.as_content_primitive()  # 1/(2*p**2 + 2) has a factor of ½
+        sign, rest = primitive.as_coeff_Mul()
+        coefficient = content * sign
+        if not coefficient.is_Rational or rest.is_number:
+            continue
+        for factor in (*_FACTORS, Fraction(-1)):
+            value = _rounded(Fraction(int(coefficient.p), int(coefficient.q)) * factor)
+            if least <= abs(value) <= most:
+                changed = sympy.Rational(value.numerator, value.denominator) * rest
+                yield to_text(sympy.Add(*terms[:k], changed, *terms[k + 1 :]))
+
+
+def _rounded(x: Fraction) -> Fraction:
+    """To so few decimals that the scene stays readable."""
+    return round(x, _PLACES)

@@ -1,0 +1,28 @@
+"""What holds of every scene: the properties that `verify explore` looks at, one file each.
+
+A file's first line of text is the property's sentence; `holds(sample)` looks at one sample (see
+`verify.exploration.property`). Adding a property is adding one file.
+"""
+
+from functools import cache
+
+from verify.discovery import Catalogue
+from verify.errors import InputError
+from verify.exploration.property import Property
+
+_FILES = Catalogue(__name__, __path__)
+
+
+def names() -> tuple[str, ...]:
+    """The names of all properties."""
+    return _FILES.names
+
+
+@cache
+def get(name: str) -> Property:
+    """The property of that name; InputError where there is none."""
+    if name not in _FILES:
+        raise InputError("property", name, f"unknown; allowed: {', '.join(names())}")
+    module = _FILES.module(name)
+    sentence = (module.__doc__ or "").strip().splitlines()[0]
+    return Property(name, sentence, module.holds)

@@ -1,0 +1,99 @@
+"""Every number system's values lie within their bounds of what balls enclose, or reach there.
+
+One number system an example, by its numbers, so that all of them get their turn. Where the step
+solves equations, which balls do not do here, float64 is held against 40 digits.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import reduce
+from itertools import pairwise
+
+import flint
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.balls import Ball, around, rational_ball, shown
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import BITS, BallState, ball_steps
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.runs.run import run
+from verify.scenes.results.core import RunResult, Value
+
+_IN, _AFTER = 2, 1  # one in so many examples, and not those that are taken apart
+_DIGITS = 30
+_COMPILED = 997  # of so many examples one is run in fixed point
+_OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
+
+
+def holds(example: Example) -> bool:
+    if not example.is_turn(_IN, _AFTER) or not example.short:
+        return False
+    name = _turn(example)
+    wanted = _enclosed(example)
+    if wanted is None:
+        return False
+    found = _run(example, name, 17 if name == "float64" else _DIGITS)
+    if found is None:
+        return False
+    for quantity, value in found.values.items():
+        ours = _ball(value)
+        if not ours.overlaps(wanted[quantity]):
+            within = f"{value.value} ± {value.bound}"
+            true = shown(wanted[quantity], 20)
+            raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
+    return True
+
+
+def _turn(example: Example) -> str:
+    """The number system that is looked at: fixed, which is compiled, in few examples."""
+    turn = example.turn
+    if turn % _COMPILED == 0:
+        return "fixed"
+    names = [name for name in number_systems.names() if name != "fixed"]
+    return names[turn // _IN % len(names)]
+
+
+def _enclosed(example: Example) -> dict[str, Ball] | None:
+    if example.step_map.solved:
+        found = _run(example, "mpfr", 40)
+        if found is None:
+            return None
+        return {n: _ball(v) for n, v in found.values.items()}
+    start = example.p, example.q, example.step_size
+    states = ball_steps(example.step_map, *start, example.steps)
+    if states is None:
+        return None
+    if not all(state.sharp for state in states):
+        return None
+    with working_precision(BITS):
+        return _of_states(states)
+
+
+def _of_states(states: Sequence[BallState]) -> dict[str, Ball]:
+    """The values of a run, from balls of its states."""
+    errors = [abs(state.product - 1) for state in states[1:]]
+    # det J of a single step, where no step before had det J = 0.
+    changes = [abs(two.product / one.product - 1) for one, two in pairwise(states)]
+    found = {"p": states[-1].p, "q": states[-1].q, "lambda": states[-1].product - 1}
+    found["lambda_max"] = reduce(flint.arb.max, errors)
+    found["delta_j_max"] = reduce(flint.arb.max, changes)
+    found["mse"] = sum((x * x for x in changes), rational_ball(Fraction())) / len(changes)
+    return found
+
+
+def _ball(value: Value) -> Ball:
+    with working_precision(BITS):
+        return around(Fraction(value.value), Fraction(value.bound))
+
+
+def _run(example: Example, arithmetic: str, digits: int) -> RunResult | None:
+    found = run(
+        example.hamiltonian,
+        example.scheme.name,
+        **example.asked,
+        arithmetic=arithmetic,
+        digits=digits,
+        observables=_OBSERVABLES,
+    )
+    return found if found.status == "finished" else None

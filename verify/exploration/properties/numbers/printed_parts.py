@@ -1,0 +1,42 @@
+"""The parts of Λ as they are printed add up to its printed value, within their printed bounds.
+
+One example in a few is looked at.
+"""
+
+from fractions import Fraction
+
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.scenes.results.core import Parts
+from verify.studies.separation.chain import PARTS
+from verify.studies.separation.separate import separate
+
+_IN = 8  # one in so many examples
+_DIGITS = 6
+
+
+def holds(example: Example) -> bool:
+    if not example.is_turn(_IN) or not example.short:
+        return False
+    found = separate(
+        example.hamiltonian,
+        example.scheme.name,
+        **example.asked,
+        digits=_DIGITS,
+    )
+    if found.status != "finished":
+        return False
+    for evaluation in (found.plain, found.closed_form):
+        if evaluation is not None:
+            _must_add_up(evaluation.parts, ("truncation", *PARTS), "lambda_working")
+            _must_add_up(evaluation.parts, PARTS, "total")
+    return True
+
+
+def _must_add_up(parts: Parts, names: tuple[str, ...], whole: str) -> None:
+    values = [getattr(parts, name) for name in (*names, whole)]
+    numbers, bounds = ([Fraction(getattr(v, key)) for v in values] for key in ("value", "bound"))
+    apart = abs(sum(numbers[:-1]) - numbers[-1])
+    if apart > sum(bounds):
+        told = f"{float(apart):.3e} apart, with bounds of {float(sum(bounds)):.3e}"
+        raise Violation(f"{' + '.join(names)} and {whole} are {told}")

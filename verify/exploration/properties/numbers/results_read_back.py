@@ -1,0 +1,57 @@
+"""What is written reads back equal: the scene as TOML, H's formula, the step map's formulas."""
+
+import tomllib
+
+from verify.algebra.enclosure import enclose
+from verify.algebra.formula import to_text
+from verify.arithmetic.balls import shown
+from verify.exploration.ball_steps import BITS
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.scene import Scene, scene_from
+from verify.scenes.toml_text import scene_text
+from verify.schemes.step_map import StepMap
+
+_SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
+_LONGEST = 15  # terms of a map
+
+
+def holds(example: Example) -> bool:
+    if example.is_turn(_SCENES):
+        _must_be_same_scene(example.scene)
+    else:
+        _must_be_same(example)
+    if example.is_turn(_MAPS):
+        _must_be_same_map(example)
+    return True
+
+
+def _must_be_same_scene(scene: Scene) -> None:
+    if scene_from(tomllib.loads(scene_text(scene), parse_float=str), "scene") != scene:
+        raise Violation("the scene's TOML reads back as another scene")
+
+
+def _must_be_same(example: Example) -> None:
+    given, values = example.hamiltonian, []
+    read = Hamiltonian.parse(given.formula, dict(given.values))
+    for hamiltonian in (given, read):
+        field, _ = hamiltonian.field()
+        values.append([enclose(field.ring, x, example.start, BITS) for x in
+                       (field.energy, field.h_p, field.h_q)])  # fmt: skip
+    for x, y in zip(*values, strict=True):
+        if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
+            raise Violation(f"H reads back as another: {given.formula}")
+
+
+def _must_be_same_map(example: Example) -> None:
+    closed = example.step_map.substeps[-1]
+    if closed.solved or closed.staged or closed.length > _LONGEST:
+        return
+    texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
+    read = StepMap.from_formulas(example.hamiltonian, *texts).whole
+    for name in ("p_next", "q_next"):
+        pair = [enclose(step.ring, getattr(step, name), example.start, BITS)
+                for step in (closed, read)]  # fmt: skip
+        if None not in pair and not pair[0].overlaps(pair[1]):
+            raise Violation(f"{name} reads back as {shown(pair[1])}, and is {shown(pair[0])}")

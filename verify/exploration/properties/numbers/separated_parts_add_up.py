@@ -1,0 +1,92 @@
+"""Truncation and the four kinds of rounding add up exactly to the Λ that float64 gives.
+
+That Λ is, bit for bit, what the float64 kernel gives without the separation. The truncation part is
+the Λ that balls enclose, and with the input part it is that at inputs rounded to float64.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.balls import Ball, around, shown
+from verify.arithmetic.exact import decimal
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import BITS, ball_steps
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.kernels.stepping import Job
+from verify.schemes.step_map import StepMap
+from verify.studies.separation.chain import PARTS, Chain, Separation
+from verify.studies.separation.kernel import WORKING
+from verify.studies.separation.working import Stopped
+
+_IN = 2  # one in so many examples
+_DIGITS = 8
+
+
+def holds(example: Example) -> bool:
+    if not example.is_turn(_IN) or not example.short:
+        return False
+    try:
+        chains = Separation(*example.given).chains(_DIGITS)
+    except Stopped:
+        return False
+    exact, rounded = _wanted(example)
+    for chain in (chains.plain, chains.closed_form):
+        if chain is not None:
+            _must_add_up(chain)
+            (truncation, bound), (inputs, more) = (chain.final(n) for n in ("truncation", "input"))
+            _must_reach("the truncation part is", truncation, bound, exact)
+            both = truncation + inputs, bound + more
+            _must_reach("truncation and input together are", *both, rounded)
+    job = Job(*example.given, WORKING, 0)
+    bare = job.go(number_systems.get("float64", 17)).values["lambda_plain"]
+    beside = chains.plain.final("lambda_working")[0]
+    alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
+    if alone != other:
+        raise Violation(f"float64 gives {alone!r}, and beside exact numbers {other!r}")
+    return True
+
+
+def _must_add_up(chain: Chain) -> None:
+    parts = [chain.trail(name)[0] for name in ("truncation", *PARTS)]
+    for k, whole in enumerate(chain.trail("lambda_working")[0]):
+        if sum(part[k] for part in parts) != whole:
+            raise Violation(f"the parts do not add up after {chain.marks[k]} steps")
+
+
+def _wanted(example: Example) -> tuple[Ball | None, Ball | None]:
+    """Λ by balls, of the example's numbers and of the nearest float64s."""
+    start = example.p, example.q, example.step_size
+    exact = _area_error(example, example.step_map, start)
+    rounded = tuple(map(_nearest, start))
+    given = {name: _nearest(x) for name, x in example.hamiltonian.values}
+    if given == dict(example.hamiltonian.values):
+        of_it = example.step_map
+    else:
+        of_it = example.scheme.step_map(example.hamiltonian.with_values(given))
+    same = rounded == start and of_it is example.step_map
+    return exact, exact if same else _area_error(example, of_it, rounded)
+
+
+def _nearest(x: Fraction) -> Fraction:
+    return Fraction(float(x))
+
+
+def _area_error(example: Example, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
+    """Λ of the example's steps; None where balls do not know it."""
+    p, q, h = start
+    states = ball_steps(step_map, p, q, h, example.steps)
+    if states is None or not states[-1].sharp:
+        return None
+    with working_precision(BITS):
+        return states[-1].product - 1
+
+
+def _must_reach(what: str, value: Fraction, bound: Fraction, wanted: Ball | None) -> None:
+    """Violation where a value does not lie within its bound of what balls enclose."""
+    with working_precision(BITS):
+        there = around(value, bound)
+    if wanted is not None and not there.overlaps(wanted):
+        given = f"{decimal(value, 12)} ± {decimal(bound, 3)}"
+        raise Violation(f"{what} {given}, and truly {shown(wanted, 12)}")

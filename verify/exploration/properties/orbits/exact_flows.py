@@ -1,0 +1,85 @@
+"""The exact flow keeps H, comes back with time reversed, and moves G by the leading term X·G.
+
+G is the potential of the leading coefficient of ΔJ, where it has one. The flow is followed by
+extrapolation, to 40 digits over a short time.
+"""
+
+from fractions import Fraction
+
+from verify.algebra.enclosure import enclose
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.balls import Ball, rational_ball, shown
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.flows.extrapolation import Flow, NoFlowError
+from verify.proof.potential import potential_of
+
+_IN, _OF_POTENTIALS = 3, 6  # one in so many examples
+_DIGITS, _BITS = 40, 220
+_TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
+_MOST_STEPS = 100  # of the flow, in so short a time: a field that wants more is left out
+_KNOWN = Fraction(1, 10**30)  # of a state that was followed over _TIME
+_WITHIN = Fraction(1, 2**20)  # of 1 + |L|: what (G(φ_t z) − G(z))/t leaves out is t times H's own
+Point = tuple[Fraction, Fraction]
+
+
+def holds(example: Example) -> bool:
+    if not example.is_turn(_IN) or not example.ordinary:
+        return False
+    field, _ = example.hamiltonian.field()
+    flow = Flow(field, _DIGITS)
+    start = example.p, example.q
+    try:
+        after = _followed(flow, start, _TIME)
+        back = _followed(flow, after, -_TIME)
+    except NoFlowError:
+        return False
+    for name, x, y in zip("pq", start, back, strict=True):
+        if abs(x - y) > _KNOWN * (1 + abs(x)):
+            raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
+    before, then = (_value(field.ring, field.energy, point) for point in (start, after))
+    if before is None or then is None:
+        return False
+    with working_precision(_BITS):
+        if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
+            raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
+    if example.is_turn(_OF_POTENTIALS):
+        _potential_must_move(example)
+    return True
+
+
+def _potential_must_move(example: Example) -> None:
+    """Holds the change of G over an instant against L, where there is a G."""
+    found = potential_of(example.proof, example.scheme) if example.polynomial else None
+    if found is None or not found.holds or found.element is None:
+        return
+    ring, potential = found.element
+    leading = example.proof.first.element
+    assert leading is not None  # noqa: S101 - it has a potential
+    field, _ = example.hamiltonian.field()
+    start = example.p, example.q
+    try:
+        end = _followed(Flow(field, 2 * _DIGITS), start, _INSTANT)
+    except NoFlowError:
+        return
+    ends = [_value(ring, potential, point) for point in (start, end)]
+    wanted = _value(*leading, start)
+    if wanted is None or ends[0] is None or ends[1] is None:
+        return
+    with working_precision(_BITS):
+        rate = (ends[1] - ends[0]) / rational_ball(_INSTANT)
+        wrong = abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
+    if wrong:
+        raise Violation(f"G grows by {shown(rate, 12)} a time, and L is {shown(wanted, 12)}")
+
+
+def _followed(flow: Flow, start: Point, time: Fraction) -> Point:
+    arithmetic = flow.arithmetic
+    first = arithmetic.number(start[0]), arithmetic.number(start[1])
+    p, q = flow.follow(first, time, _MOST_STEPS)
+    return arithmetic.exact(p), arithmetic.exact(q)
+
+
+def _value(ring: Ring, x: Poly, point: Point) -> Ball | None:
+    return enclose(ring, x, dict(zip("pq", point, strict=True)), _BITS)

@@ -1,0 +1,70 @@
+"""Λ of a run grows as its growth law says: h^η [G] and the two terms after it, or h^(r−1) T c_r.
+
+A few steps of a tiny size, enclosed by balls, so that what the law leaves out is far smaller than
+its least term.
+"""
+
+from fractions import Fraction
+
+from verify.algebra.enclosure import enclose_over
+from verify.arithmetic.balls import Ball, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.errors import InputError
+from verify.exploration.ball_steps import BallState, ball_steps, sharp, unlike
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
+from verify.schemes.every_hamiltonian import TaylorSeries
+
+_STEP, _STEPS = Fraction(1, 2**256), 3
+_BITS_A_POWER, _SPARE = 256, 320
+_WITHIN = Fraction(
+    1, 2**64
+)  # of 1 + |g|: what is left out is 2⁻²⁵⁶ times products of H's derivatives
+_MOST_ORDER = 4
+
+
+def holds(example: Example) -> bool:
+    if example.step_map.solved or example.scheme.order > _MOST_ORDER or not example.ordinary:
+        return False
+    if not (example.polynomial or isinstance(example.scheme.generic, TaylorSeries)):
+        return False  # ΔJ in closed form, which the law is made of, may be long
+    try:
+        law = growth_law(example.hamiltonian, example.scheme.name)
+    except (NoLawError, InputError):  # ΔJ ≡ 0, or too large a closed form
+        return False
+    bits = _BITS_A_POWER * (law.power + 3) + _SPARE
+    states = ball_steps(example.step_map, example.p, example.q, _STEP, _STEPS, bits)
+    if states is None:
+        return False
+    with working_precision(bits):
+        return _by_law(law, states[0], states[-1])
+
+
+def _by_law(law: GrowthLaw, *ends: BallState) -> bool:
+    h = rational_ball(_STEP)
+    found, rate = ends[-1].product.log(), _at(law.g, ends[0])
+    if rate is None:
+        return False
+    if law.potential and law.leading:
+        potential, leading = _change(law.potential, *ends), _change(law.leading, *ends)
+        if potential is None or leading is None:
+            return False
+        found -= h ** (law.power - 1) * potential - h**law.power * leading / 2
+    found /= h ** (law.power + 1) * _STEPS
+    if not (sharp(found) and sharp(rate)):
+        return False
+    if abs(found - rate) > (1 + abs(rate)) * rational_ball(_WITHIN):
+        raise Violation(f"Λ/(h^{law.power + 1} T) is {unlike(found, rate)}, by the law")
+    return True
+
+
+def _change(element: Element, first: BallState, last: BallState) -> Ball | None:
+    """[F], from the first state to the last."""
+    before, after = _at(element, first), _at(element, last)
+    return None if before is None or after is None else after - before
+
+
+def _at(element: Element, state: BallState) -> Ball | None:
+    ring, x = element
+    return enclose_over(ring, x, {"p": state.p, "q": state.q})

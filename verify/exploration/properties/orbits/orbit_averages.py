@@ -1,0 +1,40 @@
+"""Along a closed orbit the time average of H + X(p q) is H: what is a derivative averages to 0.
+
+One example in many is looked at, as an orbit is followed for that until it closes.
+"""
+
+from fractions import Fraction
+
+from verify.algebra.enclosure import enclose
+from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.exact import decimal
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.flows.extrapolation import NoFlowError
+from verify.flows.orbit_average import average
+
+_IN = 16  # one in so many examples
+_DIGITS = 12
+_SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
+
+
+def holds(example: Example) -> bool:
+    if not example.is_turn(_IN) or not example.polynomial or not example.ordinary:
+        return False
+    field, _ = example.hamiltonian.field()
+    ring = field.ring
+    mixed = field.derive(ring.variable("p") * ring.variable("q"))
+    start = example.p, example.q
+    try:
+        found = average(example.hamiltonian, (ring, field.energy + mixed), start, _DIGITS)
+    except NoFlowError:  # the orbit is open
+        return False
+    at_start = enclose(ring, field.energy, example.start, 200)
+    if at_start is None:
+        return False
+    wanted = middle_and_radius(at_start)[0]
+    size = 1 + abs(wanted) + Fraction(max(map(abs, found.values), default=0.0))
+    if abs(found.value - wanted) > found.bound + _SPARE * size:
+        told = f"{decimal(found.value, 12)} ± {decimal(found.bound, 3)}"
+        raise Violation(f"the average is {told}, and H is {decimal(wanted, 12)}")
+    return True

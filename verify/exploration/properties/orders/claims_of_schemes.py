@@ -1,0 +1,23 @@
+"""No scheme's own claim is refuted: its order of convergence, and det J ≡ 1 where it claims that.
+
+Its ΔJ then has at least one order more than the scheme, as the exact flow has det J = 1.
+"""
+
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.verdict import Verdict
+
+
+def holds(example: Example) -> bool:
+    if not example.ordinary:
+        return False
+    proof, scheme = example.proof, example.scheme
+    if proof.verdict is Verdict.REFUTED:
+        raise Violation(f"{scheme.name} is refuted: {proof.reason}")
+    if proof.verdict is Verdict.UNDECIDED:
+        return False
+    if proof.convergence_order is not None and proof.convergence_order < scheme.order:
+        raise Violation(f"{scheme.name} is proved, and has order {proof.convergence_order}")
+    if proof.order is not None and proof.order <= scheme.order:
+        raise Violation(f"{scheme.name} has order {scheme.order}, and its ΔJ {proof.order}")
+    return True

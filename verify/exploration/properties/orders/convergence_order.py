@@ -1,0 +1,101 @@
+"""The error of one step against the exact flow shrinks as the proved order of convergence says.
+
+The flow is followed by extrapolation, which knows nothing of Taylor series in h; the step is
+enclosed by balls. Both step sizes are tiny, so that the order shows sharply. At some points the
+order is higher; where it is so at the initial value, it is not at one beside it.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from verify.arithmetic.balls import Ball, around, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import ball_steps
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.flows.extrapolation import Flow, NoFlowError
+
+_STEP = Fraction(1, 2**96)
+_BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
+_DIGITS_A_BIT = Fraction(30103, 100000)
+_WITHIN = Fraction(1, 10)  # of a whole order
+_BESIDE = Fraction(3, 70), Fraction(1, 55)  # in p and q
+
+
+def holds(example: Example) -> bool:
+    if not example.ordinary or example.step_map.solved:
+        return False
+    order = example.proof.convergence_order
+    if order is None:
+        return False
+    found = _orders(example, example.p, example.q, order)
+    if found is None:
+        return False
+    _must_reach(found, order + 1)
+    if _passes(found, order + 1):
+        found = _orders(example, example.p + _BESIDE[0], example.q + _BESIDE[1], order)
+        if found is None:
+            return False
+        _must_reach(found, order + 1)
+        if _passes(found, order + 1):
+            raise Violation(f"the step's error has a higher order than {order + 1}, that proved")
+    return True
+
+
+def _must_reach(found: Mapping[str, Ball | None], order: int) -> None:
+    """Violation where an error's order is lower."""
+    for name, ball in found.items():
+        if ball is not None and ball < rational_ball(order - _WITHIN):
+            told = f"the step's error in {name} has order {float(ball.mid()):.2f}"
+            raise Violation(f"{told}, and should have {order} at least")
+
+
+def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
+    """Whether the errors' orders in p and q are both higher."""
+    most = rational_ball(order + _WITHIN)
+    return all(ball is None or ball > most for ball in found.values())
+
+
+def _orders(
+    example: Example, p: Fraction, q: Fraction, order: int
+) -> dict[str, Ball | None] | None:
+    """By which power of h the errors in p and q shrink, None for one that may be 0; None where
+    they are not known."""
+    whole, half = (_error(example, (p, q), h, order) for h in (_STEP, _STEP / 2))
+    if whole is None or half is None:
+        return None
+    found: dict[str, Ball | None] = {}
+    with working_precision(64):
+        for name, large, small in zip("pq", whole, half, strict=True):
+            known = not (small.contains(0) or large.contains(0))
+            found[name] = (
+                abs(large / small).log() / rational_ball(Fraction(2)).log() if known else None
+            )
+    return found
+
+
+def _error(
+    example: Example, point: tuple[Fraction, Fraction], h: Fraction, order: int
+) -> tuple[Ball, Ball] | None:
+    """Step minus flow in p and q, as balls; None where one of them is not known."""
+    bits = _BITS_A_POWER * (order + 3) + _SPARE
+    states = ball_steps(example.step_map, *point, h, 1, bits)
+    if states is None:
+        return None
+    field, _ = example.hamiltonian.field()
+    flow = Flow(field, int(bits * _DIGITS_A_BIT))
+    arithmetic = flow.arithmetic
+    try:
+        with arithmetic.context():
+            start = arithmetic.number(point[0]), arithmetic.number(point[1])
+            end = flow.advance(start, arithmetic.number(h))
+    except NoFlowError:
+        return None
+    with working_precision(bits):
+        exact = [_with_error(arithmetic.exact(x), bits - _LOST) for x in end]
+        return states[-1].p - exact[0], states[-1].q - exact[1]
+
+
+def _with_error(x: Fraction, bits: int) -> Ball:
+    """A value that the flow gives to so many bits."""
+    return around(x, (1 + abs(x)) / 2**bits)

@@ -1,0 +1,50 @@
+"""What is proved of a scheme for every H holds of this one: orders, det J ≡ 1, telescoping."""
+
+from functools import lru_cache
+
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.proof.every import prove_every
+from verify.proof.every_proof import EveryProof
+from verify.proof.order import Proof
+from verify.proof.potential import potential_of
+from verify.verdict import Verdict
+
+_MOST_ORDER = 4  # of a scheme that is proved for every H here
+_IN = 3  # one in so many examples is asked whether its leading coefficient telescopes
+
+
+@lru_cache(maxsize=64)
+def _proved(name: str) -> EveryProof:
+    return prove_every(name)
+
+
+def holds(example: Example) -> bool:
+    scheme = example.scheme
+    if scheme.generic is None or scheme.order > _MOST_ORDER or not example.ordinary:
+        return False
+    every, proof = _proved(scheme.name), example.proof
+    if every.verdict is not Verdict.PROVED:
+        return False
+    wrong = _contradiction(every, proof)
+    if wrong:
+        raise Violation(f"{wrong}, against what is proved for {every.quantifier}")
+    # Where the leading coefficient for every H vanishes for this one, another one leads.
+    same = proof.order == every.order and example.is_turn(_IN) and example.polynomial
+    if every.telescopes and same:
+        found = potential_of(proof, scheme)
+        if found.holds is False:
+            raise Violation(f"L is not X·G: {found.reason}; it is for {every.quantifier}")
+    return True
+
+
+def _contradiction(every: EveryProof, proof: Proof) -> str:
+    """In words; empty where there is none. None, as an order, is beyond all that are looked at."""
+    if every.area_preserving and proof.area_preserving is False:
+        return f"ΔJ has order {proof.order}"
+    if every.order is not None and proof.order is not None and proof.order < every.order:
+        return f"ΔJ has order {proof.order}, not {every.order}"
+    own, agreed = proof.convergence_order, every.convergence_order
+    if own is not None and agreed is not None and own < agreed:
+        return f"the map agrees with the flow up to h^{own}, not h^{agreed}"
+    return ""

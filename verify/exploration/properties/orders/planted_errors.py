@@ -1,0 +1,41 @@
+"""A map with one term too many is refuted, at the very power of h where the term was planted."""
+
+from verify.errors import InputError
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.proof.order import prove
+from verify.schemes.step_map import StepMap
+from verify.schemes.substep import Substep
+from verify.verdict import Verdict
+
+_IN = 2  # one in so many examples
+
+
+def holds(example: Example) -> bool:
+    order, parts = example.scheme.order, example.step_map.substeps
+    if (
+        not example.is_turn(_IN)
+        or not example.ordinary
+        or any(part.solved or part.staged for part in parts)
+    ):
+        return False
+    if example.proof.verdict is not Verdict.PROVED:
+        return False
+    try:
+        found = prove(_planted(example, order), example.scheme)
+    except InputError:  # its closed form is too large to be looked at
+        return False
+    if found.verdict is not Verdict.REFUTED:
+        raise Violation(f"with q·h^{order} added to p' it is {found.verdict.value}")
+    if found.convergence_order != order - 1:
+        told = f"agrees with the flow up to h^{found.convergence_order}"
+        raise Violation(f"with q·h^{order} added to p' it {told}, and truly up to h^{order - 1}")
+    return True
+
+
+def _planted(example: Example, power: int) -> StepMap:
+    """The map with q·h^power added to p' in its last part."""
+    *before, last = example.step_map.substeps
+    ring = last.ring
+    wrong = last.p_next + ring.variable("q") * ring.variable("h") ** power
+    return StepMap(example.hamiltonian, (*before, Substep(last.field, wrong, last.q_next)))

@@ -1,0 +1,85 @@
+"""For quadratic H, det J = R(x)·R(−x) with x² = −h² det Hess H, R the scheme's stability function.
+
+That is |R(iωh)|² where the orbits are ellipses, and R(λh)·R(−λh) where they are hyperbolas. Asked
+of the quadratic part of H at the initial value, its coefficients rounded.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+from math import factorial
+
+import sympy
+
+from verify.algebra.enclosure import enclose
+from verify.algebra.formula import symbol
+from verify.arithmetic.balls import middle_and_radius, rational_ball
+from verify.arithmetic.exact import short
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import BITS, sharp, unlike
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+
+_UNIT = 100  # coefficients are whole multiples of 1/100
+
+
+def holds(example: Example) -> bool:
+    generic = example.scheme.generic
+    if not isinstance(generic, TaylorSeries | RungeKutta):
+        return False
+    hessian = _hessian(example)
+    if hessian is None:
+        return False
+    h_pp, h_pq, h_qq = hessian
+    square = -(example.step_size**2) * (h_pp * h_qq - h_pq**2)
+    wanted = _product(_stability_function(generic), square)
+    p, q = symbol("p"), symbol("q")
+    a, b, c = (sympy.Rational(x.numerator, x.denominator) for x in hessian)
+    step_map = example.scheme.step_map(Hamiltonian(a * p**2 / 2 + b * p * q + c * q**2 / 2))
+    whole = step_map.whole
+    found = enclose(whole.ring, whole.delta_j, {"h": example.step_size}, BITS)
+    # det J − 1 against ΔJ, and not det J: of a small ΔJ that has lost most digits.
+    with working_precision(BITS):
+        true = rational_ball(wanted - 1)
+    if found is None or not sharp(found) or not found.overlaps(true):
+        given = f"for Hess H = ({short(h_pp)}, {short(h_pq)}, {short(h_qq)})"
+        told = "not defined" if found is None else unlike(found, true)
+        raise Violation(f"{given} ΔJ is {told}")
+    return True
+
+
+def _hessian(example: Example) -> tuple[Fraction, Fraction, Fraction] | None:
+    """H_pp, H_pq, H_qq at the initial value, rounded; None where they are not ordinary numbers."""
+    field, _ = example.hamiltonian.field()
+    ring, point = field.ring, {"p": example.p, "q": example.q}
+    found = []
+    for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
+        value = enclose(ring, ring.diff(x, name), point, 128)
+        if value is None or not abs(value) < 10**6:
+            return None
+        found.append(Fraction(round(middle_and_radius(value)[0] * _UNIT), _UNIT))
+    return found[0], found[1], found[2]
+
+
+@lru_cache(maxsize=64)
+def _stability_function(generic: TaylorSeries | RungeKutta) -> Sequence[Fraction]:
+    """The coefficients of R(z) = Σ cₙ zⁿ: 1/n!, or 1, b·1, b·A1, b·A²1, …"""
+    if isinstance(generic, TaylorSeries):
+        return [Fraction(1, factorial(n)) for n in range(generic.eta + 1)]
+    stages = len(generic.weights)
+    rows = [[*row, *[Fraction(0)] * (stages - len(row))] for row in generic.rows]
+    vector, found = [Fraction(1)] * stages, [Fraction(1)]
+    for _ in range(stages):
+        found.append(sum((b * x for b, x in zip(generic.weights, vector, strict=True)), Fraction()))
+        vector = [sum((a * x for a, x in zip(r, vector, strict=True)), Fraction()) for r in rows]
+    return found
+
+
+def _product(coefficients: Sequence[Fraction], square: Fraction) -> Fraction:
+    """R(x) R(−x), which is even in x: its odd and even parts by x² = `square`."""
+    even = sum((c * square ** (n // 2) for n, c in enumerate(coefficients) if n % 2 == 0),
+               Fraction())  # fmt: skip
+    odd = sum((c * square ** (n // 2) for n, c in enumerate(coefficients) if n % 2), Fraction())
+    return even**2 - square * odd**2

@@ -1,0 +1,35 @@
+"""The step of −h undoes the step of h, for a scheme that claims to be symmetric."""
+
+from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import BITS, BallState, ball_steps, stepped, unlike
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.proof.symmetry import by_series
+from verify.verdict import Verdict
+
+_IN = 3  # one in so many examples is looked at by series, too
+
+
+def holds(example: Example) -> bool:
+    if not example.scheme.symmetric:
+        return False
+    if example.is_turn(_IN) and example.ordinary and not example.step_map.solved:
+        series = by_series(example.step_map, example.scheme.order + 1)
+        if series.verdict is Verdict.REFUTED:
+            raise Violation(f"by series it is not symmetric: {series.reason}")
+    states = ball_steps(example.step_map, example.p, example.q, example.step_size, 1)
+    if states is None:
+        return False
+    back = _back(example, states[-1])
+    if back is None or not back.sharp:
+        return False
+    for name, ball, start in (("p", back.p, states[0].p), ("q", back.q, states[0].q)):
+        if not ball.overlaps(start):
+            raise Violation(f"{name} comes back as {unlike(ball, start)}")
+    return True
+
+
+def _back(example: Example, state: BallState) -> BallState | None:
+    with working_precision(BITS):
+        return stepped(example.step_map, state, rational_ball(-example.step_size))

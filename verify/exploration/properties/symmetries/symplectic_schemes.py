@@ -1,0 +1,57 @@
+"""A scheme that claims det J ≡ 1 has it: by the proof, and by J's four entries at a point.
+
+Where the step solves equations the entries are multiplied along a run with 80 digits. These may not
+do to solve them: what 160 digits find elsewhere, or not at all, is not held against the scheme.
+"""
+
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.exact import decimal
+from verify.exploration.ball_steps import ball_steps, unlike
+from verify.exploration.property import Violation
+from verify.exploration.sample import Example
+from verify.kernels.stepping import Job
+
+_DIGITS, _STEPS = 80, 2
+_SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
+
+
+def holds(example: Example) -> bool:
+    if not example.scheme.area_preserving or not example.ordinary:
+        return False
+    if example.proof.area_preserving is False:
+        raise Violation(f"the proof says that ΔJ has order {example.proof.order}")
+    if example.step_map.solved:
+        return _by_a_run(example)
+    states = ball_steps(example.step_map, example.p, example.q, example.step_size, 1)
+    if states is None or not states[-1].sharp:
+        return False
+    if not states[-1].product.contains(1):
+        raise Violation(f"det J is {unlike(states[-1].product, rational_ball(Fraction(1)))}")
+    return True
+
+
+def _by_a_run(example: Example) -> bool:
+    found = _run(example, _DIGITS)
+    if found is None:
+        return False
+    change = found["lambda_plain"]
+    if abs(change) <= _SMALL * _size(found):
+        return True
+    again = _run(example, 2 * _DIGITS)
+    if again is None or any(abs(found[n] - again[n]) > _SMALL * _size(again) for n in ("p", "q")):
+        return False
+    raise Violation(f"Π det J − 1 is {decimal(change, 6)} after {_STEPS} steps")
+
+
+def _run(example: Example, digits: int) -> dict[str, Fraction] | None:
+    wanted = frozenset({"lambda_plain"})
+    job = Job(example.hamiltonian, example.scheme.name, example.start, _STEPS, wanted, 0)
+    found = job.go(number_systems.get("mpfr", digits))
+    return found.values if found.done == _STEPS else None
+
+
+def _size(found: dict[str, Fraction]) -> Fraction:
+    return 1 + abs(found["p"]) + abs(found["q"])

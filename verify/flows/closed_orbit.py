@@ -1,0 +1,283 @@
+"""The closed orbits of the exact flow, with their periods.
+
+An orbit is closed where it comes back to its initial value z₀ (a libration), or to z₀ shifted by a
+period of H in p or q (a rotation, as the pendulum's). Nothing else is taken for closed: an orbit on
+a separatrix or one that leaves is a NoFlowError that says what was seen.
+
+The flow is followed with few digits until it crosses, in the direction of f(z₀), the line through
+z₀ normal to f(z₀), and comes back to z₀ there. Newton's method then gives the period, and it is
+seen whether the orbit closes to all digits: one on a separatrix does not, as the digits decide how
+near it comes to the saddle. The period of one close beside it has fewer digits than were asked for.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.algebra.generators import embed
+from verify.algebra.ring import Poly, Ring
+from verify.algebra.substitution import substitute
+from verify.errors import InputError
+from verify.flows.extrapolation import LOST, Flow, NoFlowError, Number, State, functions_at
+from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+
+Element = tuple[Ring, Poly]
+Start = tuple[Fraction, Fraction]  # p, q
+
+_ROUGH = 16  # digits with which the period is looked for
+_MORE = (0, 15, 30)  # digits that an orbit near a separatrix may lose
+_MOST_STEPS = 2000
+_FAR = 10**4  # an orbit that goes so many times farther than z₀ and its shifts is not closed
+_NEAR = 1e-7  # of the orbit's reach: what comes so near to z₀ may be z₀
+_TURN = (0.5, 0.95)  # cosines: a step turns by less than 60°; one below 18° is made longer
+_HALVINGS, _BISECTIONS, _NEWTON = 100, 6, 8
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """The closed orbit through z₀ at M equally spaced times k P / M.
+
+    `period` is None for an equilibrium, which has one point. `shift`: z(P) − z₀, not zero for a
+    rotation. `flow` is the exact flow with the digits that the points have.
+    """
+
+    flow: Flow
+    points: tuple[State, ...]
+    period: Number | None
+    shift: State
+
+    @property
+    def kind(self) -> Literal["libration", "rotation", "equilibrium"]:
+        if self.period is None:
+            return "equilibrium"
+        return "rotation" if any(self.shift) else "libration"
+
+    def values(self, element: Element) -> list[Number]:
+        """A function of p and q at the points. Raises NoFlowError where it is not defined."""
+        at = functions_at(self.flow.arithmetic, [element])
+        try:
+            with self.flow.arithmetic.context():
+                return [at(*z)[0] for z in self.points]
+        except (ArithmeticError, ValueError):
+            raise NoFlowError("the function is not defined along the whole orbit") from None
+
+    def finer(self) -> "Orbit":
+        """The same with one point more between each two. Raises NoFlowError."""
+        time = self.time(Fraction(1, 2 * len(self.points)))
+        between = [self.flow.advance(z, time) for z in self.points]
+        points = tuple(z for pair in zip(self.points, between, strict=True) for z in pair)
+        return Orbit(self.flow, points, self.period, self.shift)
+
+    def time(self, part: Fraction) -> Number:
+        """That part of the period."""
+        assert self.period is not None  # noqa: S101 - an equilibrium has none
+        with self.flow.arithmetic.context():
+            return self.period * self.flow.number(part)
+
+
+def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> Orbit:
+    """The orbit through z₀ = (p, q) at `count` times. Raises NoFlowError where it is not closed."""
+    field, _ = hamiltonian.field()
+    if at_rest(hamiltonian, field, start):
+        flow = Flow(field, digits)
+        zero = flow.number(Fraction(0))
+        p, q = (flow.number(x) for x in start)
+        return Orbit(flow, ((p, q),), None, (zero, zero))
+    rough = Flow(field, _ROUGH)
+    found = _Walk(rough, start, list(shifts(hamiltonian))).back()
+    for more in _MORE:
+        orbit = _polished(Flow(field, digits + more), start, found, digits, count)
+        if orbit is not None:
+            return orbit
+    raise NoFlowError(
+        "no closed orbit: what seemed to be one does not close with more digits, "
+        "as it lies on a separatrix or very near to one"
+    )
+
+
+def at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool:
+    """Whether z₀ is an equilibrium, by algebra. Raises NoFlowError where H is not defined there."""
+    ring = field.ring
+    numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
+    point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))
+    slopes = [ring.expression(x) for x in (field.h_p, field.h_q)]
+    try:
+        _, *there = [substitute(x, point, "z0") for x in (hamiltonian.exact, *slopes)]
+        constants, elements = embed(there, ())
+    except (InputError, ArithmeticError):
+        raise NoFlowError("H is not defined at the initial value, or too large there") from None
+    zero = [constants.decide(x).zero for x in elements]
+    if None in zero and False not in zero:
+        raise NoFlowError("whether the initial value is an equilibrium is not decided")
+    return False not in zero
+
+
+def shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
+    """(0, 0) and ± the periods of H in p and in q, in units of 2π."""
+    zero = Fraction(0)
+    yield zero, zero
+    for name in ("p", "q"):
+        period = _period_in(hamiltonian.exact, name)
+        if period:
+            for size in (period, -period):
+                yield (size, zero) if name == "p" else (zero, size)
+
+
+def _period_in(expression: sympy.Expr, name: str) -> Fraction | None:
+    """A period of H in one variable, in units of 2π, shown by algebra."""
+    variable = symbol(name)
+    arguments = [f.args[0] for f in expression.atoms(sympy.sin, sympy.cos, sympy.tan)]
+    rates = {sympy.expand(a).diff(variable) for a in arguments} - {sympy.S.Zero}
+    if not rates or not all(rate.is_Rational for rate in rates):
+        return None
+    period = Fraction(math.lcm(*(int(r.q) for r in rates)), math.gcd(*(int(r.p) for r in rates)))
+    shift = 2 * sympy.pi * sympy.Rational(period.numerator, period.denominator)
+    gap = expression.subs(variable, variable + shift) - expression
+    ring, (difference,) = embed([gap], ("p", "q"))
+    return period if ring.decide(difference).zero is True else None
+
+
+# -- the first way round --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Return:
+    """Back at z₀ + `shift` (in units of 2π) after about `time`; `reach`: how far the orbit goes."""
+
+    time: float
+    shift: tuple[Fraction, Fraction]
+    reach: float
+
+
+class _Walk:
+    """Follows the flow from z₀ until it is back."""
+
+    def __init__(self, flow: Flow, start: Start, shifts: list[tuple[Fraction, Fraction]]) -> None:
+        self.flow = flow
+        self.z0: State = flow.number(start[0]), flow.number(start[1])
+        self.f0 = flow.slope(self.z0)
+        self.targets = [(shift, _shifted(flow, self.z0, shift)) for shift in shifts]
+        self.reach = 0.0
+
+    def back(self) -> _Return:
+        z, time = self.z0, 0.0
+        span = 1 + max(_distance(target, (0, 0)) for _, target in self.targets)
+        step = span / _distance(self.f0, (0, 0)) / 16
+        for _ in range(_MOST_STEPS):
+            step, after, turned = self.stepped(z, step)
+            self.reach = max(self.reach, _distance(after, self.z0))
+            crossed = [back for t in self.targets if (back := self.crossing(z, step, after, t))]
+            if crossed:
+                first, shift = min(crossed)
+                return _Return(time + first, shift, self.reach)
+            if self.reach > _FAR * span:
+                raise NoFlowError("the orbit is not closed: it goes far away")
+            z, time = after, time + step
+            step *= 2 if turned > _TURN[1] else 1
+        raise NoFlowError(f"the orbit is not seen to close until t = {time:.3g}")
+
+    def stepped(self, z: State, step: float) -> tuple[float, State, float]:
+        """The longest of step, step/2, … that is accurate and turns by little; where it leads."""
+        before = self.flow.slope(z)
+        for _ in range(_HALVINGS):
+            after = self.flow.step(z, _exactly(self.flow, step))
+            if after is not None:
+                cosine = _cosine(before, self.flow.slope(after))
+                if cosine > _TURN[0]:
+                    return step, after, cosine
+            step /= 2
+        raise NoFlowError(LOST)
+
+    def height(self, z: State, target: State) -> float:
+        """How far beyond the normal line through the target, in the direction of f(z₀)."""
+        return float(self.f0[0] * (z[0] - target[0]) + self.f0[1] * (z[1] - target[1]))
+
+    def crossing(
+        self, z: State, step: float, after: State, goal: tuple[tuple[Fraction, Fraction], State]
+    ) -> tuple[float, tuple[Fraction, Fraction]] | None:
+        """The time after z at which the orbit is at the target, if the step leads over it."""
+        shift, target = goal
+        if not self.height(z, target) < 0 <= self.height(after, target):
+            return None
+        low, high = 0.0, step
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            at = self.flow.advance(z, _exactly(self.flow, middle))
+            low, high = (middle, high) if self.height(at, target) < 0 else (low, middle)
+        time = high
+        for _ in range(_NEWTON):
+            at = self.flow.advance(z, _exactly(self.flow, time))
+            slope = self.flow.slope(at)
+            rate = float(self.f0[0] * slope[0] + self.f0[1] * slope[1])
+            if rate <= 0:
+                return None
+            time -= self.height(at, target) / rate
+        near = max(self.reach, _distance(after, self.z0)) * _NEAR
+        return (time, shift) if _distance(at, target) < near else None
+
+
+# -- all its digits -------------------------------------------------------------------------------
+
+
+def _polished(flow: Flow, start: Start, found: _Return, digits: int, count: int) -> Orbit | None:
+    """The orbit with its period to all digits; None where it does not close to so many."""
+    z0: State = flow.number(start[0]), flow.number(start[1])
+    target = _shifted(flow, z0, found.shift)
+    period, z = _exactly(flow, found.time), z0
+    for _ in range(_pieces(count)):
+        z = flow.advance(z, _part(flow, period, _pieces(count)))
+    f0 = flow.slope(z0)
+    for _ in range(_NEWTON):
+        if _distance(z, target) > found.reach / 100:
+            return None
+        with flow.arithmetic.context():
+            gap = f0[0] * (target[0] - z[0]) + f0[1] * (target[1] - z[1])
+            change = gap / (f0[0] ** 2 + f0[1] ** 2)
+            period = period + change
+        if change:
+            z = flow.advance(z, change)
+    if _distance(z, target) * 10.0**digits > found.reach:
+        return None
+    points, time = [z0], _part(flow, period, count)
+    for _ in range(count - 1):
+        points.append(flow.advance(points[-1], time))
+    with flow.arithmetic.context():
+        shift = target[0] - z0[0], target[1] - z0[1]
+    return Orbit(flow, tuple(points), period, shift)
+
+
+def _pieces(count: int) -> int:
+    return max(16, count)
+
+
+def _part(flow: Flow, period: Number, count: int) -> Number:
+    with flow.arithmetic.context():
+        return period / count
+
+
+def _shifted(flow: Flow, z: State, shift: tuple[Fraction, Fraction]) -> State:
+    if not any(shift):
+        return z
+    turn = flow.arithmetic.functions["pi"]
+    with flow.arithmetic.context():
+        p, q = (x + 2 * turn * flow.number(s) for x, s in zip(z, shift, strict=True))
+    return p, q
+
+
+def _exactly(flow: Flow, time: float) -> Number:
+    return flow.number(Fraction(time))
+
+
+def _distance(z: State, other: State) -> float:
+    return math.hypot(float(z[0] - other[0]), float(z[1] - other[1]))
+
+
+def _cosine(x: State, y: State) -> float:
+    product = float(x[0] * y[0] + x[1] * y[1])
+    size = _distance(x, (0, 0)) * _distance(y, (0, 0))
+    return product / size if size else 0.0

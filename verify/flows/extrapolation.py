@@ -1,0 +1,167 @@
+"""The exact flow to any number of digits: Gragg's method, extrapolated (Bulirsch and Stoer).
+
+The modified midpoint rule has an expansion in even powers of its step, so that its results with
+2, 4, 6, … steps extrapolate to any order (Hairer, Nørsett, Wanner, Solving Ordinary Differential
+Equations I, section II.9). It asks only for H_p and H_q at points. Its error is estimated, by the
+last two extrapolated values; who relies on a result computes it again with more digits.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.systems import mpfr
+from verify.hamiltonians.hamiltonian import VectorField
+from verify.kernels.lowering import Lowering
+from verify.kernels.program import Evaluator, Program
+
+Number = Any  # gmpy2.mpfr, which has no type stubs
+State = tuple[Number, Number]  # p, q
+
+_GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
+_LOST = 8
+_HALVINGS = 12
+_MOST_STEPS = 200_000  # of one orbit: minutes
+_PATIENCE = 3  # steps after one that was too long before a longer one is tried
+_SHORTEST = 80  # halvings of the first step, after which time stands still
+LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
+_STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
+
+
+class NoFlowError(Exception):
+    """The flow could not be followed; the message says why."""
+
+
+def functions_at(
+    arithmetic: Arithmetic, elements: Sequence[tuple[Ring, Poly]]
+) -> Callable[[Number, Number], tuple[Number, ...]]:
+    """(p, q) ↦ the values of ring elements in p and q alone; call it inside the context."""
+    program = Program()
+    inputs = {name: program.input(name, static=False) for name in ("p", "q")}
+    roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
+    lowering = Lowering(program, arithmetic.functions)
+    static, dynamic = lowering.lines(roots)
+    values = ", ".join(lowering.name(root) for root in roots)
+    lines = ["def at(p, q):", *(f"    {line}" for line in [*static, *dynamic])]
+    source = "\n".join([*lines, f"    return ({values},)", ""])
+    constants = lowering.named_constants(arithmetic.number)
+    at: Callable[[Number, Number], tuple[Number, ...]] = arithmetic.compile(
+        source, "at", {**arithmetic.functions, **constants}
+    )
+    return at
+
+
+class Flow:
+    """The exact flow of a vector field without symbols, to `digits` digits."""
+
+    def __init__(self, field: VectorField, digits: int) -> None:
+        self.arithmetic = mpfr.make(digits + _GUARD)
+        ring = field.ring
+        self._slopes = functions_at(self.arithmetic, [(ring, -field.h_q), (ring, field.h_p)])
+        self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + _GUARD - _LOST)))
+        self._columns = 6 + digits // 3  # more of them gain less than a shorter step does
+
+    def number(self, x: Fraction) -> Number:
+        return self.arithmetic.number(x)
+
+    def slope(self, z: State) -> State:
+        """f(z) = (−H_q, H_p). Raises NoFlowError where it is not defined."""
+        try:
+            with self.arithmetic.context():
+                p, q = self._slopes(*z)
+        except (ArithmeticError, ValueError):
+            raise NoFlowError("the orbit leaves where H is defined") from None
+        return p, q
+
+    def step(self, z: State, time: Number) -> State | None:
+        """φ_time(z) by one extrapolated step; None where that does not give the digits."""
+        try:
+            with self.arithmetic.context():
+                return self._extrapolated(z, time)
+        except (ArithmeticError, ValueError):  # a trial step may leave what the orbit does not
+            return None
+
+    def advance(self, z: State, time: Number, halvings: int = _HALVINGS) -> State:
+        """φ_time(z), by one extrapolated step or by the halves of it. Raises NoFlowError."""
+        found = self.step(z, time)
+        if found is not None:
+            return found
+        if not halvings:
+            raise NoFlowError(LOST)
+        with self.arithmetic.context():
+            half = time / 2
+        middle = self.advance(z, half, halvings - 1)
+        return self.advance(middle, half, halvings - 1)
+
+    def follow(self, z: State, time: Fraction, most_steps: int = _MOST_STEPS) -> State:
+        """φ_time(z) for any time, also a long or a negative one, by at most so many steps.
+
+        A step is as long as its accuracy allows; one of 30 digits takes about a millisecond, so
+        that the most is minutes. Raises NoFlowError, naming the time reached, where the orbit ends
+        or the steps do.
+        """
+        number = self.number
+        goal, done = number(abs(time)), number(Fraction(0))
+        sign = -1 if time < 0 else 1
+        good = _PATIENCE
+        step = self._first_step(z, goal)
+        shortest = step / 2**_SHORTEST
+        for _ in range(most_steps):
+            if done >= goal:
+                return z
+            with self.arithmetic.context():
+                last = done + step >= goal
+                step = goal - done if last else step
+                signed = sign * step
+            after = self.step(z, signed)
+            with self.arithmetic.context():
+                if after is None:
+                    good, step = 0, step * 2 / 3
+                    if step < shortest or done + step == done:
+                        raise NoFlowError(f"{LOST}, at about t = {float(sign * done):.6g}")
+                else:
+                    z, done, good = after, goal if last else done + step, good + 1
+                    step = step * 3 / 2 if good > _PATIENCE else step
+        raise NoFlowError(f"{most_steps} steps lead only to t = {float(sign * done):.6g}")
+
+    def _first_step(self, z: State, goal: Number) -> Number:
+        """A guess: the time in which the state would become different."""
+        p, q = self.slope(z)
+        with self.arithmetic.context():
+            speed = abs(p) + abs(q)
+            return min(goal, (1 + abs(z[0]) + abs(z[1])) / speed) if speed else goal
+
+    def _extrapolated(self, z: State, time: Number) -> State | None:
+        """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
+        above: list[State] = []
+        for j in range(1, self._columns + 1):
+            row = [self._midpoint(z, time, 2 * j)]
+            for k, (p, q) in enumerate(above, start=1):
+                # (n_j / n_{j−k})² − 1 with n_j = 2 j, as a quotient of whole numbers
+                up, down = (j - k) ** 2, j**2 - (j - k) ** 2
+                last_p, last_q = row[-1]
+                row.append((last_p + (last_p - p) * up / down, last_q + (last_q - q) * up / down))
+            if j > 2:
+                (p, q), (p0, q0) = row[-1], row[-2]
+                moved = abs(p - z[0]) + abs(q - z[1])
+                size = moved + (abs(p) + abs(q)) / _STILL
+                if abs(p - p0) + abs(q - q0) <= self._tolerance * size:
+                    return p, q
+            above = row
+        return None
+
+    def _midpoint(self, z: State, time: Number, count: int) -> State:
+        """Gragg's rule with so many steps, smoothed at its end."""
+        h = time / count
+        slopes = self._slopes
+        p0, q0 = z
+        dp, dq = slopes(p0, q0)
+        p1, q1 = p0 + h * dp, q0 + h * dq
+        twice = 2 * h
+        for _ in range(count - 1):
+            dp, dq = slopes(p1, q1)
+            p0, q0, p1, q1 = p1, q1, p0 + twice * dp, q0 + twice * dq
+        dp, dq = slopes(p1, q1)
+        return (p1 + p0 + h * dp) / 2, (q1 + q0 + h * dq) / 2

@@ -1,0 +1,163 @@
+"""The numerical flow of many points at once, in arrays of floats: Gragg's method, extrapolated.
+
+As `verify.flows.extrapolation` follows one point with any number of digits; here all take the same
+steps, as long as the least accurate of them allows. They are in the C compiler's long double, which
+is not much slower here: in float64 what is lost grows with the time to 10⁻¹⁰ and more.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from verify.arithmetic.float_context import WIDE
+from verify.arithmetic.number_system import Arithmetic, interpreted
+from verify.arithmetic.systems import float64
+from verify.flows.extrapolation import LOST, NoFlowError, functions_at
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+Array = Any  # numpy.ndarray, which is imported where it is used
+Slopes = Callable[[Array, Array], tuple[Array, ...]]
+
+_TOLERANCE = 4096  # roundings: of the last two extrapolated values, relative to the orbit so far
+_EASY = 1e-2  # of the tolerance, below which a longer step is tried
+_LONGER, _SHORTER = 1.25, 0.7
+_SHORTEST = 2.0**-60  # of the first step
+_MOST_STEPS = 100_000
+_STEP_BITS = 12  # of a step, so that times are sums without rounding
+
+
+def follow(
+    hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction], columns: int
+) -> Array:
+    """φ_t of all points: an array (p or q, time, point). Times may have either sign.
+
+    `columns` of the extrapolation: two different numbers of them give independent errors. Raises
+    NoFlowError, naming a point, where one cannot be followed.
+    """
+    import numpy as np
+
+    start = np.array([p, q], dtype=WIDE.type)
+    found = np.empty((2, len(times), len(p)))
+    with np.errstate(all="ignore"):
+        slopes = _slopes(hamiltonian)
+        for sign in (1, -1):
+            walk = _Walk(slopes, start, sign, columns)
+            order = sorted((t for t in set(times) if sign * t > 0 or t == 0), key=abs)
+            for time in order:
+                walk.to(WIDE.rational(abs(time)))
+                for k in (k for k, t in enumerate(times) if t == time):
+                    found[:, k] = walk.z
+    return found
+
+
+def _slopes(hamiltonian: Hamiltonian) -> Slopes:
+    field, _ = hamiltonian.field()
+    elements = [(field.ring, -field.h_q), (field.ring, field.h_p)]
+    return functions_at(arrays(), elements)
+
+
+def arrays() -> Arithmetic:
+    """Long double over arrays."""
+    import numpy as np
+
+    def root(x: Array, n: int) -> Array:
+        y = np.power(x, 1 / n)
+        return y - np.where(y > 0, (y**n - x) / (n * y ** (n - 1)), 0.0)  # 1/n is rounded
+
+    functions = {
+        **{name: getattr(np, name) for name in ("sin", "cos", "exp", "log", "sinh", "cosh")},
+        "atan": np.arctan,
+        "sqrt": np.sqrt,
+        "root": root,
+        "pi": WIDE.pi,
+    }
+    return replace(
+        float64.make(17), name="arrays", bits=WIDE.prec, number=WIDE.rational,
+        functions=functions, compile=interpreted, context=nullcontext,
+    )  # fmt: skip
+
+
+def _short(step: float) -> float:
+    mantissa, exponent = math.frexp(step)
+    return math.ldexp(math.floor(math.ldexp(mantissa, _STEP_BITS)), exponent - _STEP_BITS)
+
+
+class _Walk:
+    """All points on their way, by common steps."""
+
+    def __init__(self, slopes: Slopes, start: Array, sign: int, columns: int) -> None:
+        import numpy as np
+
+        self.z = start
+        self._slopes = slopes
+        self._sign = sign
+        self._columns = columns
+        self._done = WIDE.mpf(0)
+        self._tolerance = _TOLERANCE * float(WIDE.eps)
+        self._scale = np.max(np.abs(start), axis=0)  # of each orbit, as far as it is known
+        speed = np.max(np.abs(np.array(np.broadcast_arrays(*slopes(*start), start[0])[:2])), axis=0)
+        size = np.where(self._scale > 0, self._scale, 1.0)
+        fastest = float(np.max(speed / size, initial=0.0))
+        self._step = _short(1.0 / (1.0 + fastest)) if np.isfinite(fastest) else 1.0
+        self._least = self._step * _SHORTEST
+
+    def to(self, goal: Any) -> None:
+        import numpy as np
+
+        for _ in range(_MOST_STEPS):
+            if self._done >= goal:
+                return
+            last = self._done + self._step >= goal
+            step = goal - self._done if last else self._step
+            moved, error = self._extrapolated(self._sign * step)
+            size = np.maximum(self._scale, np.max(np.abs(self.z + moved), axis=0))
+            ratio = error / np.where(size > 0, size, 1.0)
+            worst = float(ratio.max(initial=0.0))
+            if worst <= self._tolerance:
+                self.z, self._scale = self.z + moved, size
+                self._done = goal if last else self._done + step
+                if worst <= _EASY * self._tolerance and not last:
+                    self._step = _short(self._step * _LONGER)
+                continue
+            self._step = _short(float(step) * _SHORTER)
+            if self._step < self._least or self._done + self._step == self._done:
+                raise NoFlowError(self._lost(ratio))
+        raise NoFlowError(f"{_MOST_STEPS} steps lead only to t = {self._sign * self._done:.6g}")
+
+    def _lost(self, ratio: Array) -> str:
+        import numpy as np
+
+        i = int(np.argmax(np.where(np.isfinite(ratio), ratio, np.inf)))
+        return f"point {i}: {LOST}, at about t = {self._sign * self._done:.6g}"
+
+    def _extrapolated(self, time: Any) -> tuple[Array, Array]:
+        """How far the points move by Aitken and Neville's scheme, and its estimated error."""
+        import numpy as np
+
+        above: list[Array] = []
+        for j in range(1, self._columns + 1):
+            row = [self._midpoint(time, 2 * j)]
+            for k, before in enumerate(above, start=1):
+                row.append(row[-1] + (row[-1] - before) * (j - k) ** 2 / (j**2 - (j - k) ** 2))
+            above = row
+        return above[-1], np.max(np.abs(above[-1] - above[-2]), axis=0)
+
+    def _midpoint(self, time: Any, count: int) -> Array:
+        """Gragg's rule with so many steps, smoothed at its end: what is added to z."""
+        import numpy as np
+
+        h = WIDE.mpf(time) / count
+        slopes, z = self._slopes, self.z
+        before = np.zeros_like(z)
+        at = np.empty_like(z)
+        at[0], at[1] = slopes(*z)
+        at *= h
+        change = np.empty_like(z)
+        for _ in range(count - 1):
+            change[0], change[1] = slopes(*(z + at))
+            before, at = at, before + 2 * h * change
+        change[0], change[1] = slopes(*(z + at))
+        return (at + before + h * change) / 2

@@ -1,0 +1,265 @@
+"""How the exact orbit runs over a time: how far it goes, how stiff it is, whether it leaves.
+
+What a stability verdict needs to know of the exact solution, before any scheme is looked at. The
+flow is followed with few digits until it closes (in phase space, or up to a period of H in p or q),
+or until the time is over. Lengths are measured in each coordinate by the orbit's own reach, so that
+neither the size of an orbit nor the units of p and q matter.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from typing import Literal
+
+from verify.errors import InputError
+from verify.flows.closed_orbit import shifts
+from verify.flows.extrapolation import Flow, NoFlowError, Number, State, functions_at
+from verify.flows.solution import NOT_KNOWN, leaves_by_algebra
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+_DIGITS, _MOST_DIGITS = 20, 40
+_MOST_STEPS = 3000
+_PART = Fraction(2, 5)  # of 1/ω, the time of a step at most: 16 points on a circle
+_FAR = 10**6  # an orbit that goes so many times farther than it has before is leaving
+_NEAR = Fraction(1, 5)  # of the reach: what crosses the line through z₀ so near to it is back
+_HALVINGS = 1100  # from any step size of float64's range to any other
+_FASTER = 10**9  # a step that has to be so many times shorter than before: the orbit blows up
+_STILL = 10**12
+_OUTWARDS = 30  # steps in a row of an orbit that is leaving, at least
+
+Kind = Literal["closed", "rotates", "at rest", "open", "escapes", "unknown"]
+
+
+@dataclass(frozen=True)
+class ExactOrbit:
+    """What is known of the orbit through z₀ over a time T.
+
+    `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open),
+    leaves every bound (escapes), or not followed to its end (unknown); `told` says more. `centre`
+    and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit runs
+    through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest
+    ω² = det Hess H on the orbit; `period`: that of a closed one, about.
+    """
+
+    kind: Kind
+    told: str
+    centre: tuple[Fraction, Fraction]
+    reach: tuple[Fraction, Fraction]
+    turns: tuple[bool, bool]
+    scale: Fraction
+    stiffness: Fraction
+    period: Fraction | None = None
+
+
+@lru_cache(maxsize=256)
+def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:
+    """The orbit through (p, q) until `time`."""
+    orbit = _Follow(hamiltonian, (p, q), time).orbit()
+    if orbit.kind not in ("escapes", "open"):
+        return orbit
+    exactly = _by_algebra(hamiltonian, p, q, time)
+    if exactly is None:
+        return orbit
+    return replace(orbit, told=exactly if orbit.kind == "escapes" else f"{orbit.told}; {exactly}")
+
+
+def _by_algebra(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> str | None:
+    """How it leaves, of an orbit for which that is known so."""
+    try:
+        told = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
+    except (InputError, NoFlowError):
+        return None
+    return None if told is None or told == NOT_KNOWN else told.removeprefix("it ")
+
+
+class _Follow:
+    def __init__(
+        self, hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction], time: Fraction
+    ) -> None:
+        field, _ = hamiltonian.field()
+        ring = field.ring
+        h_pp, h_pq = (ring.diff(field.h_p, n) for n in ("p", "q"))
+        stiffness = ring.reduce(h_pp * ring.diff(field.h_q, "q") - h_pq * h_pq)
+        self.flow = Flow(field, _DIGITS + written_digits(start))
+        self.arithmetic = self.flow.arithmetic
+        self.at = functions_at(
+            self.arithmetic, [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
+        )
+        self.start, self.time = start, self.number(time)
+        self.z0: State = self.number(start[0]), self.number(start[1])
+        self.shifts = [self.turned(s) for s in shifts(hamiltonian)]
+        self.free = tuple(x == 0 for x in (field.h_p, field.h_q))  # whether q, p stay as they are
+        self.points: list[State] = [self.z0]
+        self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
+
+    def turned(self, shift: tuple[Fraction, Fraction]) -> State:
+        """A shift that is given in units of 2π."""
+        with self.arithmetic.context():
+            turn = 2 * self.arithmetic.functions["pi"]
+            return turn * self.number(shift[0]), turn * self.number(shift[1])
+
+    def number(self, x: Fraction) -> Number:
+        return self.arithmetic.number(x)
+
+    def orbit(self) -> ExactOrbit:
+        try:
+            self.note(self.z0)
+        except NoFlowError as error:
+            return self.found("unknown", str(error))
+        if not any(self.rates[0][:2]):
+            return self.found("at rest", "stays where it is, an equilibrium")
+        if any(self.free):
+            names = ("p", "q") if self.free[0] else ("q", "p")
+            told = f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
+            return self.found("rotates", told, self.free)
+        try:
+            return self.followed()
+        except NoFlowError as error:
+            return self.found("unknown", str(error))
+
+    def note(self, z: State) -> None:
+        """Keeps what is to be known at a point of the orbit."""
+        try:
+            with self.arithmetic.context():
+                dp, dq, stiffness, _ = self.at(*z)  # H too has to be defined there
+        except (ArithmeticError, ValueError):
+            raise NoFlowError("H or its derivatives are not defined there") from None
+        self.rates.append((dp, dq, stiffness))
+
+    def followed(self) -> ExactOrbit:
+        with self.arithmetic.context():
+            z, time, step = self.z0, self.time - self.time, self.time / 16
+        outwards, longest = 0, None
+        for _ in range(_MOST_STEPS):
+            with self.arithmetic.context():
+                left = self.time - time
+                step = min(2 * step, self.allowed(), left)
+            step, after = self.stepped(z, step)
+            if after is None or (longest and step < left and step * _FASTER < longest):
+                told = f"becomes ever faster at t = {float(time):.6g}"
+                return self.found("escapes", told)
+            with self.arithmetic.context():
+                time = time + step
+                longest = max(longest or step, step)
+                grown = self.size(after)
+                outwards = outwards + 1 if grown > self.size(z) else 0
+            self.points.append(after)
+            self.note(after)
+            if grown > _FAR and outwards >= _OUTWARDS:
+                told = f"is {_FAR:.0e} times as far out as z0 at t = {float(time):.6g}, and goes on"
+                return self.found("escapes", told)
+            back = self.returned(z, after)
+            if back is not None:
+                shift, part = back
+                with self.arithmetic.context():
+                    period = time - (1 - part) * step
+                kind: Kind = "rotates" if any(shift) else "closed"
+                told = f"{kind}, with a period of about {float(period):.3g}"
+                return self.found(kind, told, shift, period=self.arithmetic.exact(period))
+            z = after
+            if time >= self.time:
+                return self.found("open", f"is still under way at t = {float(time):.6g}")
+        return self.found("unknown", f"was followed to t = {float(time):.6g} only")
+
+    def allowed(self) -> Number:
+        """The step that the local frequency allows; call it inside the context."""
+        stiffness = abs(self.rates[-1][2])
+        if stiffness == 0:
+            return self.time
+        return self.number(_PART) / self.arithmetic.functions["sqrt"](stiffness)
+
+    def stepped(self, z: State, step: Number) -> tuple[Number, State | None]:
+        """The longest of step, step/2, … that is accurate, and where it leads."""
+        for _ in range(_HALVINGS):
+            after = self.flow.step(z, step)
+            if after is not None:
+                return step, after
+            with self.arithmetic.context():
+                step = step / 2
+        return step, None
+
+    def size(self, z: State) -> Number:
+        """|z| in parts of |z₀|, by the greater coordinate; call it inside the context."""
+        first = max(map(abs, self.z0)) or max(map(abs, self.points[min(1, len(self.points) - 1)]))
+        return max(map(abs, z)) / first if first else first
+
+    def returned(self, z: State, after: State) -> tuple[State, Number] | None:
+        """The shift with which the last step crossed the line through z₀, if it did so near z₀.
+
+        And after which part of that step.
+        """
+        with self.arithmetic.context():
+            reach = self._ends()[1]
+            if len(self.points) < 4 or not all(reach):
+                return None
+            for shift in self.shifts:
+                target = (self.z0[0] + shift[0], self.z0[1] + shift[1])
+                part = self._crossed(z, after, target, reach)
+                if part is not None:
+                    return shift, part
+        return None
+
+    def _crossed(self, z: State, after: State, target: State, reach: State) -> Number | None:
+        """Where from z to after the line through the target, normal to f(z₀), is crossed."""
+        slope = [r / x for r, x in zip(self.rates[0][:2], reach, strict=True)]
+
+        def height(point: State) -> Number:
+            return sum(
+                s * (x - t) / r for s, x, t, r in zip(slope, point, target, reach, strict=True)
+            )
+
+        low, high = height(z), height(after)
+        if not low < 0 <= high:
+            return None
+        part = -low / (high - low)
+        at = [x + part * (y - x) for x, y in zip(z, after, strict=True)]
+        near = all(
+            abs(x - t) < self.number(_NEAR) * r for x, t, r in zip(at, target, reach, strict=True)
+        )
+        return part if near else None
+
+    def _ends(self) -> tuple[State, State]:
+        """The middle of the points seen, and how far they reach from it."""
+        middle, reach = [], []
+        for x in zip(*self.points, strict=True):
+            low, high = min(x), max(x)
+            middle.append((low + high) / 2)
+            reach.append((high - low) / 2)
+        return (middle[0], middle[1]), (reach[0], reach[1])
+
+    def found(
+        self,
+        kind: Kind,
+        told: str,
+        shift: Sequence[Number] = (0, 0),
+        period: Fraction | None = None,
+    ) -> ExactOrbit:
+        exact, zero = self.arithmetic.exact, self.number(Fraction(0))
+        with self.arithmetic.context():
+            centre, reached = self._ends()
+            fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
+            stiffest = max((r[2] for r in self.rates), default=zero)
+        # An orbit that has hardly moved in that time is measured by where it is.
+        reach = [
+            exact(r) if exact(r) > abs(x) / _STILL else abs(x)
+            for r, x in zip(reached, self.start, strict=True)
+        ]
+        # H_p = q' and H_q = −p': H changes by about so much across the orbit.
+        scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
+        return ExactOrbit(
+            kind=kind,
+            told=told,
+            centre=(exact(centre[0]), exact(centre[1])),
+            reach=(reach[0], reach[1]),
+            turns=(bool(shift[0]), bool(shift[1])),
+            scale=scale,
+            stiffness=exact(stiffest),
+            period=period,
+        )
+
+
+def written_digits(start: tuple[Fraction, Fraction]) -> int:
+    """How many digits an initial value is given with, beyond those of ordinary numbers."""
+    written = max(len(str(x.numerator).rstrip("0")) for x in start)
+    return min(written, _MOST_DIGITS) if written > _DIGITS else 0

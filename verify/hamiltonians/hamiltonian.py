@@ -1,0 +1,222 @@
+"""A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from typing import Any
+
+import sympy
+
+from verify.algebra.formula import parameter_name, parse, symbol, to_text
+from verify.algebra.generators import MAX_TERMS, embed
+from verify.algebra.ring import Poly, Ring
+from verify.algebra.substitution import substitute
+from verify.arithmetic.exact import Exact, rational, text
+from verify.errors import InputError
+from verify.from_type import drawn_by
+from verify.hamiltonians.lie_derivatives import Along
+
+
+# A report asks for the same few Hamiltonians thousands of times: once for every task.
+@lru_cache(maxsize=64)
+def _of_formula(formula: str) -> "Hamiltonian":
+    return Hamiltonian(parse(formula, source="hamiltonian"))
+
+
+@lru_cache(maxsize=64)
+def _with_values(expression: sympy.Expr, values: tuple[tuple[str, Fraction], ...]) -> "Hamiltonian":
+    result = Hamiltonian(expression, values)
+    result.exact  # noqa: B018 - refuses values for which H is not defined
+    return result
+
+
+@drawn_by("hamiltonians")
+@dataclass(frozen=True)
+class Hamiltonian:
+    """H(p, q) as an exact expression, with the values of those parameters that have one.
+
+    A parameter without a value stays a symbol. `expression` holds all parameters as symbols;
+    `exact` has the values put in.
+    """
+
+    expression: sympy.Expr
+    values: tuple[tuple[str, Fraction], ...] = ()
+
+    @classmethod
+    def parse(
+        cls, formula: str, parameters: Mapping[str, Exact | None] | None = None
+    ) -> "Hamiltonian":
+        """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
+
+        Raises InputError for a bad formula, a bad value, or a parameter that H does not have.
+        """
+        if not isinstance(formula, str):  # the parser says so
+            parse(formula, source="hamiltonian")
+        made = _of_formula(formula)
+        if parameters is not None and not isinstance(parameters, Mapping):
+            raise InputError("parameters", parameters, "is not a mapping of names to values")
+        return made.with_values(parameters or {})
+
+    def with_values(self, parameters: Mapping[str, Exact | None]) -> "Hamiltonian":
+        """The same H with these parameter values instead of its present ones."""
+        given = {}
+        for name, value in parameters.items():
+            if parameter_name(name) not in self.parameters:
+                known = ", ".join(self.parameters) or "none"
+                raise InputError("parameter", name, f"H has no such parameter; it has: {known}")
+            if value is not None:
+                given[name] = rational(value, f"parameter {name}")
+        if not given and not self.values:
+            return self
+        return _with_values(self.expression, tuple(sorted(given.items())))
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """All parameter names, with or without a value."""
+        return tuple(
+            sorted(s.name for s in self.expression.free_symbols if s.name not in ("p", "q"))
+        )
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """The names of the parameters without a value."""
+        given = dict(self.values)
+        return tuple(name for name in self.parameters if name not in given)
+
+    @cached_property
+    def exact(self) -> sympy.Expr:
+        """H with the values put in; InputError where it is not defined for them."""
+        return self.put_in(self.expression)
+
+    def put_in(self, expression: sympy.Expr) -> sympy.Expr:
+        """Any expression with H's parameter values put in, under the parser's limits."""
+        put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
+        shown = ", ".join(f"{n}={text(v)}" for n, v in self.values)
+        return substitute(expression, put, shown)
+
+    @cached_property
+    def formula(self) -> str:
+        """The expression as text that `parse` reads back."""
+        return to_text(self.expression)
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """Its formula and parameter values as text, by the names that results give them."""
+        return {
+            "hamiltonian": self.formula,
+            "parameters": {name: text(value) for name, value in self.values},
+        }
+
+    def gradient(self) -> Callable[[float, float], tuple[float, float]]:
+        """(p, q) ↦ (H_p, H_q) in Python floats, for a step function of one's own.
+
+        Each is rounded at every operation, so its last digits are not known. It raises what `math`
+        raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H is not
+        defined. Raises InputError where a parameter has no value.
+        """
+        if self.symbols:
+            raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
+        p, q = symbol("p"), symbol("q")
+        slopes = self.exact.diff(p), self.exact.diff(q)
+        made: Callable[[float, float], tuple[float, float]]
+        made = sympy.lambdify((p, q), slopes, modules="math", cse=True)
+        return made
+
+    def generic(self) -> "Hamiltonian":
+        """H with its parameters as symbols, but for those of value 0, whose terms vanish.
+
+        This is what a kernel is compiled for: the other values are its run-time arguments.
+        """
+        zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
+        return Hamiltonian(self.expression.subs(zeros))
+
+    def field(
+        self, *others: sympy.Expr, most_terms: int = MAX_TERMS
+    ) -> tuple["VectorField", list[Poly]]:
+        """The vector field of `exact`, and the other expressions as elements of its ring."""
+        if not others and most_terms == MAX_TERMS:
+            return _field_of(self), []
+        return _embedded(self, others, most_terms)
+
+
+def _embedded(
+    hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
+) -> tuple["VectorField", list[Poly]]:
+    variables = ("p", "q", "h", *hamiltonian.symbols)
+    ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
+    return VectorField.of(ring, elements[0]), elements[1:]
+
+
+# Several schemes are proved for one H after another: what they share is made once. Few, since a
+# field keeps what was derived along it.
+@lru_cache(maxsize=8)
+def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
+    return _embedded(hamiltonian, (), MAX_TERMS)[0]
+
+
+@dataclass(frozen=True)
+class VectorField:
+    """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative.
+
+    `energy`: H itself; None in a ring to which only its derivatives were carried.
+    """
+
+    ring: Ring
+    h_p: Poly
+    h_q: Poly
+    energy: Poly = None
+
+    @classmethod
+    def of(cls, ring: Ring, hamiltonian: Poly) -> "VectorField":
+        return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"), hamiltonian)
+
+    def derive(self, y: Poly) -> Poly:
+        """X y, the derivative of y along the flow."""
+        ring = self.ring
+        return ring.reduce(self.h_p * ring.diff(y, "q") - self.h_q * ring.diff(y, "p"))
+
+    def powers(self, y: Poly, most: int) -> Sequence[Poly]:
+        """[y, X y, …, X^most y]."""
+        result = [y]
+        for _ in range(most):
+            result.append(self.derive(result[-1]))
+        return result
+
+    @cached_property
+    def _kept(self) -> Along:
+        return Along(self.ring, self.h_p, self.h_q)
+
+    def power(self, name: str, n: int) -> Poly:
+        """Xⁿ y of y = p or q, made once."""
+        return self._kept.power(name, n)
+
+    def along(self, name: str, most: int) -> Sequence[Poly]:
+        """[y, X y, …, X^most y] of y = p or q, each made once."""
+        return [self._kept.power(name, n) for n in range(most + 1)]
+
+    def taylor(self, name: str, most: int) -> dict[int, Poly]:
+        """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
+        terms = {n: self._kept.term(name, n) for n in range(most + 1)}
+        return {n: x for n, x in terms.items() if x != 0}
+
+    def truncated(self, eta: int) -> tuple[Poly, Poly]:
+        """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""
+        return self._kept.truncated(eta)
+
+    def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
+        """The η whose `truncated` these very objects are; None for any other elements."""
+        return self._kept.truncated_at(p_next, q_next)
+
+    def delta_j(self, n: int, eta: int) -> Poly:
+        """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
+        return self._kept.delta_j(n, eta)
+
+    def bracket(self, x: Poly, y: Poly) -> Poly:
+        """∂(x, y)/∂(p, q)."""
+        diff, multiply = self.ring.diff, self.ring.multiply
+        return multiply(diff(x, "p"), diff(y, "q")) - multiply(diff(x, "q"), diff(y, "p"))
+
+    def separable(self) -> bool:
+        """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""
+        return self.ring.decide(self.ring.diff(self.h_p, "q")).zero is True

@@ -1,0 +1,118 @@
+"""Which named system, or polynomial potential, a Hamiltonian is, whoever wrote it down.
+
+A constant added to H does not change its flow, so it is left out on both sides. A named system's
+parameters are read off by sympy's matching of a short sum, and a match counts only where algebra
+then shows the two vector fields to be the same.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.algebra.generators import embed
+from verify.errors import InputError
+from verify.hamiltonians import potential_motion
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.motion import Motion, Values
+from verify.hamiltonians.system import System
+from verify.hamiltonians.systems import all_systems
+
+_MOST_TERMS = 8
+_P, _Q = symbol("p"), symbol("q")
+
+
+@dataclass(frozen=True)
+class Named:
+    """A named system with its parameters' values."""
+
+    system: System
+    values: Values
+
+
+def closed_form(
+    hamiltonian: Hamiltonian, p: Fraction, q: Fraction
+) -> tuple[Motion, tuple[Fraction, ...]] | None:
+    """The motion from (p, q) in closed form and the parameters in it; None where none is known."""
+    if hamiltonian.symbols:
+        return None
+    found = potential(hamiltonian)
+    if found is not None:
+        alpha, coefficients = found
+        return potential_motion.motion(alpha, coefficients, p, q), found[1]
+    for match in named(hamiltonian):
+        motion = match.system.flow(match.values, p, q) if match.system.flow else None
+        if motion is not None:
+            return motion, tuple(match.values.values())
+    return None
+
+
+@lru_cache(maxsize=64)
+def potential(hamiltonian: Hamiltonian) -> tuple[Fraction, tuple[Fraction, ...]] | None:
+    """α and (c₀, …, c₄) where H = α p²/2 + Σ c_k q^k with α ≠ 0."""
+    terms = _terms(hamiltonian.exact)
+    if terms is None or not terms.is_polynomial(_P, _Q):
+        return None
+    kinetic, coefficients = Fraction(0), [Fraction(0)] * 5
+    for (i, j), c in sympy.Poly(terms, _P, _Q).terms():
+        if not c.is_Rational or (i and (i, j) != (2, 0)) or j > 4:
+            return None
+        value = Fraction(int(c.p), int(c.q))
+        if i:
+            kinetic = 2 * value
+        else:
+            coefficients[j] = value
+    return (kinetic, tuple(coefficients)) if kinetic else None
+
+
+@lru_cache(maxsize=64)
+def named(hamiltonian: Hamiltonian) -> tuple[Named, ...]:
+    """The named systems that this Hamiltonian is, with their parameters' values."""
+    return tuple(_matches(hamiltonian))
+
+
+def _matches(hamiltonian: Hamiltonian) -> Iterator[Named]:
+    exact = hamiltonian.exact
+    terms = _terms(exact)
+    for system in all_systems().values():
+        own = system.hamiltonian().expression
+        if (own - hamiltonian.expression).is_number:
+            yield Named(system, dict(hamiltonian.values))
+            continue
+        values = None if terms is None else _values(terms, own, tuple(system.parameters))
+        if values is not None and _same_field(system, values, exact):
+            yield Named(system, values)
+
+
+def _terms(exact: sympy.Expr) -> sympy.Expr | None:
+    """H written out as a sum; None where that is long."""
+    ring, (element,) = embed([exact], ("p", "q"))
+    return ring.expression(element) if len(element) <= _MOST_TERMS else None
+
+
+def _values(terms: sympy.Expr, own: sympy.Expr, names: tuple[str, ...]) -> Values | None:
+    """The parameters with which the system may be this sum."""
+    wild = {symbol(name): sympy.Wild(name, exclude=[_P, _Q]) for name in names}
+    pattern = _without_constant(sympy.expand(own)).subs(wild)
+    match = _without_constant(terms).match(pattern)
+    if match is None or not all(x.is_Rational for x in match.values()):
+        return None
+    return {x.name: Fraction(int(value.p), int(value.q)) for x, value in match.items()}
+
+
+def _without_constant(terms: sympy.Expr) -> sympy.Expr:
+    return terms.as_independent(_P, _Q, as_Add=True)[1]
+
+
+def _same_field(system: System, values: Values, exact: sympy.Expr) -> bool:
+    if set(values) != set(system.parameters):
+        return False
+    try:
+        own = system.hamiltonian(values)
+    except InputError:
+        return False
+    ring, (apart,) = embed([own.exact - exact], ("p", "q"))
+    return all(ring.decide(ring.diff(apart, name)).zero is True for name in ("p", "q"))

@@ -1,0 +1,39 @@
+"""A named system: a Hamiltonian with its source, and what is known of its exact flow."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from verify.arithmetic.exact import Exact, rational
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.motion import Flow, Values
+
+Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
+
+
+@dataclass(frozen=True)
+class System:
+    """`formula` is H(p, q); `parameters` explains each of its parameters.
+
+    `flow` is its exact flow in closed form, where that is known. Without one, `goes` may say of
+    (parameters, p, q) how the orbit goes to infinity as t grows: None where it stays bounded.
+    `regimes` are examples of the kinds of orbits that it has.
+    """
+
+    name: str
+    title: str
+    formula: str
+    source: str
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    flow: Flow | None = None
+    goes: Callable[[Values, Fraction, Fraction], str | None] | None = None
+    regimes: Mapping[str, Regime] = field(default_factory=dict)
+
+    def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
+        """H with these parameter values; parameters without one stay symbols."""
+        return Hamiltonian.parse(self.formula, values)
+
+    def regime(self, name: str) -> tuple[Values, Fraction, Fraction]:
+        """The parameters, p and q of an example."""
+        values = {key: rational(text, key) for key, text in self.regimes[name].items()}
+        return values, values.pop("p"), values.pop("q")

@@ -1,0 +1,218 @@
+"""Whether a user's step is a scheme for H, and what it preserves: proved, else measured."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from verify.arithmetic.exact import decimal, text
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.agreement import by_duals, by_graph, must_agree
+from verify.integrators.claims import with_claims
+from verify.integrators.faults import Fault, changed_since, examined
+from verify.integrators.measured import of_measured
+from verify.integrators.probe import Point, carried_step, measured
+from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.rounded_order import Rounded, rounded_orders
+from verify.integrators.step import Step, StepError, last_line, within
+from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.number import UntraceableError
+from verify.integrators.tracing.step_map import TracedMap, traced_map
+from verify.integrators.tracing.trace import Tape
+from verify.proof.expansion import MOST_ORDERS
+from verify.proof.order import prove
+from verify.verdict import Verdict
+
+POINTS: tuple[Point, ...] = (
+    (Fraction(1, 3), Fraction(3, 5)),
+    (Fraction(-1, 2), Fraction(7, 8)),
+    (Fraction(1, 7), Fraction(6, 5)),
+    (Fraction(3, 4), Fraction(-2, 5)),
+)
+_PROOF_SECONDS = 30.0
+_KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
+_FARTHEST = 10**9
+
+
+def check_integrator(
+    step: Step, hamiltonian: Hamiltonian, claims: Claims = NOTHING, start: Point | None = None
+) -> Finding:
+    """Runs the user's code. `start`: an initial value to look at beside those of `POINTS`.
+
+    Raises InputError where a parameter of H has no value, or `start` is too far for floats.
+    """
+    if hamiltonian.symbols:
+        raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
+    for name, x in zip("pq", start or (), strict=False):
+        if abs(x) > _FARTHEST:
+            raise InputError(
+                name, decimal(x, 3), f"is beyond {_FARTHEST:.0e}, for a step in floats"
+            )
+    points = ((start,) if start else ()) + POINTS
+    faults, first = examined(step, points)
+    if any(fault.fatal for fault in faults):
+        return _no_step(faults)
+    found = _found(step, hamiltonian, points)
+    later = changed_since(step, first)
+    if later:
+        return _no_step([*faults, *later])
+    if found.verdict is Verdict.REFUTED:
+        found = found.noting(*_exchanged(step, hamiltonian, points))
+    found = replace(found, faults=tuple(fault.name for fault in faults))
+    found = found.noting(*(fault.text for fault in faults))
+    return with_claims(found, claims, step, hamiltonian, points)
+
+
+def _no_step(faults: Sequence[Fault]) -> Finding:
+    text = next(fault.text for fault in faults if fault.fatal)
+    return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
+
+
+def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
+    notes: list[str] = []
+    try:
+        with within(_PROOF_SECONDS, "its proof takes too long"):
+            return _proved(step, hamiltonian, points)
+    except Exception as error:  # the user's code may raise anything
+        notes.append(f"no proof: {_why(error)}")
+    kept = _KEPT * max(step.left, 0)
+    for how in ("duals", "floats"):
+        step.left += -kept if how == "duals" else kept
+        try:
+            if how == "duals":
+                must_agree(step, points, by_duals(step))
+            found = measured(step, hamiltonian, points, how)
+            told = of_measured(found, step, hamiltonian, points)
+            return replace(told, notes=(*notes, *told.notes))
+        except Exception as error:  # as above
+            notes.append(f"not measured with {how}: {_why(error)}")
+    return Finding(Verdict.UNDECIDED, "it can be neither traced nor measured", "calls").noting(
+        *notes
+    )
+
+
+def _exchanged(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> list[str]:
+    """Whether it is a scheme when p and q stand in each other's place."""
+    exchange = {"p": "q", "q": "p", "h": "h"}
+    a, b, c = (exchange[name] for name in step.order)
+    other = replace(step, order=(a, b, c))
+    if not _found(other, hamiltonian, points).verdict.holds:
+        return []
+    return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
+
+
+def _why(error: Exception) -> str:
+    known = isinstance(error, UntraceableError | StepError | InputError)
+    return str(error) if known else last_line(error)
+
+
+# -- proved ---------------------------------------------------------------------------------------
+
+
+def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
+    tape = Tape()
+    symbols = [tape.symbol(name) for name in "pqh"]
+    roots = carried_step(step, copied(step.function, tape), *symbols)
+    if tape.refused:  # what is traced is then what it does where that fails
+        raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
+    p_next, q_next = (x.node for x in roots)
+    must_agree(step, points, lambda kind: by_graph(kind, p_next, q_next))
+    traced = traced_map(hamiltonian, p_next, q_next)
+    proof = prove(traced.step_map)
+    found = Finding(
+        proof.verdict,
+        proof.reason,
+        "proof",
+        order=proof.order,
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        order_known=proof.convergence_decided,
+        area_at_least=proof.first.power or MOST_ORDERS + 1,
+        leading=proof.first.text,
+        delta_j=proof.step_map.delta_j_text,
+        proof=proof,
+    ).noting(f"traced with symbols; the map {traced.how}", *_readings(tape))
+    found = _but_for_rounding(found, traced, tape)
+    return _measured_area(found, step, hamiltonian, points)
+
+
+def _readings(tape: Tape) -> list[str]:
+    notes = ["h > 0 is taken for granted"] if tape.positive else []
+    if tape.readings:
+        shown = ", ".join(f"{x!r} as {text(v)}" for x, v in sorted(tape.readings.items()))
+        notes.append(f"floats are read as the exact numbers that they are written for: {shown}")
+    if tape.rounded:
+        shown = ", ".join(map(repr, sorted(tape.rounded)))
+        notes.append(f"floats taken by their exact binary values: {shown}")
+    return notes
+
+
+def _but_for_rounding(found: Finding, traced: TracedMap, tape: Tape) -> Finding:
+    """The orders that hold but for the rounding of its coefficients, where they are others."""
+    if not tape.rounded or traced.series is None:
+        return found
+    field, p, q = traced.series
+    better = rounded_orders(field, p, q)
+    if better.convergence == found.convergence_order and better.area in (found.order, None):
+        return found
+    if better.residue == 0:
+        return found
+    kept = found.area_preserving is True
+    area = None if kept else better.area
+    leading = found.leading
+    if not kept:
+        leading = field.ring.text(better.leading) if better.leading is not None else None
+    return replace(
+        found,
+        verdict=Verdict.MEASURED if _is_scheme(better) else found.verdict,
+        reason=_rounded_reason(found, better, p.most),
+        order=area,
+        area_preserving=True if kept else None if area is None else False,
+        convergence_order=better.convergence if better.convergence is not None else p.most,
+        leading=leading,
+        area_at_least=p.most,
+        proof=None,
+    )
+
+
+def _is_scheme(better: Rounded) -> bool:
+    return better.convergence is None or better.convergence >= 1
+
+
+def _rounded_reason(found: Finding, better: Rounded, most: int) -> str:
+    order = f"order {better.convergence}" if better.convergence is not None else f"order ≥ {most}"
+    if found.area_preserving:
+        area = "det J ≡ 1, proved"
+    else:
+        area = f"ΔJ = O(h^{better.area if better.area is not None else most})"
+    strictly = found.convergence_order
+    exactly = f"; taken exactly, they make the order {strictly}" if strictly is not None else ""
+    residue = decimal(better.residue, 2)
+    return (
+        f"{order} and {area}, but for the rounding of its coefficients, which leaves residues of "
+        f"up to {residue}{exactly}"
+    )
+
+
+def _measured_area(
+    found: Finding, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
+) -> Finding:
+    """What algebra leaves open of ΔJ is measured with dual numbers."""
+    if found.area_preserving is not None or found.verdict is Verdict.REFUTED:
+        return found
+    try:
+        by_duals = measured(step, hamiltonian, points, "duals")
+        other = of_measured(by_duals, step, hamiltonian, points)
+    except Exception as error:  # the user's code may raise anything
+        return found.noting(f"not measured: {_why(error)}")
+    if other.verdict is not Verdict.MEASURED:
+        return found
+    return replace(
+        other,
+        convergence_order=found.convergence_order,
+        order_known=found.order_known,
+        reason=f"{other.reason} (the coefficients of ΔJ are not decided: {found.reason})",
+        notes=(*found.notes, *other.notes),
+        leading=found.leading,
+        area_at_least=found.area_at_least,
+    )

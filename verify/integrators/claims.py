@@ -1,0 +1,90 @@
+"""What a user claims of his step, held against what was found, with a counterexample."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.probe import FINER, Measured, Point, Row, measured
+from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, broken
+from verify.integrators.step import Step
+from verify.verdict import Verdict
+
+_TOO_SLOW = 1.3  # times what a power allows: a step's other terms make less of it
+_PLAINLY = 0.95
+_SHOWN = {"proof": Verdict.PROVED, "duals": Verdict.MEASURED, "floats": Verdict.MEASURED}
+
+
+def with_claims(
+    found: Finding, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
+) -> Finding:
+    """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided.
+
+    Where all that is claimed is shown, and that it is a scheme, what else is not decided does not
+    count.
+    """
+    failed = broken(claims, found)
+    false = [claim for claim in failed if claim[1] is False]
+    if not failed and found.verdict is not Verdict.REFUTED:
+        waits = found.verdict is Verdict.UNDECIDED and claims != NOTHING
+        return replace(found, verdict=_SHOWN[found.how]) if waits and found.scheme else found
+    if not false and found.verdict is not Verdict.REFUTED:
+        return replace(
+            found,
+            verdict=Verdict.UNDECIDED,
+            reason=f"{failed[0][0]} is claimed and not decided: {found.reason}",
+        )
+    if false:
+        name, _, known = false[0]
+        reason = f"{name} is claimed; {known} ({found.reason})"
+        found = replace(found, verdict=Verdict.REFUTED, reason=reason)
+    else:
+        name = "order 1"
+    return replace(found, counterexample=_counterexample(name, claims, step, hamiltonian, points))
+
+
+def _counterexample(
+    name: str, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
+) -> Counterexample | None:
+    for how in ("duals", "floats"):
+        try:
+            whole = measured(step, hamiltonian, points, how)
+            row = whole.largest
+            if name == "det J ≡ 1":
+                value = f"{row.delta_j:.6e} ± {row.delta_noise:.1e}"
+                return Counterexample(*row.delta_at, row.h, "det J − 1", value, "0")
+            area = name.startswith("ΔJ")
+            power = (claims.area_order or 1) if area else (claims.order or 1) + 1
+            at = whole.rows[-1].delta_at if area else whole.rows[-1].error_at
+            return _too_slow(measured(step, hamiltonian, [at], how, FINER[how]), at, power, area)
+        except Exception:  # noqa: S112 - the user's code may raise anything
+            continue
+    return None
+
+
+def _too_slow(found: Measured, at: Point, power: int, area: bool) -> Counterexample | None:
+    """Two step sizes between which a quantity shrinks by less than its power says.
+
+    The largest of those at which that shows as plainly as it does anywhere.
+    """
+    pairs: list[tuple[float, Row, float, float, Row]] = []
+    for large, small in pairwise(found.rows):
+        (one, first), (two, second) = (_value(row, area) for row in (large, small))
+        if one > 100 * first and two > 100 * second:
+            allowed = one * float(small.h / large.h) ** power
+            pairs.append((two / allowed, small, two, allowed, large))
+    most = max((ratio for ratio, *_ in pairs), default=0.0)
+    if most < _TOO_SLOW:
+        return None
+    _, row, value, allowed, before = next(pair for pair in pairs if pair[0] >= _PLAINLY * most)
+    return Counterexample(
+        *at,
+        row.h,
+        "|det J − 1|" if area else "the distance from the exact flow after one step",
+        f"{value:.6e}",
+        f"about {allowed:.2e} for O(h^{power}), by that at h = {before.h}",
+    )
+
+
+def _value(row: Row, area: bool) -> tuple[float, float]:
+    return (abs(row.delta_j), row.delta_noise) if area else (row.error, row.error_noise)

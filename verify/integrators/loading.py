@@ -1,0 +1,122 @@
+"""A user's own step function: loaded, and its arguments understood.
+
+`verify check-integrator` and `verify.testing` run the user's code; nothing else in `verify` does.
+"""
+
+import importlib
+import importlib.util
+import inspect
+import sys
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from verify.errors import InputError
+from verify.integrators.step import TIME_LIMIT, Step, last_line, quiet
+
+_NAMES = {
+    **dict.fromkeys(("p", "v", "p0", "momentum", "velocity", "mom", "vel"), "p"),
+    **dict.fromkeys(("q", "x", "q0", "position", "displacement", "pos"), "q"),
+    **dict.fromkeys(("h", "dt", "tau", "step", "step_size", "stepsize", "delta_t"), "h"),
+}
+_MOST_SECONDS = 86_400
+_POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
+
+
+def load(target: str) -> Callable[..., Any]:
+    """The function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
+
+    The current folder is searched first. Raises InputError where it does not import, has no such
+    name, or that is no function.
+    """
+    place, _, name = target.rpartition(":")
+    if not place or not name:
+        raise InputError("integrator", target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
+    with quiet():
+        module = _module(place, target)
+        found: Any = module
+        for part in name.split("."):
+            if not hasattr(found, part):
+                known = sorted(n for n, x in vars(module).items() if inspect.isfunction(x))
+                has = f"it has: {', '.join(known[:8])}" if known else "it has no function"
+                raise InputError("integrator", target, f"{place} has no {name}; {has}")
+            found = getattr(found, part)
+    if not callable(found):
+        raise InputError("integrator", target, f"{name} is no function but {type(found).__name__}")
+    return found  # type: ignore[no-any-return]
+
+
+def _module(place: str, target: str) -> ModuleType:
+    path = Path(place)
+    try:
+        if path.suffix == ".py":
+            if not path.is_file():
+                raise InputError("integrator", target, f"there is no file {place}")
+            sys.path.insert(0, str(path.parent.resolve()))
+            spec = importlib.util.spec_from_file_location(path.stem, path)
+            assert spec is not None  # noqa: S101 - a .py file has a loader
+            assert spec.loader is not None  # noqa: S101
+            module = importlib.util.module_from_spec(spec)
+            sys.modules[path.stem] = module  # as pickles and dataclasses in it expect
+            spec.loader.exec_module(module)
+            return module
+        sys.path.insert(0, str(Path.cwd()))
+        return importlib.import_module(place)
+    except (InputError, KeyboardInterrupt):
+        raise
+    except BaseException as error:  # SystemExit too: it is the user's code
+        raise InputError("integrator", target, f"does not import: {last_line(error)}") from None
+
+
+# -- its signature --------------------------------------------------------------------------------
+
+
+def made_step(
+    function: Callable[..., Any],
+    arguments: str | None = None,
+    parameters: Mapping[str, Fraction] | None = None,
+    time_limit: float = TIME_LIMIT,
+) -> tuple[Step, list[str]]:
+    """The function as a Step, and notes on how its arguments are understood.
+
+    `arguments`: "q,p,h" or another order; without it the names of its arguments tell, where they
+    do. `parameters`: those of H, which it may take by name. InputError for a wrong signature, or
+    a time limit that is none.
+    """
+    if not 0.01 <= time_limit <= _MOST_SECONDS:
+        problem = f"is no number of seconds from 0.01 to {_MOST_SECONDS}"
+        raise InputError("time limit", time_limit, problem)
+    order = _order(arguments) if arguments is not None else None
+    try:
+        named = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # some functions written in C have none
+        return Step(function, order or ("p", "q", "h"), left=time_limit), []
+    name = getattr(function, "__name__", "step")
+    places = [x for x in named if x.kind in _POSITIONAL]
+    variadic = any(x.kind is inspect.Parameter.VAR_POSITIONAL for x in named)
+    rest = [*places[3:], *(x for x in named if x.kind is inspect.Parameter.KEYWORD_ONLY)]
+    known = parameters or {}
+    given = {x.name: float(known[x.name]) for x in rest if x.name in known}
+    missing = [x.name for x in rest if x.default is x.empty and x.name not in given]
+    if (len(places) < 3 and not variadic) or missing:
+        shown = f"{name}({', '.join(str(x) for x in named)})"
+        raise InputError("integrator", shown, "wanted: step(p, q, h), which returns p', q'")
+    notes = []
+    if order is None:
+        named_so = tuple(_NAMES.get(x.name.lower().strip("_"), "") for x in places[:3])
+        order = ("p", "q", "h")
+        if sorted(named_so) == ["h", "p", "q"]:
+            order = named_so[0], named_so[1], named_so[2]
+        first = ", ".join(x.name for x in places[:3])
+        if order != ("p", "q", "h") or sorted(named_so) != ["h", "p", "q"]:
+            notes.append(f"its arguments ({first}) are taken as ({', '.join(order)})")
+    return Step(function, order, given, left=time_limit), notes
+
+
+def _order(arguments: str) -> tuple[str, str, str]:
+    names = [name.strip() for name in arguments.split(",")]
+    if sorted(names) != ["h", "p", "q"]:
+        raise InputError("--arguments", arguments, "is no order of p, q and h, such as q,p,h")
+    return names[0], names[1], names[2]

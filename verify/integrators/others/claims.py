@@ -1,0 +1,258 @@
+"""The claims that are made for an integrator of others, each with its verdict and evidence."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from verify.arithmetic.exact import decimal
+from verify.integrators.check import POINTS
+from verify.integrators.others import reproductions
+from verify.integrators.others.integrator import Compared, ExactTableau, FloatStep, Subject
+from verify.integrators.others.measured import finding
+from verify.integrators.others.printed_order import WITHIN, Judged, judged
+from verify.integrators.others.printed_table import PrintedTable
+from verify.integrators.others.tableau import (
+    WRONG,
+    Symplecticity,
+    TableauOrder,
+    order_of,
+    symplecticity,
+)
+from verify.integrators.others.tableau_repair import repair
+from verify.integrators.results import Finding
+from verify.scenes.results.core import ClaimResult
+from verify.verdict import Verdict
+
+_Found = tuple[Verdict, str, tuple[tuple[str, ...], ...]]
+_NOT_CLAIMED = "Nothing is claimed of symplecticity"
+
+
+def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResult]:
+    """One claim for the order and one for symplecticity, where they are made; of a printed table
+    one for the order and one for its digits. `prefix` begins the ids."""
+    method = subject.method
+
+    def claim(what: str, statement: str, found: _Found, code: str = "") -> ClaimResult:
+        verdict, evidence, details = found
+        told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or isinstance(method, Compared)
+        return ClaimResult(
+            id=f"{prefix}/{subject.name}/{what}",
+            kind=what,
+            source=subject.name,
+            section=section,
+            statement=f"{statement} ({subject.source})",
+            scene="",
+            verdict=verdict,
+            evidence=f"{evidence}. Driven: {subject.driven}",
+            details=details,
+            reproduction=code if told else "",
+        )
+
+    if isinstance(method, Compared):
+        yield claim("agreement", method.statement, method.compare(), subject.reproduction)
+        return
+    if isinstance(method, PrintedTable):
+        assert subject.order is not None  # noqa: S101 - of printed tables it is always claimed
+        found = judged(method, subject.order)
+        said = of_printed(found, subject.order, method)
+        yield claim("order", f"order {subject.order}", said, subject.reproduction)
+        if found.verdict is not Verdict.REFUTED and method.units:
+            said = of_digits(found, method)
+            code = reproductions.of_digits(method, found.nearest, subject.order)
+            yield claim("digits", "every digit is right, to one unit of the last", said, code)
+        return
+    code, driven = subject.reproduction, isinstance(method, FloatStep)
+    point = ((isinstance(method, FloatStep) and method.points) or POINTS)[0]
+    if subject.order is not None:
+        shown = reproductions.of_order(code, point, subject.order) if driven else code
+        yield claim("order", f"order {subject.order}", _order(subject), shown)
+    if subject.area_preserving:
+        shown = reproductions.of_area(code, point) if driven else code
+        yield claim("area", "symplectic: det J ≡ 1", _area(subject), shown)
+
+
+def _order(subject: Subject) -> _Found:
+    assert subject.order is not None  # noqa: S101 - as it is called
+    if isinstance(subject.method, ExactTableau):
+        table = subject.method
+        order = order_of(table.tableau, subject.order, table.rounded)
+        repaired = ""
+        if order.order < subject.order and not table.rounded:
+            repaired = repair(table.tableau, subject.order)
+        area = symplecticity(table.tableau, table.rounded)
+        return of_tableau(subject.order, order, area, table.rounded, repaired)
+    assert isinstance(subject.method, FloatStep)  # noqa: S101 - the one kind that is left
+    return of_measured_order(subject.order, finding(subject.method), subject.area_preserving)
+
+
+def _area(subject: Subject) -> _Found:
+    if isinstance(subject.method, ExactTableau):
+        found = symplecticity(subject.method.tableau, subject.method.rounded)
+        verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
+        return verdict[found.holds], found.said, ()
+    assert isinstance(subject.method, FloatStep)  # noqa: S101 - the one kind that is left
+    return of_measured_area(finding(subject.method))
+
+
+# -- tableaux -------------------------------------------------------------------------------------
+
+
+def of_tableau(
+    claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: str = ""
+) -> _Found:
+    """Of exact coefficients by proof; of floats up to their rounding."""
+    ends = (
+        f"; of h^{found.order + 1}, {found.next} fails by {found.residue:.3g}" if found.next else ""
+    )
+    symplectic = {True: "it is symplectic", False: "it is not symplectic", None: ""}[area.holds]
+    beside = f". {_NOT_CLAIMED}; {symplectic}: {area.said}" if symplectic else f". {_NOT_CLAIMED}"
+    if found.order >= claimed:
+        more = f", and even order {found.order}" if found.order > claimed else ""
+        shown = f"order {claimed}{more} by {found.by}"
+        if rounded:
+            shown += (
+                f", with residues up to {found.largest:.1e}, as its floats' rounding leaves them"
+            )
+        verdict = Verdict.MEASURED if rounded else Verdict.PROVED
+        return verdict, f"{shown}{ends}{beside}", ()
+    if rounded and found.residue < float(WRONG):
+        said = (
+            f"its floats satisfy {found.next} but for {found.residue:.2e}, more than rounding "
+            "and less than a wrong method: digits are missing"
+        )
+        return Verdict.UNDECIDED, said, ()
+    said = f"its order is {found.order}: of h^{found.order + 1}, {found.next} fails by"
+    mend = f". {repaired}" if repaired else ""
+    return Verdict.REFUTED, f"{said} {found.residue:.5g}{mend}{beside}", ()
+
+
+# -- printed tables -------------------------------------------------------------------------------
+
+
+def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
+    """Whether the order can be had within ten units of the digits."""
+    count = f"{found.checked} condition{'' if found.checked == 1 else 's'}"
+    if found.verdict is Verdict.PROVED:
+        return found.verdict, f"all {count} hold exactly, for its coefficients are no decimals", ()
+    if found.verdict is Verdict.ENCLOSED:
+        assert found.off is not None  # noqa: S101 - of an enclosure it is known
+        said = (
+            f"exact coefficients that satisfy all {count} lie within {_far(found, table)} of those "
+            f"printed to {table.digits} decimals, whose residues are up to {_short(found.largest)}"
+        )
+        return found.verdict, said, ()
+    if found.verdict is Verdict.MEASURED:
+        small = "as small as the digits make them" if found.digits is None else "of wrong digits"
+        said = (
+            f"all {count} hold but for residues up to {_short(found.largest)}, {small}; "
+            "that exact ones exist nearby is not shown"
+        )
+        return found.verdict, said, ()
+    return Verdict.REFUTED, _excluded(found, claimed, table), _moved(found, table)
+
+
+def _excluded(found: Judged, claimed: int, table: PrintedTable) -> str:
+    if found.order >= claimed:  # each condition alone could hold; together they cannot
+        far = f"; the nearest exact ones are {_far(found, table)} away" if found.off else ""
+        return (
+            f"no coefficients within {WITHIN} units of the last printed digits satisfy all "
+            f"{found.checked} conditions together{far}; residues are up to {_short(found.largest)}"
+        )
+    assert found.failing is not None  # noqa: S101 - it is what excludes more
+    rounded = f", and no coefficients within {WITHIN} units of the last digits satisfy it"
+    said = (
+        f"its order is {found.order}: of h^{found.failing.order}, {found.failing.name} fails by "
+        f"{_short(found.residue)}{rounded if table.units else ''}"
+    )
+    return said + _alone(found, table)
+
+
+def _alone(found: Judged, table: PrintedTable) -> str:
+    """The one misprinted number, where one alone explains what is found."""
+    m = found.misprint
+    if m is None:
+        return ""
+    would = _rounded(m.value, table.units[m.name])
+    return (
+        f". One number alone explains it: {m.name}, printed {m.printed.strip()}, would be {would}"
+    )
+
+
+def of_digits(found: Judged, table: PrintedTable) -> _Found:
+    """Whether all digits are right to one unit of the last."""
+    if found.digits is None:
+        said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
+        return Verdict.UNDECIDED, said, ()
+    if found.off is None:
+        said = "no coefficients within one unit of the last printed digits satisfy all conditions"
+        return Verdict.REFUTED, f"{said}; the nearest are not known{_alone(found, table)}", ()
+    if found.digits:
+        said = f"exact coefficients lie within {_far(found, table)} of the printed ones"
+        return Verdict.ENCLOSED, said, ()
+    said = (
+        "no coefficients within one unit of the last printed digits satisfy all conditions; the "
+        f"nearest that do are up to {_far(found, table)} away{_alone(found, table)}"
+    )
+    return Verdict.REFUTED, said, _moved(found, table)
+
+
+def _moved(found: Judged, table: PrintedTable) -> tuple[tuple[str, ...], ...]:
+    """The numbers whose last digits are off by more than a unit."""
+    if found.nearest is None:
+        return ()
+    rows = [("number", "printed", "nearest exact", "off, in units of the last digit")]
+    for name, exact in found.nearest.items():
+        off = (table.values[name] - exact) / table.units[name]
+        if abs(off) > 1:
+            printed = table.numbers[name].strip()
+            rows.append((name, printed, _rounded(exact, table.units[name]), decimal(off, 3)))
+    return tuple(rows) if len(rows) > 1 else ()
+
+
+def _rounded(x: Fraction, unit: Fraction) -> str:
+    """A number to the place of that unit."""
+    whole = round(x / unit)
+    places = len(str(1 / unit)) - 1
+    digits = str(abs(whole)).rjust(places + 1, "0")
+    return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def _far(found: Judged, table: PrintedTable) -> str:
+    """How far the nearest exact coefficients are: in units, or, where it is far, absolutely."""
+    assert found.off is not None  # noqa: S101 - the callers have one
+    assert found.nearest is not None  # noqa: S101 - and so its numbers
+    if found.off < 100:
+        return f"{float(found.off):.2g} units of the last digit"
+    most = max(abs(table.values[n] - x) for n, x in found.nearest.items())
+    return f"{float(most):.1e}"
+
+
+def _short(x: Fraction) -> str:
+    return f"{float(x):.2e}"
+
+
+# -- floats ---------------------------------------------------------------------------------------
+
+
+def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> _Found:
+    """A measured order against the claimed one; what is not known refutes nothing."""
+    order, known = found.convergence_order, found.order_known
+    beside = ""
+    if area_claimed is None and found.area_preserving is False:
+        beside = f". {_NOT_CLAIMED}, and area is not preserved"
+    notes = "".join(f". {note[0].upper()}{note[1:]}" for note in found.notes[:1])
+    if known and (order is None or order >= claimed):
+        return Verdict.MEASURED, f"{found.reason}{beside}{notes}", ()
+    if known and order is not None:
+        return Verdict.REFUTED, f"{found.reason}{notes}", ()
+    return Verdict.UNDECIDED, f"{found.reason}{notes}", ()
+
+
+def of_measured_area(found: Finding) -> _Found:
+    """An area defect above the probe's own error refutes; none that is seen is MEASURED."""
+    error = "unknown" if found.probe_error is None else f"{found.probe_error:.1e}"
+    if found.area_preserving:
+        return Verdict.MEASURED, f"no area defect above the probe's error {error}", ()
+    if found.area_preserving is False and found.largest is not None:
+        said = f"|det J − 1| is up to {found.largest:.3g}, where the probe's error is {error}"
+        return Verdict.REFUTED, f"{said}; {found.reason}", ()
+    return Verdict.UNDECIDED, found.reason, ()

@@ -1,0 +1,62 @@
+"""An integrator of others as it is verified: what it is, how it is driven, and what it claims."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.integrators.others.printed_table import PrintedTable
+from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.verdict import Verdict
+
+Map = Callable[[float, float, float], tuple[float, float]]
+Point = tuple[Fraction, Fraction]  # p, q
+FINE = tuple(Fraction(k, 32) for k in (*range(48, 16, -2), *range(16, 3, -1)))
+
+
+@dataclass(frozen=True)
+class FloatStep:
+    """One step in floats, (p, q, h) → (p', q'), for one Hamiltonian, whose formula is given.
+
+    `make` imports the library and returns the step. `points`, `ladder`: where it is tried and with
+    which steps, falling; else the usual. A high order shows between a step that is too large for it
+    and one whose error is rounding: there, few points and a fine ladder tell more.
+    """
+
+    hamiltonian: str
+    make: Callable[[], Map]
+    points: tuple[Point, ...] = ()
+    ladder: tuple[Fraction, ...] = ()
+
+
+@dataclass(frozen=True)
+class ExactTableau:
+    """A Runge–Kutta method by its exact coefficients. `rounded`: they are floats, taken by their
+    exact binary values, so that conditions hold up to rounding at best."""
+
+    tableau: ImplicitTableau
+    rounded: bool = False
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What is compared as a whole: `compare` returns the verdict, the evidence and a table."""
+
+    statement: str
+    compare: Callable[[], tuple[Verdict, str, tuple[tuple[str, ...], ...]]]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """`driven`: one sentence on how it is made a one-step map. `order`: the claimed order of
+    convergence; `area_preserving`: whether it is claimed to be symplectic; None where nothing is
+    claimed. `source`: where. `reproduction`: a few lines of Python that show what was found with
+    nothing but the library.
+    """
+
+    name: str
+    driven: str
+    source: str
+    method: FloatStep | ExactTableau | PrintedTable | Compared
+    order: int | None = None
+    area_preserving: bool | None = None
+    reproduction: str = ""

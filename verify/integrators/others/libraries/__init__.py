@@ -1,0 +1,47 @@
+"""Other people's integrators, to be held against what they claim; one file each, found by
+themselves.
+
+A file defines `TITLE`, what people call it; `LIBRARY`, the package that it needs and imports only
+where it is used, or None where it needs none; `LEFT_OUT`, what of it cannot be driven as a one-step
+map with one degree of freedom, each with the reason; and `subjects()`, which yields what is
+verified (see `verify.integrators.others.integrator`). Adding a library is adding one file.
+"""
+
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from typing import Any
+
+from verify.discovery import Catalogue
+
+_FILES = Catalogue(__name__, __path__)
+
+
+@cache
+def _modules() -> dict[str, Any]:
+    return {file: _FILES.module(file) for file in _FILES.names}
+
+
+def names() -> tuple[str, ...]:
+    """The files' names; those that need no library last."""
+    modules = _modules()
+    return tuple(sorted(modules, key=lambda name: (modules[name].LIBRARY is None, name)))
+
+
+def get(name: str) -> Any:
+    """The module of that name."""
+    return _modules()[name]
+
+
+def installed(name: str) -> str | None:
+    """The version of the library that it needs; "" where it needs none, None where it is not
+    installed."""
+    library = get(name).LIBRARY
+    if library is None:
+        return ""
+    if find_spec(library) is None:
+        return None
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return "unknown version"

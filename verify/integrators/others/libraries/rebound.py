@@ -1,0 +1,151 @@
+"""REBOUND's integrators, on one line: a particle without mass falls towards a star, which stays.
+
+With G = 1, a star of mass 8 and softening 2, that is H = p²/2 − 8/√(q² + 4). EOS takes no
+softening, and Wisdom–Holman integrators solve the problem of two bodies exactly: so for these the
+star has mass 1, H = p²/2 − 1/q, and for the latter −q/4 is an additional force.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, Subject
+
+TITLE = "rebound"
+LIBRARY = "rebound"
+LEFT_OUT = (
+    ("BS, MERCURIUS, TRACE", "choose steps or switch by themselves: no map of a fixed h"),
+    ("IAS15", "of order 15: its error is rounding in float64 before a power of h shows"),
+    ("SEI", "is for the shearing sheet, of two degrees of freedom, with a velocity in its force"),
+    ("WHFAST512", "needs AVX-512 and its own set of planets"),
+    (
+        "WHFAST with correctors or kernels, SABA CM and CL, generalized orders in ε",
+        "are for the planets' pull on one another, which one particle does not have",
+    ),
+)
+_AWAY: tuple[Point, ...] = tuple(
+    (Fraction(a), Fraction(b))
+    for a, b in (("1/3", "2"), ("-1/4", "5/2"), ("1/5", "3"), ("0", "9/4"))
+)
+_ONE: tuple[Point, ...] = ((Fraction(1, 3), Fraction(1, 2)),)
+_SOURCE = "the integrator's own documentation, Simulation.integrator.__doc__"
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """`mass` of the star, `softening`, and whether the additional force −q/4 acts."""
+
+    hamiltonian: str
+    mass: float
+    softening: float
+    forced: bool
+    said: str
+
+
+_SOFT = _Problem(
+    "p**2/2 - 8/sqrt(q**2 + 4)", 8.0, 2.0, False,
+    "a massless particle on a line through a star of mass 8, softening 2",
+)  # fmt: skip
+_FREE = _Problem(
+    "p**2/2 - 1/q", 1.0, 0.0, False,
+    "a massless particle on a line before a star of mass 1",
+)  # fmt: skip
+_FORCED = _Problem(
+    "p**2/2 - 1/q + q**2/8", 1.0, 0.0, True,
+    "a massless particle on a line before a star of mass 1, −q/4 as additional force",
+)  # fmt: skip
+
+
+def subjects() -> Iterator[Subject]:
+    for order in (2, 4, 6, 8):
+        yield _subject(_SOFT, "leapfrog", f"LEAPFROG, order {order}", order, f"order = {order}")
+    for order in (2, 4, 6, 8, 10):
+        yield _subject(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
+    for name, order in (("LF", 2), ("LF4", 4), ("LF6", 6), ("LF8", 8), ("PMLF4", 4), ("PMLF6", 6)):
+        yield _subject(_FREE, "eos", f"EOS, phi1 = {name}", order, f"phi1 = '{name}'")
+    yield _subject(_FORCED, "whfast", "WHFAST", 2)
+    for name in ("1", "2", "3", "4"):
+        yield _subject(_FORCED, "saba", f"SABA{name}", 2, f"type = '{name}'")
+    for name in ("10_4", "8_6_4", "10_6_4"):
+        title = f"SABA({name.replace('_', ',')})"
+        yield _subject(_FORCED, "saba", title, 4, f"type = '{name}'")
+
+
+def _subject(problem: _Problem, integrator: str, name: str, order: int, *settings: str) -> Subject:
+    points: tuple[Point, ...] = () if problem.softening else _AWAY
+    ladder: tuple[Fraction, ...] = ()
+    if order >= 8:
+        points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
+    elif order == 6 and problem is _FREE:
+        points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
+    return Subject(
+        name,
+        f"one step of dt = h: {problem.said}",
+        _SOURCE,
+        FloatStep(
+            problem.hamiltonian, lambda: _made(problem, integrator, settings), points, ladder
+        ),
+        order,
+        True,
+        _script(problem, integrator, settings),
+    )
+
+
+def _made(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
+    import rebound
+
+    def step(p: float, q: float, h: float) -> tuple[float, float]:
+        simulation = rebound.Simulation()
+        simulation.add(m=problem.mass)
+        simulation.add(m=0.0, x=q, vx=p)
+        simulation.N_active = 1
+        simulation.integrator = integrator
+        for setting in settings:
+            name, _, value = setting.partition(" = ")
+            setattr(simulation.integrator, name, value.strip("'") if "'" in value else int(value))
+        simulation.softening = problem.softening
+        if problem.forced:
+            simulation.additional_forces = _pull
+        simulation.dt = h
+        simulation.steps(1)
+        simulation.synchronize()
+        star, particle = simulation.particles
+        return particle.vx - star.vx, particle.x - star.x
+
+    return step
+
+
+def _pull(reference: Any) -> None:
+    particle = reference.contents.particles[1]
+    particle.ax -= particle.x / 4
+
+
+def _script(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> str:
+    force = """
+
+def pull(s):
+    b = s.contents.particles[1]
+    b.ax -= b.x / 4
+"""
+    lines = [
+        "import rebound",
+        *(force.splitlines() if problem.forced else ()),
+        "",
+        "",
+        "def step(p, q, h):",
+        "    s = rebound.Simulation()",
+        f"    s.add(m={problem.mass})",
+        "    s.add(m=0.0, x=q, vx=p)",
+        "    s.N_active = 1",
+        f"    s.integrator = {integrator!r}",
+        *(f"    s.integrator.{setting}" for setting in settings),
+        *([f"    s.softening = {problem.softening}"] if problem.softening else ()),
+        *(["    s.additional_forces = pull"] if problem.forced else ()),
+        "    s.dt = h",
+        "    s.steps(1)",
+        "    s.synchronize()",
+        "    a, b = s.particles",
+        "    return b.vx - a.vx, b.x - a.x",
+    ]
+    return "\n".join(lines)

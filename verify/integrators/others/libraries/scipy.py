@@ -1,0 +1,180 @@
+"""scipy's one-step methods: single steps of solve_ivp's solvers, and the tables inside them.
+
+A solver is given `first_step` = h and tolerances so loose that it keeps the step. Radau solves its
+equations by Newton's method to a tolerance that depends on those, so that its step is driven below
+the solver: by the function it calls itself, with Newton's method run to rounding.
+"""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from verify.integrators.others.integrator import FINE, ExactTableau, FloatStep, Map, Point, Subject
+from verify.schemes.implicit_tableau import ImplicitTableau
+
+TITLE = "scipy"
+LIBRARY = "scipy"
+LEFT_OUT = (
+    ("BDF, LSODA", "are multistep methods of variable order: no one-step map"),
+    (
+        "DOP853, as a step",
+        "its error is rounding in float64 before a power of h shows; its table is verified instead",
+    ),
+    ("odeint, ode", "choose steps and orders by themselves: no map of a fixed h"),
+)
+_PENDULUM = "p**2/2 - cos(q)"
+# Dormand and Prince made the h⁶ of RK45's error small: at most points h⁷ hides it, and not here.
+_POINTS: tuple[Point, ...] = ((Fraction(1, 2), Fraction(-3, 2)),)
+_SOURCE = "the documentation of scipy.integrate.{}"
+_LOOSE = "a single step of scipy.integrate.{}, first_step = h, tolerances that accept any step"
+
+
+def subjects() -> Iterator[Subject]:
+    for name, order in (("RK23", 3), ("RK45", 5)):
+        yield Subject(
+            f"{name}, as a step",
+            _LOOSE.format(name),
+            _SOURCE.format(name),
+            FloatStep(_PENDULUM, _maker(name), *((_POINTS, FINE) if order > 4 else ())),
+            order,
+            None,
+            _script(name),
+        )
+    yield Subject(
+        "Radau, as a step",
+        "the collocation equations of scipy's Radau, by its own solver, to rounding",
+        _SOURCE.format("Radau"),
+        FloatStep(_PENDULUM, _radau),
+        5,
+        None,
+    )
+    for name, order, pair in (("RK23", 3, 2), ("RK45", 5, 4), ("DOP853", 8, None)):
+        yield from _tables(name, order, pair)
+    yield Subject(
+        "Radau, its table",
+        "the collocation method of scipy's nodes, (4 ∓ √6)/10 and 1",
+        _SOURCE.format("Radau"),
+        ExactTableau(_radau_tableau()),
+        5,
+        None,
+    )
+
+
+def _maker(name: str) -> Any:
+    def make() -> Map:
+        import numpy as np
+        from scipy import integrate
+
+        solver = getattr(integrate, name)
+
+        def field(_: float, z: Any) -> Any:
+            return np.array([-np.sin(z[1]), z[0]])
+
+        def step(p: float, q: float, h: float) -> tuple[float, float]:
+            one = solver(field, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
+            one.step()
+            if one.t != h:
+                raise RuntimeError("it took a shorter step")
+            return float(one.y[0]), float(one.y[1])
+
+        return step
+
+    return make
+
+
+def _radau() -> Map:
+    import numpy as np
+    from scipy.integrate._ivp.radau import MU_COMPLEX, MU_REAL, solve_collocation_system
+    from scipy.linalg import lu_factor, lu_solve
+
+    def field(_: float, z: Any) -> Any:
+        return np.array([-np.sin(z[1]), z[0]])
+
+    def step(p: float, q: float, h: float) -> tuple[float, float]:
+        z = np.array([p, q])
+        jacobian = np.array([[0.0, -np.cos(q)], [1.0, 0.0]])
+        real = lu_factor(MU_REAL / h * np.eye(2) - jacobian)
+        complex_ = lu_factor(MU_COMPLEX / h * np.eye(2) - jacobian)
+        stages = np.zeros((3, 2))
+        for _ in range(12):  # it ends after six turns at most; each call goes on from the last
+            _, _, stages, _ = solve_collocation_system(
+                field, 0.0, z, h, stages, np.full(2, 1e-14), 1e-3, real, complex_, lu_solve
+            )
+        return float(p + stages[-1][0]), float(q + stages[-1][1])
+
+    return step
+
+
+def _tables(name: str, order: int, pair: int | None) -> Iterator[Subject]:
+    """The coefficients inside the solver: of RK23 and RK45 quotients, which round to its floats; of
+    DOP853 decimals, taken as floats."""
+    from scipy import integrate
+
+    solver = getattr(integrate, name)
+    stages = len(solver.B)
+    padded = [[*row, *[0.0] * stages][:stages] for row in solver.A]
+    rows = [[float(x) for x in row] for row in padded[:stages]]
+    weights = [float(x) for x in solver.B]
+    quotients = pair is not None
+    driven = f"scipy.integrate.{name}'s A and B, as the quotients that round to them"
+    if not quotients:
+        driven = f"scipy.integrate.{name}'s A and B, floats taken by their exact binary values"
+    table = _tableau(rows, weights, quotients)
+    source = _SOURCE.format(name)
+    yield Subject(f"{name}, its table", driven, source, ExactTableau(table, not quotients), order)
+    if pair is not None:
+        estimate = [x + e for x, e in zip([*weights, 0.0], map(float, solver.E), strict=True)]
+        whole = [*([*row, 0.0] for row in rows), [*weights, 0.0]]
+        embedded = ExactTableau(_tableau(whole, estimate, quotients))
+        yield Subject(f"{name}, its error estimator", driven, source, embedded, pair)
+
+
+def _tableau(rows: Any, weights: Any, quotients: bool) -> ImplicitTableau:
+    exact = _quotient if quotients else _binary
+    return ImplicitTableau.of(
+        [[exact(x) for x in row] for row in rows], [exact(x) for x in weights]
+    )
+
+
+def _quotient(x: float) -> sympy.Rational:
+    """The quotient of the smallest denominator that is x but for rounding."""
+    for most in (10, 100, 1000, 10**4, 10**5, 10**6):
+        near = Fraction(x).limit_denominator(most)
+        if abs(near - Fraction(x)) <= Fraction(1, 2**51) * max(Fraction(1), abs(Fraction(x))):
+            return sympy.Rational(near.numerator, near.denominator)
+    return _binary(x)
+
+
+def _binary(x: float) -> sympy.Rational:
+    return sympy.Rational(*x.as_integer_ratio())
+
+
+def _radau_tableau() -> ImplicitTableau:
+    root = sympy.sqrt(6)
+    nodes = [(4 - root) / 10, (4 + root) / 10, sympy.S.One]
+    x = sympy.Symbol("x")
+    rows, weights = [], []
+    basis = []
+    for i, c in enumerate(nodes):
+        others = [d for j, d in enumerate(nodes) if j != i]
+        basis.append(sympy.expand(sympy.prod([(x - d) / (c - d) for d in others])))
+    for c in nodes:
+        rows.append([sympy.radsimp(sympy.integrate(b, (x, 0, c))) for b in basis])
+    weights = [sympy.radsimp(sympy.integrate(b, (x, 0, 1))) for b in basis]
+    return ImplicitTableau.of(rows, weights)
+
+
+def _script(name: str) -> str:
+    return f"""\
+import numpy as np
+from scipy.integrate import {name}
+
+
+def step(p, q, h):
+    f = lambda t, z: np.array([-np.sin(z[1]), z[0]])
+    s = {name}(f, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
+    s.step()
+    return s.y
+"""

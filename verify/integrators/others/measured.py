@@ -1,0 +1,54 @@
+"""What is found of a step in floats, by the probe of `verify check-integrator`."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.check import POINTS
+from verify.integrators.faults import examined
+from verify.integrators.measured import of_measured
+from verify.integrators.others.integrator import FloatStep
+from verify.integrators.probe import measured
+from verify.integrators.results import Finding
+from verify.integrators.step import Step, StepError, last_line
+from verify.verdict import Verdict
+
+# A library may raise anything, and leave the program too.
+FAILURES = (Exception, SystemExit)
+_SECONDS = 60.0
+_SPAN = 1.9  # times the least step of a stretch its largest must be, for a power to count
+# Faults of the map itself; what raises is how it is driven, and says nothing of the method.
+_NO_SCHEME = ("frozen", "ignores h", "not a function")
+
+
+def _not_known(found: Finding, first: float, last: float) -> Finding:
+    """Of a power that is seen over a short stretch only, as one may be in passing."""
+    said = f"a power of h is seen from h = {first:.2g} to {last:.2g} only, too short a stretch"
+    reason = f"{said}; {found.reason.partition('; ')[2]}"
+    return replace(
+        found, verdict=Verdict.UNDECIDED, reason=reason, convergence_order=None, order_known=False
+    )
+
+
+@lru_cache(maxsize=256)
+def finding(method: FloatStep) -> Finding:
+    """Its order, and whether an area defect is seen. UNDECIDED, with the reason, where it cannot be
+    measured."""
+    hamiltonian = Hamiltonian.parse(method.hamiltonian)
+    points = method.points or POINTS
+    try:
+        step = Step(method.make(), left=_SECONDS)
+        faults, _ = examined(step, points)
+        fatal = next((fault for fault in faults if fault.fatal), None)
+        if fatal is not None:
+            wrong = fatal.name in _NO_SCHEME
+            return Finding(Verdict.REFUTED if wrong else Verdict.UNDECIDED, fatal.text, "calls")
+        found = measured(step, hamiltonian, points, "floats", method.ladder)
+        told = of_measured(found, step, hamiltonian, points)
+        seen = found.distance
+        if seen.power is not None and seen.first < _SPAN * seen.last:
+            return _not_known(told, seen.first, seen.last)
+        return told
+    except FAILURES as error:
+        said = str(error) if isinstance(error, StepError) else last_line(error)
+        return Finding(Verdict.UNDECIDED, f"it cannot be measured: {said}", "calls")

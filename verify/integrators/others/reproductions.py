@@ -1,0 +1,150 @@
+"""A few lines of Python that show by themselves what was found of someone else's code or table."""
+
+import re
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from verify.arithmetic.exact import decimal
+from verify.integrators.others.printed_table import PrintedTable
+
+_DIGITS = 45
+_WIDTH = 88
+_INTEGER = re.compile(r"(?<![\w.])\d+(?![\w.])")
+
+_SERIES = """\
+
+
+def mul(x, y):  # of series in h, cut off after h^ORDER
+    return [sum(x[i] * y[k - i] for i in range(k + 1)) for k in range(ORDER + 1)]
+
+
+def force(q):  # V = q²/2 + q³/3
+    return [-a - b for a, b in zip(q, mul(q, q))]
+
+
+def speed(p):  # T = {kinetic}
+    return {speed}
+
+
+def begin():
+    return [F(1)] + ORDER * [F(0)], [F(1, 2)] + ORDER * [F(0)]
+
+
+def step(sizes):
+    p, q = begin()
+    for kind, size in sizes:
+        if kind == "kick":
+            p = [a + size * b for a, b in zip(p, [0, *force(q)])]
+        else:
+            q = [a + size * b for a, b in zip(q, [0, *speed(p)])]
+    return p + q
+
+
+def flow():
+    p, q = begin()
+    for k in range(ORDER):
+        p[k + 1], q[k + 1] = force(q)[k] / (k + 1), speed(p)[k] / (k + 1)
+    return p + q
+
+
+# the largest coefficient of 1 … h^ORDER by which a step differs from the flow: 0 for exact numbers
+for name, numbers in ({shown}):
+    print(name, float(max(abs(a - b) for a, b in zip(step(parts(*numbers)), flow()))))"""
+
+_ORDER = """
+
+
+def error(h):  # of one step, against 64 steps of h / 64
+    x, y = step({p}, {q}, h), ({p}, {q})
+    for _ in range(64):
+        y = step(*y, h / 64)
+    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))
+
+
+# the error of one step is O(h^r), r = order + 1; claimed: order {order}
+print([(h, math.log2(error(h) / error(h / 2))) for h in (1.0, 0.5, 0.25)])"""
+
+_AREA = """
+
+
+def det_j(p, q, h, d=2.0**-10):  # by differences of the second order, so that d² is its error
+    a, b = step(p + d, q, h), step(p - d, q, h)
+    e, f = step(p, q + d, h), step(p, q - d, h)
+    return ((a[0] - b[0]) * (e[1] - f[1]) - (a[1] - b[1]) * (e[0] - f[0])) / (4 * d * d)
+
+
+# claimed: 1
+print([(h, det_j({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])"""
+
+
+def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order: int) -> str:
+    """By how much one step with the printed digits, and one with the nearest exact numbers where
+    they are known, differ from the flow of one H, in exact fractions."""
+    quadratic = table.kind == "nystrom"
+    names = ", ".join(table.units)
+    printed = _listed([f'F("{table.numbers[name].strip()}")' for name in table.units], "    ")
+    exact = ",\n    ".join(f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.units if nearest)
+    rest = [f"    {n} = {_exact(x)}" for n, x in table.numbers.items() if n not in table.units]
+    lines = [
+        "from fractions import Fraction as F",
+        "",
+        f"ORDER = {order}",
+        f"printed = [\n{printed}\n]",
+        *([f"nearest = [\n    {exact},\n]"] if nearest else []),
+        "",
+        "",
+        f"def parts({names}):",
+        *rest,
+        *_parts(table),
+    ]
+    kinetic = "p²/2" if quadratic else "p²/2 + p³/3"
+    speed = "p" if quadratic else "[a + b for a, b in zip(p, mul(p, p))]"
+    shown = (
+        '("printed", printed), ("nearest exact", nearest)' if nearest else '("printed", printed),'
+    )
+    return "\n".join(lines) + "\n" + _SERIES.format(kinetic=kinetic, speed=speed, shown=shown)
+
+
+def _parts(table: PrintedTable) -> list[str]:
+    """Kicks and drifts; a composition is one of kick–drift–kick."""
+    if table.kind != "composition":
+        made = _listed([f'("{kind}", {_exact(size)})' for kind, size in table.parts], " " * 8)
+        return [f"    return [\n{made}\n    ]"]
+    made = _listed([_exact(size) for _, size in table.parts], " " * 8)
+    return [
+        f"    w = [\n{made}\n    ]",
+        '    kdk = ("kick", F(1, 2)), ("drift", F(1)), ("kick", F(1, 2))',
+        "    return [(kind, share * x) for x in w for kind, share in kdk]",
+    ]
+
+
+def _listed(items: Sequence[str], indent: str) -> str:
+    """The items with commas, on lines that are not too long."""
+    lines = [indent]
+    for item in items:
+        if len(lines[-1]) + len(item) > _WIDTH and lines[-1] != indent:
+            lines.append(indent)
+        lines[-1] += f"{item}, "
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _exact(size: str) -> str:
+    """A formula whose quotients are no floats."""
+    return _INTEGER.sub(r"F(\g<0>)", size)
+
+
+def of_order(code: str, point: tuple[Fraction, Fraction], order: int) -> str:
+    """`code`, which defines step(p, q, h), and the slopes of its error."""
+    return _with(code, _ORDER.format(p=float(point[0]), q=float(point[1]), order=order))
+
+
+def of_area(code: str, point: tuple[Fraction, Fraction]) -> str:
+    """`code`, which defines step(p, q, h), and the determinant of its Jacobian."""
+    return _with(code, _AREA.format(p=float(point[0]), q=float(point[1])))
+
+
+def _with(code: str, tail: str) -> str:
+    if not code:
+        return ""
+    imported = "" if re.search(r"^import math$", code, re.MULTILINE) else "import math\n"
+    return f"{imported if 'math.' in tail else ''}{code.rstrip()}\n{tail}"

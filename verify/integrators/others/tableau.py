@@ -1,0 +1,155 @@
+"""Order and symplecticity of a Runge–Kutta method from its coefficients, for every vector field.
+
+Two proofs of an order p. Butcher's simplifying assumptions B(p), C(η), D(ζ) give it where
+p ≤ η + ζ + 1 and p ≤ 2η + 2 (Butcher 1964; Hairer, Nørsett, Wanner, theorem II.7.4); else the
+conditions of all rooted trees of at most p vertices do. An order is refuted by the first tree whose
+condition fails: each is needed by some vector field.
+
+A B-series map is symplectic for every H exactly where b(u∘v) + b(v∘u) = b(u) b(v) for all pairs of
+trees, u∘v being u with v as one more branch of its root (Calvo, Sanz-Serna, Numer. Math. 67 (1994)
+153; Hairer, Lubich, Wanner, theorem VI.7.6). b_i a_ij + b_j a_ji = b_i b_j suffices for that; where
+it fails, a pair of trees that fails shows that the method is not symplectic.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
+from verify.schemes.tree_conditions import (
+    MOST_ORDER,
+    Weights,
+    density,
+    gaps_of,
+    trees,
+    vertices,
+    written,
+)
+
+ROUNDING = Fraction(1, 10**13)  # a residue below it is that of rounded coefficients
+WRONG = Fraction(1, 10**9)  # one above it is not, of 15 digits
+_MOST_SIMPLE = 40
+_MOST_PAIR = 8  # vertices of two trees together
+
+
+@dataclass(frozen=True)
+class TableauOrder:
+    """`order`: the highest that holds, of those looked at. `next`: the condition that ends it, with
+    its `residue`. `largest`: the largest residue that was taken for rounding. `by`: what shows it.
+    """
+
+    order: int
+    next: str
+    residue: float
+    largest: float
+    by: str
+
+
+def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> TableauOrder:
+    """The order, looked at up to `most` at least, by simplifying assumptions if they do."""
+    if not rounded:
+        simple = _simple(tableau.numbers)
+        if simple is not None:
+            return simple
+    largest = 0.0
+    for n in range(1, min(most + 1, MOST_ORDER) + 1):
+        for tree, gap in gaps_of(tableau, n).items():
+            size = abs(value(tableau.numbers, gap))
+            if size == 0 or (rounded and size < float(ROUNDING)):
+                largest = max(largest, size)
+                continue
+            name = f"{written(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
+            return TableauOrder(n - 1, name, size, largest, "the conditions of all rooted trees")
+    return TableauOrder(
+        min(most + 1, MOST_ORDER), "", 0.0, largest, "the conditions of all rooted trees"
+    )
+
+
+def value(numbers: Numbers, x: Any) -> float:
+    """A number of the ring as a float; 0 only where it is exactly 0."""
+    if numbers.ring.decide(x).zero:
+        return 0.0
+    return float(numbers.condition("", 0, x).residue)
+
+
+def _simple(numbers: Numbers) -> TableauOrder | None:
+    """By B(p), C(η) and D(ζ), where they decide the order exactly."""
+    b, a, ring = numbers.b, numbers.a, numbers.ring
+    one, s = ring.one, range(len(numbers.b))
+    powers = [[one] * len(b)]
+    c = [ring.reduce(sum(row, ring.zero)) for row in a]
+
+    def power(k: int) -> list[Any]:
+        while len(powers) <= k:
+            powers.append([ring.multiply(x, y) for x, y in zip(powers[-1], c, strict=True)])
+        return powers[k]
+
+    def holds_b(k: int) -> bool:
+        total = sum((b[i] * power(k - 1)[i] for i in s), ring.zero)
+        return ring.decide(ring.reduce(total - one / k)).zero is True
+
+    def holds_c(k: int) -> bool:
+        for i in s:
+            total = sum((a[i][j] * power(k - 1)[j] for j in s), ring.zero)
+            if ring.decide(ring.reduce(total - power(k)[i] / k)).zero is not True:
+                return False
+        return True
+
+    def holds_d(k: int) -> bool:
+        for j in s:
+            total = sum((b[i] * ring.multiply(power(k - 1)[i], a[i][j]) for i in s), ring.zero)
+            gap = total - (b[j] - b[j] * power(k)[j]) / k
+            if ring.decide(ring.reduce(gap)).zero is not True:
+                return False
+        return True
+
+    def count(holds: Any, most: int) -> int:
+        n = 0
+        while n < most and holds(n + 1):
+            n += 1
+        return n
+
+    p = count(holds_b, 2 * len(b) + 1)
+    eta, zeta = count(holds_c, p), count(holds_d, p)
+    if p > min(eta + zeta + 1, 2 * eta + 2):
+        return None
+    gap = sum((b[i] * power(p)[i] for i in s), ring.zero) - one / (p + 1)
+    by = f"B({p}), C({eta}) and D({zeta})"
+    return TableauOrder(p, f"b·c^{p} = 1/{p + 1}", abs(value(numbers, ring.reduce(gap))), 0.0, by)
+
+
+@dataclass(frozen=True)
+class Symplecticity:
+    """`holds`: None where it is not decided; `said`: what shows it."""
+
+    holds: bool | None
+    said: str
+
+
+def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplecticity:
+    """Whether the method is symplectic for every H in any dimension."""
+    if all(c.holds for c in tableau.area_conditions()):
+        return Symplecticity(True, "b_i a_ij + b_j a_ji = b_i b_j holds exactly for all i, j")
+    least = float(WRONG) if rounded else 0.0
+    weights = Weights(tableau.numbers)
+    for u, v in _pairs():
+        gap = (
+            weights.weight((*u, v)) + weights.weight((*v, u))
+            - tableau.numbers.ring.multiply(weights.weight(u), weights.weight(v))
+        )  # fmt: skip
+        size = abs(value(tableau.numbers, tableau.numbers.ring.reduce(gap)))
+        if size > least:
+            left = f"{written((*u, v))} + {written((*v, u))}"
+            right = f"({written(u) if u else 'b·1'})({written(v) if v else 'b·1'})"
+            return Symplecticity(False, f"{left} = {right} fails by {size:.3g}")
+    return Symplecticity(None, "no pair of trees that was looked at fails")
+
+
+def _pairs() -> Iterator[tuple[Any, Any]]:
+    for n in range(2, _MOST_PAIR + 1):
+        for k in range(1, n // 2 + 1):
+            for u in trees(k):
+                for v in trees(n - k):
+                    if vertices(u) + vertices(v) == n:
+                        yield u, v

@@ -1,0 +1,275 @@
+"""A user's step measured: its Jacobian and its distance from the exact flow, for a ladder of steps.
+
+With dual numbers of 200 bits where its code lets them through; else with floats, the Jacobian by
+central differences of the sixth order, whose error is estimated by a second width.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from verify.arithmetic.systems import mpfr
+from verify.flows.extrapolation import Flow, NoFlowError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.fitted_order import Fitted, fitted
+from verify.integrators.step import Step, StepError
+from verify.integrators.tracing.dual import BITS, Duals
+from verify.integrators.tracing.functions import copied
+
+Point = tuple[Fraction, Fraction]  # p, q
+_DIGITS = {"duals": 50, "floats": 20}
+_DUAL_NOISE = 2.0 ** -(BITS - 30)
+_EPSILON = 2.0**-52
+_STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
+_WIDTH = 2.0**-7
+LADDERS = {
+    "duals": [Fraction(1, 2**k) for k in range(2, 25)],
+    "floats": [
+        *(Fraction(x, 2**k) for k in range(2, 11) for x in (4, 3)),
+        *(Fraction(1, 2**k) for k in range(9, 23)),  # where an order is low
+    ],
+}
+# To show where an order is missed: what is small beside the rest shows at small steps.
+FINER = {"duals": [Fraction(1, 2**k) for k in range(3, 31)], "floats": LADDERS["floats"]}
+_RISES = 1.5  # times the ΔJ of a larger step: no power of h does so
+_FINE = (
+    0.25  # the largest step at which that is looked for: further terms may do so for larger ones
+)
+_ENOUGH = 6  # rows, with which what is slow may end
+
+
+@dataclass(frozen=True)
+class Reading:
+    """At one point with one step: ΔJ, and the distance from the exact flow, with their noise."""
+
+    delta_j: float
+    delta_noise: float
+    error: float
+    error_noise: float
+    increment: float  # of the exact flow
+
+
+@dataclass(frozen=True)
+class Row:
+    """The largest readings of one step size: ΔJ and the distance, each with its point."""
+
+    h: Fraction
+    delta_j: float
+    delta_noise: float
+    delta_at: Point
+    error: float
+    error_noise: float
+    error_at: Point
+    increment: float
+
+
+@dataclass(frozen=True)
+class Measured:
+    """`how`: "duals" or "floats". `rows` by falling h. `opaque`: whether it may solve equations up
+    to a tolerance, since values were compared or floats hide what it does. `rounded`: whether its
+    coefficients are. `points`: those that it was tried at.
+    """
+
+    how: str
+    rows: tuple[Row, ...]
+    opaque: bool
+    rounded: bool
+    points: tuple[Point, ...]
+
+    @property
+    def steady(self) -> tuple[Row, ...]:
+        """The rows down to where ΔJ first grows as h falls, as where a loop does one turn less."""
+        told = [k for k, row in enumerate(self.rows) if abs(row.delta_j) > 10 * row.delta_noise]
+        for k, after in pairwise(told):
+            one, two = self.rows[k], self.rows[after]
+            if one.h <= _FINE and abs(two.delta_j) > _RISES * abs(one.delta_j):
+                return self.rows[:after]
+        return self.rows
+
+    @property
+    def ragged(self) -> bool:
+        """Whether ΔJ is like what the tolerance of a loop leaves, and follows no power before."""
+        return self.opaque and self.area.power is None and len(self.steady) < len(self.rows)
+
+    @property
+    def area(self) -> Fitted:
+        used = self.steady if self.opaque else self.rows
+        rows = [(float(r.h), abs(r.delta_j), r.delta_noise) for r in used]
+        # Two steps of the same tolerance may differ by a power, by chance; five hardly do.
+        return fitted(rows, self.opaque, 5 if self.how == "floats" else 3)
+
+    @property
+    def distance(self) -> Fitted:
+        rows = [(float(r.h), r.error, r.error_noise) for r in self.rows]
+        return fitted(rows, self.opaque)
+
+    @property
+    def largest(self) -> Row:
+        """The row of the largest |ΔJ|, of those that are ten times their noise where there are."""
+        told = [row for row in self.rows if abs(row.delta_j) > 10 * row.delta_noise]
+        return max(told or self.rows, key=lambda row: abs(row.delta_j))
+
+    @property
+    def noise(self) -> float:
+        """The largest noise of ΔJ: the probe's own error."""
+        return max(row.delta_noise for row in self.rows)
+
+    @property
+    def unseen(self) -> float:
+        """An error of the step's increments, in parts of them, that would not show at any h."""
+        seen = [(r.error + 10 * r.error_noise) / r.increment for r in self.rows if r.increment]
+        return min(seen, default=math.inf)
+
+
+def measured(
+    step: Step,
+    hamiltonian: Hamiltonian,
+    points: Sequence[Point],
+    how: str,
+    ladder: Sequence[Fraction] = (),
+) -> Measured:
+    """All readings, with the steps of `ladder`, falling, or those of `LADDERS[how]`.
+
+    Raises StepError, or what the user's code raises, where there are too few.
+    """
+    ladder = ladder or LADDERS[how]
+    flow = Flow(hamiltonian.field()[0], _DIGITS[how])
+    probe = _Duals(step) if how == "duals" else _Floats(step)
+    rows, lost = [], ""
+
+    def at(point: Point, h: Fraction) -> Reading | None:
+        nonlocal lost
+        try:
+            return _reading(probe, flow, point, h)
+        except Exception as error:  # the user's code may raise anything
+            lost = f"{error}, at p = {point[0]}, q = {point[1]}, h = {h}"
+            return None
+
+    # A point at which no step can be made is left out, and so is a step that is too large for one.
+    alive = [point for point in points if at(point, ladder[-1]) is not None]
+    for h in ladder if alive else ():
+        found = {point: at(point, h) for point in alive}
+        readings = {point: reading for point, reading in found.items() if reading is not None}
+        if step.left <= 0:
+            break
+        if len(readings) == len(alive):
+            rows.append(_row(h, readings))
+    if len(rows) < _ENOUGH:
+        raise StepError(lost or "it fails for most steps")
+    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive))
+
+
+def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
+    area = max(readings, key=lambda point: abs(readings[point].delta_j))
+    distance = max(readings, key=lambda point: readings[point].error)
+    return Row(
+        h,
+        readings[area].delta_j,
+        max(r.delta_noise for r in readings.values()),
+        area,
+        readings[distance].error,
+        max(r.error_noise for r in readings.values()),
+        distance,
+        max(r.increment for r in readings.values()),
+    )
+
+
+def _reading(probe: "_Duals | _Floats", flow: Flow, point: Point, h: Fraction) -> Reading:
+    (p, q), delta, delta_noise, noise = probe.at(point, h)
+    start = flow.number(point[0]), flow.number(point[1])
+    try:
+        end = flow.advance(start, flow.number(h))
+    except NoFlowError as error:
+        raise StepError(str(error)) from None
+    with flow.arithmetic.context():
+        distance = max(abs(float(p - end[0])), abs(float(q - end[1])))
+        increment = max(abs(float(end[0] - start[0])), abs(float(end[1] - start[1])))
+    return Reading(delta, delta_noise, distance, noise, increment)
+
+
+class _Duals:
+    """The step at dual numbers."""
+
+    def __init__(self, step: Step) -> None:
+        self.step, self.kind = step, Duals()
+        with self.kind.running():
+            self.function = copied(step.function, self.kind)
+
+    @property
+    def opaque(self) -> bool:
+        return self.kind.compared
+
+    @property
+    def rounded(self) -> bool:
+        return bool(self.kind.rounded)
+
+    def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
+        with self.kind.running():
+            p, q = self.kind.state(*point)
+            x, y = carried_step(self.step, self.function, p, q, self.kind.rational(h))
+            delta = x.by_p * y.by_q - x.by_q * y.by_p - 1
+            size = abs(x.by_p * y.by_q) + abs(x.by_q * y.by_p) + 1
+            reach = 1 + abs(x.value) + abs(y.value)
+            return (
+                (x.value, y.value),
+                float(delta),
+                _DUAL_NOISE * float(size),
+                _DUAL_NOISE * float(reach),
+            )
+
+
+def carried_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
+    """p' and q' of a copied function at numbers of ours."""
+    with step.timed():
+        if step.arrays:
+            import numpy as np
+
+            boxes = [np.empty(1, dtype=object) for _ in range(2)]
+            boxes[0][0], boxes[1][0] = p, q
+            result = step.raw(function, boxes[0], boxes[1], h)
+        else:
+            result = step.raw(function, p, q, h)
+    pair = step.pair(result)
+    lifted = [p * 0 + x for x in pair]
+    if any(type(x) is not type(p) for x in lifted):
+        raise StepError("it returns what is no number")
+    return lifted
+
+
+class _Floats:
+    """The step at floats."""
+
+    opaque = rounded = True
+
+    def __init__(self, step: Step) -> None:
+        self.step = step
+
+    def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
+        z, size = (float(point[0]), float(point[1])), float(h)
+        here = self.step.at(*z, size)
+        width = _WIDTH * (1 + max(map(abs, z)))
+        one, two = (self._determinant(z, size, w) for w in (width, width / 2))
+        # The wider stencil's error is 2⁶ times the narrower's, whose rounding is twice as large.
+        reach = 1 + max(map(abs, (*here, *z)))
+        noise = abs(one - two) + 8 * _EPSILON * reach / width
+        number = mpfr.make(_DIGITS["floats"]).number
+        state = number(Fraction(here[0])), number(Fraction(here[1]))
+        return state, two, noise, 4 * _EPSILON * reach
+
+    def _determinant(self, z: tuple[float, float], h: float, width: float) -> float:
+        """ΔJ by central differences of the increments."""
+        columns = []
+        for i in (0, 1):
+            total = [0.0, 0.0]
+            for k, weight in _STENCIL:
+                ahead, behind = list(z), list(z)
+                ahead[i], behind[i] = z[i] + k * width, z[i] - k * width
+                f, b = self.step.at(ahead[0], ahead[1], h), self.step.at(behind[0], behind[1], h)
+                for j in (0, 1):
+                    total[j] += weight * ((f[j] - ahead[j]) - (b[j] - behind[j]))
+            columns.append([x / (60 * width) for x in total])
+        (u_p, v_p), (u_q, v_q) = columns
+        return u_p + v_q + u_p * v_q - u_q * v_p

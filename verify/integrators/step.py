@@ -1,0 +1,167 @@
+"""A user's own step function as it is called: with what, what it returns, and for how long.
+
+What it prints goes to standard error, and a call that does not come back is ended where this thread
+gets signals.
+"""
+
+import contextlib
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from verify.integrators.tracing.number import Carried
+
+State = tuple[float, float]
+TIME_LIMIT = 60.0  # seconds for all of the user's code
+
+
+class StepError(Exception):
+    """What the user's function did instead of a step: one clause, "it …", for people."""
+
+
+class _OverTimeError(BaseException):  # so that `except Exception` in the user's code lets it pass
+    pass
+
+
+def last_line(error: BaseException) -> str:
+    """The user's exception as Python's last line of a traceback has it."""
+    lines = str(error).split("\n")
+    return f"{type(error).__name__}: {lines[0]}" if lines[0] else type(error).__name__
+
+
+@contextlib.contextmanager
+def quiet() -> Iterator[None]:
+    """What is printed goes to standard error: JSON stands alone on standard output."""
+    with contextlib.redirect_stdout(sys.stderr):
+        yield
+
+
+@dataclass
+class Step:
+    """The user's step(p, q, h) → (p', q').
+
+    `order`: its arguments by their names here, such as ("q", "p", "h"); what it returns stands in
+    that order too. `given`: parameters of H that it takes by name. `arrays`: it wants p and q as
+    arrays, and gets them with one entry each. `left`: seconds left for its calls.
+    """
+
+    function: Callable[..., Any]
+    order: tuple[str, str, str] = ("p", "q", "h")
+    given: Mapping[str, float] = field(default_factory=dict)
+    arrays: bool = False
+    left: float = TIME_LIMIT
+
+    def raw(self, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
+        """What the function, or a copy of it, returns."""
+        by_name = {"p": p, "q": q, "h": h}
+        return function(*(by_name[name] for name in self.order), **self.given)
+
+    def at(self, p: float, q: float, h: float) -> State:
+        """(p', q') as floats. Raises StepError, also for what is not finite."""
+        with self.timed():
+            if self.arrays:
+                import numpy as np
+
+                result = self.raw(self.function, np.array([p]), np.array([q]), h)
+            else:
+                result = self.raw(self.function, p, q, h)
+        x, y = (_real(x) for x in self.pair(result))
+        if x - x != 0 or y - y != 0:
+            raise StepError(f"it returns {x:g}, {y:g}{where(p, q, h)}")
+        return x, y
+
+    def pair(self, result: Any) -> tuple[Any, Any]:
+        """p' and q' of what was returned, each a single number. Raises StepError."""
+        parts = _parts(result)
+        if self.order.index("p") > self.order.index("q"):
+            parts.reverse()
+        return _single(parts[0]), _single(parts[1])
+
+    @contextlib.contextmanager
+    def timed(self) -> Iterator[None]:
+        """Around every call: what it prints, what it raises, and how long it takes."""
+        if self.left <= 0:
+            raise StepError("its calls took all the time that there is")
+        begun = time.perf_counter()
+        try:
+            with quiet(), within(self.left, f"a call of it does not end within {self.left:.3g} s"):
+                yield
+        except SystemExit:
+            raise StepError("it calls sys.exit") from None
+        finally:
+            self.left -= time.perf_counter() - begun
+
+
+@contextlib.contextmanager
+def within(seconds: float, problem: str) -> Iterator[None]:
+    """StepError with this problem where what is done here does not end in time.
+
+    It may stand in another one, whose time goes on. In other threads than the main one, and on
+    systems without alarms, there is no limit.
+    """
+    error = _OverTimeError(problem)
+
+    def late(*_: object) -> None:
+        raise error
+
+    try:
+        before = signal.signal(signal.SIGALRM, late)
+    except (ValueError, AttributeError):
+        yield
+        return
+    outer, _ = signal.setitimer(signal.ITIMER_REAL, seconds)
+    begun = time.perf_counter()
+    try:
+        yield
+    except _OverTimeError as raised:
+        if raised is not error:
+            raise
+        raise StepError(problem) from None
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+        if outer:
+            spent = time.perf_counter() - begun
+            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3))
+
+
+def where(p: float, q: float, h: float) -> str:
+    return f" at p = {p:g}, q = {q:g}, h = {h:g}"
+
+
+def _parts(result: Any) -> list[Any]:
+    if result is None:
+        raise StepError("it returns None; wanted: p', q'")
+    if isinstance(result, str | bytes):
+        raise StepError("it returns text; wanted: p', q'")
+    try:
+        parts = list(result)
+    except TypeError:
+        raise StepError(f"it returns one {type(result).__name__}; wanted: p', q'") from None
+    if isinstance(result, dict | set) or len(parts) != 2:
+        count = f"a {type(result).__name__} of {len(parts)}"
+        raise StepError(f"it returns {count}; wanted: a pair p', q'")
+    return parts
+
+
+def _single(x: Any) -> Any:
+    shape = getattr(x, "shape", ())
+    if shape:
+        if any(n != 1 for n in shape):
+            raise StepError(f"it returns arrays of shape {tuple(shape)} for a single p, q")
+        return x.reshape(-1)[0]
+    return x[()] if hasattr(x, "dtype") and hasattr(x, "reshape") else x
+
+
+def _real(x: Any) -> float:
+    if isinstance(x, str | bytes | bytearray) or x is None or isinstance(x, Carried):
+        raise StepError(f"it returns {'text' if isinstance(x, str) else type(x).__name__}")
+    if isinstance(x, complex):
+        raise StepError("it returns complex numbers")
+    try:
+        return float(x)
+    except (TypeError, ValueError):
+        raise StepError(f"it returns a pair of {type(x).__name__}; wanted: numbers") from None

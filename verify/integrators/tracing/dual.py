@@ -1,0 +1,142 @@
+"""Dual numbers of many digits, x + a ε_p + b ε_q: a value and its derivatives by p and q.
+
+They can be compared, by their values, so that branches and loops with a tolerance go through: what
+comes out has the derivatives of the operations that were done. gmpy2's context is set by `running`.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
+
+import gmpy2
+
+from verify.integrators.tracing.number import Carried, UntraceableError
+
+Number = Any  # gmpy2.mpfr, which has no type stubs
+BITS = 200
+
+
+class Duals:
+    """Makes dual numbers of `BITS` bits; `Kind` of them. Use it inside `running`."""
+
+    def __init__(self) -> None:
+        self.readings: dict[float, Fraction] = {}
+        self.rounded: set[float] = set()
+        self.refused: list[str] = []
+        self.compared = False  # whether values were: there may be branches, or a tolerance
+
+    @contextmanager
+    def running(self) -> Iterator[None]:
+        with gmpy2.context(precision=BITS, round=gmpy2.RoundToNearest):
+            yield
+
+    def rational(self, value: Fraction) -> "Dual":
+        zero = gmpy2.mpfr(0)
+        return Dual(self, gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator)), zero, zero)
+
+    def pi(self) -> "Dual":
+        zero = gmpy2.mpfr(0)
+        return Dual(self, gmpy2.const_pi(), zero, zero)
+
+    def state(self, p: Fraction, q: Fraction) -> tuple["Dual", "Dual"]:
+        """p and q, whose derivatives are the unit vectors."""
+        x, y = self.rational(p), self.rational(q)
+        one = gmpy2.mpfr(1)
+        return Dual(self, x.value, one, x.by_q), Dual(self, y.value, y.by_p, one)
+
+
+class Dual(Carried):
+    """`value`, and `by_p` and `by_q`, its partial derivatives."""
+
+    __slots__ = ("by_p", "by_q", "value")
+    kind: Duals
+
+    def __init__(self, kind: Duals, value: Number, by_p: Number, by_q: Number) -> None:
+        super().__init__(kind)
+        self.value, self.by_p, self.by_q = value, by_p, by_q
+
+    def _chained(self, value: Number, slope: Number) -> "Dual":
+        return Dual(self.kind, value, slope * self.by_p, slope * self.by_q)
+
+    def known(self) -> Fraction | None:
+        """Its value where it does not move with p and q and is a rational of few bits."""
+        if self.by_p or self.by_q or not gmpy2.is_finite(self.value):
+            return None
+        numerator, denominator = self.value.as_integer_ratio()
+        if numerator.bit_length() + denominator.bit_length() < BITS // 2:
+            return Fraction(int(numerator), int(denominator))
+        # 1/3 and its like, as exponents: rounded to the working precision, and read back.
+        near = Fraction(int(numerator), int(denominator)).limit_denominator(10**4)
+        return near if self.kind.rational(near).value == self.value else None
+
+    def compared(self, other: "Dual") -> int:
+        self.kind.compared = True
+        if gmpy2.is_nan(self.value) or gmpy2.is_nan(other.value):
+            return 2 if gmpy2.is_nan(self.value) else -2
+        return int(self.value > other.value) - int(self.value < other.value)
+
+    def combined(self, name: str, other: Any) -> "Dual":
+        x, y = self.value, other.value
+        match name:
+            case "add":
+                return Dual(self.kind, x + y, self.by_p + other.by_p, self.by_q + other.by_q)
+            case "subtract":
+                return Dual(self.kind, x - y, self.by_p - other.by_p, self.by_q - other.by_q)
+            case "multiply":
+                by_p, by_q = (a * y + x * b for a, b in self._slopes(other))
+                return Dual(self.kind, x * y, by_p, by_q)
+        if y == 0:
+            raise ZeroDivisionError("division by zero")
+        z = x / y
+        by_p, by_q = ((a - z * b) / y for a, b in self._slopes(other))
+        return Dual(self.kind, z, by_p, by_q)
+
+    def _slopes(self, other: "Dual") -> tuple[tuple[Number, Number], tuple[Number, Number]]:
+        return (self.by_p, other.by_p), (self.by_q, other.by_q)
+
+    def applied(self, name: str) -> "Dual":
+        x = self.value
+        if (name == "sqrt" and x < 0) or (name == "log" and x <= 0):
+            raise ValueError("math domain error")
+        y = getattr(gmpy2, name)(x)
+        match name:
+            case "sin":
+                slope = gmpy2.cos(x)
+            case "cos":
+                slope = -gmpy2.sin(x)
+            case "tan":
+                slope = 1 + y * y
+            case "tanh":
+                slope = 1 - y * y
+            case "exp":
+                slope = y
+            case "sinh":
+                slope = gmpy2.cosh(x)
+            case "cosh":
+                slope = gmpy2.sinh(x)
+            case "log":
+                slope = 1 / x
+            case "atan":
+                slope = 1 / (1 + x * x)
+            case _:
+                slope = 1 / (2 * y) if y else gmpy2.mpfr(0)
+        return self._chained(y, slope)
+
+    def raised(self, exponent: Fraction) -> "Dual":
+        x = self.value
+        if exponent.denominator == 1:
+            n = int(exponent)
+            if n == 0:
+                return self.kind.rational(Fraction(1))
+            if x == 0 and n < 0:
+                raise ZeroDivisionError("0 cannot be raised to a negative power")
+            return self._chained(x**n, n * x ** (n - 1))
+        if x <= 0:
+            raise UntraceableError("it takes the root of a number that is not positive")
+        power = gmpy2.mpfr(gmpy2.mpq(exponent.numerator, exponent.denominator))
+        y = x**power
+        return self._chained(y, power * y / x)
+
+    def isfinite(self) -> bool:
+        return bool(gmpy2.is_finite(self.value))

@@ -1,0 +1,156 @@
+"""Traced nodes as linear sums: coefficients that are polynomials in h and in constants.
+
+A coefficient is {monomial: number}, a monomial ((node's number, power), …) in nodes that depend on
+neither p nor q. A sum is {leaf: coefficient}, a leaf the number of a node that is no sum and no
+multiple; `ONE` is that of a sum's part without a node.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from verify.integrators.tracing.trace import Node, expressions
+
+ONE = -1
+Monomial = tuple[tuple[int, int], ...]
+Scalar = dict[Monomial, Fraction]
+Linear = dict[Any, Scalar]
+_MOST_TERMS = 400  # of a coefficient, beyond which a node is taken as it is
+
+
+def added(x: Linear, y: Linear) -> Linear:
+    total = dict(x)
+    for leaf, coefficient in y.items():
+        total[leaf] = _sum(total.get(leaf, {}), coefficient)
+    return {leaf: c for leaf, c in total.items() if c}
+
+
+def scaled(x: Linear, factor: Scalar) -> Linear:
+    made = {leaf: _product(c, factor) for leaf, c in x.items()}
+    return {leaf: c for leaf, c in made.items() if c}
+
+
+def _sum(x: Scalar, y: Scalar) -> Scalar:
+    total = dict(x)
+    for monomial, value in y.items():
+        total[monomial] = total.get(monomial, Fraction(0)) + value
+    return {monomial: value for monomial, value in total.items() if value}
+
+
+def _product(x: Scalar, y: Scalar) -> Scalar:
+    total: Scalar = {}
+    for one, a in x.items():
+        for two, b in y.items():
+            powers = dict(one)
+            for number, n in two:
+                powers[number] = powers.get(number, 0) + n
+            monomial = tuple(sorted((k, n) for k, n in powers.items() if n))
+            total[monomial] = total.get(monomial, Fraction(0)) + a * b
+    return {monomial: value for monomial, value in total.items() if value}
+
+
+class Scalars:
+    """Reads the nodes of one trace; `moving` are those that depend on p or q."""
+
+    one: Scalar = {(): Fraction(1)}  # noqa: RUF012 - never changed
+
+    def __init__(self, nodes: Sequence[Node]) -> None:
+        self.nodes = {node.number: node for node in nodes}
+        self.symbols = {n.value: n.number for n in nodes if n.operation == "symbol"}
+        self.moving: set[int] = set()
+        for node in nodes:
+            own = node.operation == "symbol" and node.value != "h"
+            if own or any(x.number in self.moving for x in node.inputs):
+                self.moving.add(node.number)
+        self._written = expressions([n for n in nodes if n.number not in self.moving], {})
+        self._scalar: dict[int, Scalar] = {}
+        self._linear: dict[int, Linear] = {}
+        for node in nodes:
+            if node.number not in self.moving:
+                self._scalar[node.number] = self._as_scalar(node)
+        for node in nodes:
+            self._linear[node.number] = self._as_linear(node)
+
+    def leaf(self, number: int) -> Node:
+        """The node of a leaf; for `ONE`, a node that is the number 1."""
+        return self.nodes[number] if number != ONE else Node("number", (), Fraction(1), ONE)
+
+    def linear(self, node: Node) -> Linear:
+        return self._linear[node.number] if node.number != ONE else {ONE: self.one}
+
+    def sum(self, terms: Sequence[tuple[Scalar, Node]]) -> Linear:
+        total: Linear = {}
+        for coefficient, node in terms:
+            total = added(total, scaled(self.linear(node), coefficient))
+        return total
+
+    def times(self, x: Scalar, y: Scalar) -> Scalar:
+        return _product(x, y)
+
+    def parts(self, node: Node) -> list[tuple[Scalar, Node]]:
+        """A sum's or a multiple's parts; none of another node."""
+        minus: Scalar = {(): Fraction(-1)}
+        match node.operation:
+            case "add" | "subtract":
+                sign = self.one if node.operation == "add" else minus
+                return [(self.one, node.inputs[0]), (sign, node.inputs[1])]
+            case "multiply":
+                for x, y in (node.inputs, node.inputs[::-1]):
+                    if x.number not in self.moving:
+                        return [(self._scalar[x.number], y)]
+            case "divide" if node.inputs[1].number not in self.moving:
+                inverse = _inverse(self._scalar[node.inputs[1].number])
+                return [] if inverse is None else [(inverse, node.inputs[0])]
+        return []
+
+    def expression(self, x: Scalar) -> sympy.Expr:
+        terms = [
+            sympy.Rational(value.numerator, value.denominator)
+            * sympy.Mul(*(self._written[number] ** n for number, n in monomial))
+            for monomial, value in x.items()
+        ]
+        return sympy.Add(*terms)
+
+    def _as_scalar(self, node: Node) -> Scalar:
+        x = [self._scalar[one.number] for one in node.inputs]
+        found: Scalar | None = None
+        match node.operation:
+            case "number":
+                return {(): node.value} if node.value else {}
+            case "add":
+                found = _sum(*x)
+            case "subtract":
+                found = _sum(x[0], _product(x[1], {(): Fraction(-1)}))
+            case "multiply":
+                found = _product(*x)
+            case "divide":
+                inverse = _inverse(x[1])
+                found = None if inverse is None else _product(x[0], inverse)
+            case "power" if node.value.denominator == 1 and node.value > 0:
+                found = self.one
+                for _ in range(int(node.value)):
+                    found = _product(found, x[0])
+        short = found is not None and len(found) <= _MOST_TERMS
+        return found if found is not None and short else {((node.number, 1),): Fraction(1)}
+
+    def _as_linear(self, node: Node) -> Linear:
+        if node.number not in self.moving:
+            own = self._scalar[node.number]
+            return {ONE: own} if own else {}
+        parts = self.parts(node)
+        if not parts:
+            return {node.number: self.one}
+        total: Linear = {}
+        for coefficient, inner in parts:
+            total = added(total, scaled(self._linear[inner.number], coefficient))
+        return total
+
+
+def _inverse(x: Scalar) -> Scalar | None:
+    """1/x of a single term; None of a sum."""
+    if len(x) != 1:
+        return None
+    ((monomial, value),) = x.items()
+    return {tuple((number, -n) for number, n in monomial): 1 / value}

@@ -1,0 +1,298 @@
+"""Numbers of our own that go through a user's code in place of floats.
+
+Plain arithmetic, numpy's functions of scalars and of arrays of objects, and the functions that
+`verify.integrators.tracing.functions` puts in place of `math`'s lead here. What a user writes as a float is read
+as the number that he means where that can be told: 0.1 is 1/10 and 1/6 is 1/6, each the one simple
+rational whose nearest float it is; another float, such as 1.3512071919596578, is taken by its exact
+binary value, and counted as a rounded coefficient.
+"""
+
+import math
+import operator
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, NoReturn, Protocol
+
+_SIMPLE = 10_000  # the largest denominator that is read into a float: the chance is 10⁻⁸ a float
+_DECIMALS = 12  # significant digits of a decimal that is read into a float
+# What numpy and math call a function, and what it is here.
+FUNCTIONS = {
+    **{name: name for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh")},
+    "arctan": "atan",
+    "atan": "atan",
+}
+_OPERATORS: dict[str, Callable[..., Any]] = {
+    "add": operator.add,
+    "subtract": operator.sub,
+    "multiply": operator.mul,
+    "divide": operator.truediv,
+    "true_divide": operator.truediv,
+    "power": operator.pow,
+    "float_power": operator.pow,
+    "negative": operator.neg,
+    "positive": operator.pos,
+    "absolute": operator.abs,
+    "fabs": operator.abs,
+    "square": lambda x: x * x,
+    "reciprocal": lambda x: 1 / x,
+    "less": operator.lt,
+    "less_equal": operator.le,
+    "greater": operator.gt,
+    "greater_equal": operator.ge,
+    "equal": operator.eq,
+    "not_equal": operator.ne,
+    "isfinite": lambda x: x.isfinite(),
+    "isnan": lambda x: not x.isfinite(),
+}
+
+
+class UntraceableError(TypeError):
+    """The user's code asks a number of ours for what it cannot give; the message says what."""
+
+
+def reading(value: float) -> Fraction | None:
+    """The simple rational whose nearest float this is; None where there is none.
+
+    `value` is finite.
+    """
+    simple = Fraction(value).limit_denominator(_SIMPLE)
+    if simple and float(simple) == value:
+        return simple
+    shown = Decimal(repr(float(value)))
+    return Fraction(shown) if len(shown.as_tuple().digits) <= _DECIMALS else None
+
+
+class Kind(Protocol):
+    """What makes numbers of one kind, and what it took floats for."""
+
+    def rational(self, value: Fraction) -> "Carried": ...
+
+    def pi(self) -> "Carried": ...
+
+    readings: dict[float, Fraction]  # floats that were read as another number than their value
+    rounded: set[float]  # floats that were taken by their binary value, and are no integers
+    refused: list[str]  # what was asked of its numbers and cannot be had: code may catch the error
+
+
+def constant(kind: Kind, value: Any) -> "Carried | None":
+    """A user's number as one of ours; None for what is no number. Raises UntraceableError."""
+    if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
+        value = value.item()  # one of numpy's scalars
+    if isinstance(value, Carried):
+        return value
+    if isinstance(value, int | Fraction | Decimal):
+        return kind.rational(Fraction(value))
+    if isinstance(value, complex):
+        raise UntraceableError("it computes with complex numbers")
+    if not isinstance(value, float):
+        return None
+    if value - value != 0:
+        raise UntraceableError("it computes with infinity or NaN")
+    exact = Fraction(value)
+    read = exact if exact.denominator <= _SIMPLE else reading(value)
+    if read is None:
+        kind.rounded.add(value)
+        return kind.rational(exact)
+    if read != exact:
+        kind.readings[value] = read
+    return kind.rational(read)
+
+
+class Carried(ABC):
+    """A number of one `kind`; subclasses say what an operation on it is."""
+
+    __slots__ = ("kind",)
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+
+    # -- what a subclass says -----------------------------------------------------------------
+
+    @abstractmethod
+    def combined(self, name: str, other: Any) -> "Carried":
+        """self + other for "add", and so "subtract", "multiply", "divide"; of the same kind."""
+
+    @abstractmethod
+    def applied(self, name: str) -> "Carried":
+        """The function of `FUNCTIONS` at it."""
+
+    @abstractmethod
+    def raised(self, exponent: Fraction) -> "Carried": ...
+
+    @abstractmethod
+    def known(self) -> Fraction | None:
+        """Its value, where it is a rational number that does not depend on p, q and h."""
+
+    def compared(self, other: Any) -> int:
+        """−1, 0 or 1."""
+        self.refuse("it compares numbers")
+
+    def refuse(self, problem: str) -> NoReturn:
+        self.kind.refused.append(problem)
+        raise UntraceableError(problem)
+
+    # -- arithmetic ---------------------------------------------------------------------------
+
+    def _with(self, name: str, other: Any, swapped: bool = False) -> Any:
+        lifted = constant(self.kind, other)
+        if lifted is None:
+            return NotImplemented
+        return lifted.combined(name, self) if swapped else self.combined(name, lifted)
+
+    def __add__(self, other: Any) -> Any:
+        return self._with("add", other)
+
+    def __radd__(self, other: Any) -> Any:
+        return self._with("add", other, True)
+
+    def __sub__(self, other: Any) -> Any:
+        return self._with("subtract", other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return self._with("subtract", other, True)
+
+    def __mul__(self, other: Any) -> Any:
+        return self._with("multiply", other)
+
+    def __rmul__(self, other: Any) -> Any:
+        return self._with("multiply", other, True)
+
+    def __truediv__(self, other: Any) -> Any:
+        return self._with("divide", other)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self._with("divide", other, True)
+
+    def __neg__(self) -> Any:
+        return self._with("multiply", -1)
+
+    def __pos__(self) -> Any:
+        return self
+
+    def __pow__(self, other: Any, modulus: Any = None) -> Any:
+        exponent = constant(self.kind, other)
+        if exponent is None or modulus is not None:
+            return NotImplemented
+        known = exponent.known()
+        if known is not None:
+            return self.raised(known)
+        return (exponent * self.applied("log")).applied("exp")
+
+    def __rpow__(self, other: Any) -> Any:
+        base = constant(self.kind, other)
+        return NotImplemented if base is None else base**self
+
+    def conjugate(self) -> Any:
+        return self
+
+    @property
+    def real(self) -> Any:
+        return self
+
+    # -- comparisons and other types ----------------------------------------------------------
+
+    def _order(self, other: Any) -> int:
+        lifted = constant(self.kind, other)
+        if lifted is None:
+            self.refuse("it compares a number with what is none")
+        mine, others = self.known(), lifted.known()
+        if mine is not None and others is not None:
+            return (mine > others) - (mine < others)
+        return self.compared(lifted)
+
+    def __lt__(self, other: Any) -> bool:
+        return self._order(other) < 0
+
+    def __le__(self, other: Any) -> bool:
+        return self._order(other) <= 0
+
+    def __gt__(self, other: Any) -> bool:
+        return self._order(other) > 0
+
+    def __ge__(self, other: Any) -> bool:
+        return self._order(other) >= 0
+
+    def __eq__(self, other: object) -> bool:
+        return other is not None and self._order(other) == 0
+
+    def __ne__(self, other: object) -> bool:
+        return other is None or self._order(other) != 0
+
+    def __bool__(self) -> bool:
+        return self._order(0) != 0
+
+    def __abs__(self) -> Any:
+        return -self if self._order(0) < 0 else self
+
+    def _number(self, problem: str = "it turns numbers into floats or integers") -> Fraction:
+        known = self.known()
+        if known is None:
+            self.refuse(problem)
+        return known
+
+    def __round__(self, digits: int | None = None) -> Any:
+        return round(self._number("it rounds numbers"), digits)
+
+    def __floor__(self) -> int:
+        return math.floor(self._number("it rounds numbers"))
+
+    def __ceil__(self) -> int:
+        return math.ceil(self._number("it rounds numbers"))
+
+    def __trunc__(self) -> int:
+        return int(self._number("it rounds numbers"))
+
+    def _remainder(self, *_: Any) -> NoReturn:
+        self.refuse("it takes remainders")
+
+    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __rdivmod__ = _remainder
+
+    def __float__(self) -> float:
+        return float(self._number())
+
+    def __int__(self) -> int:
+        return int(self._number())
+
+    def __complex__(self) -> complex:
+        self.refuse("it computes with complex numbers")
+
+    def isfinite(self) -> bool:
+        self._order(0)
+        return True
+
+    # -- numpy --------------------------------------------------------------------------------
+
+    def __getattr__(self, name: str) -> Any:
+        """`sin`, `arctan`, …: what numpy calls of the objects in an array."""
+        if name in FUNCTIONS:
+            return lambda: self.applied(FUNCTIONS[name])
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        import numpy as np
+
+        if method != "__call__" or any(value is not None for value in options.values()):
+            self.refuse(f"it writes into arrays of floats by numpy's {ufunc.__name__}")
+        if any(isinstance(x, np.ndarray) and x.ndim for x in inputs):
+            return ufunc(*map(_objects, inputs))
+        lifted = [constant(self.kind, x) for x in inputs]
+        if None in [x if x is None else 0 for x in lifted]:
+            self.refuse(f"it gives numpy's {ufunc.__name__} what is no number")
+        if ufunc.__name__ in FUNCTIONS:
+            return self.applied(FUNCTIONS[ufunc.__name__])
+        if ufunc.__name__ in _OPERATORS:
+            return _OPERATORS[ufunc.__name__](*lifted)
+        self.refuse(f"it calls numpy's {ufunc.__name__}")
+
+
+def _objects(x: Any) -> Any:
+    import numpy as np
+
+    if isinstance(x, np.ndarray):
+        return x.astype(object)
+    alone = np.empty((), dtype=object)
+    alone[()] = x
+    return alone

@@ -1,0 +1,207 @@
+"""The Taylor series in h of a traced step, node by node, in the ring of H.
+
+No closed form is written down: a function of a series follows from its value at h = 0 and its
+differential equation, as sin and cos from s' = c x', c' = −s x' (Griewank and Walther, Evaluating
+Derivatives, section 13.2).
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from verify.algebra.formula import checked
+from verify.algebra.power_series import Series
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.integrators.tracing.trace import Node, expressions, in_order
+
+_PAIRED = {"sin": ("sin", "cos", -1), "cos": ("sin", "cos", -1),
+           "sinh": ("sinh", "cosh", 1), "cosh": ("sinh", "cosh", 1)}  # fmt: skip
+_REACHES = (7, 9, 13)  # who asks for one more order asks for further ones
+
+
+class TracedSeries:
+    """p' and q' of a trace as power series in h. InputError where it has none at h = 0."""
+
+    def __init__(self, hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> None:
+        self.roots = p_next, q_next
+        self._made: dict[int, tuple[Series, Series]] = {}
+        self.nodes = in_order(p_next, q_next)
+        at_zero = expressions(self.nodes, {"h": sympy.S.Zero})
+        wanted: dict[tuple[int, str], sympy.Expr] = {}
+        for node in self.nodes:
+            start = at_zero[node.number]
+            checked(start, "step", "its value at h = 0")
+            for name, expression in _beginnings(node, at_zero):
+                checked(expression, "step", "its value at h = 0")
+                wanted[node.number, name] = expression
+        self.field, elements = hamiltonian.field(*wanted.values())
+        self.known: dict[tuple[int, str], Poly] = dict(zip(wanted, elements, strict=True))
+
+    def __call__(self, most: int) -> tuple[VectorField, Series, Series]:
+        """The vector field, and p' and q' up to h^most."""
+        reach = next((n for n in _REACHES if n >= most), most)
+        if reach not in self._made:
+            self._made[reach] = self._up_to(reach)
+        p, q = (Series.of(self.field.ring, x.coefficients, most) for x in self._made[reach])
+        return self.field, p, q
+
+    def _up_to(self, most: int) -> tuple[Series, Series]:
+        maker = _Maker(self.field.ring, most, self.known)
+        made: dict[int, Series] = {}
+        for node in self.nodes:
+            made[node.number] = maker.series(node, [made[x.number] for x in node.inputs])
+        p, q = (made[root.number] for root in self.roots)
+        return p, q
+
+
+def _beginnings(node: Node, at_zero: dict[int, Any]) -> list[tuple[str, sympy.Expr]]:
+    """What its series needs at h = 0, by name."""
+    x = [at_zero[one.number] for one in node.inputs]
+    name = node.operation
+    if name in ("add", "subtract", "multiply", "number", "symbol"):
+        return []
+    if name == "pi":
+        return [("value", sympy.pi)]
+    if name == "divide":
+        return [("inverse", 1 / x[1])]
+    if name in _PAIRED:
+        first, second, _ = _PAIRED[name]
+        return [(one, getattr(sympy, one)(x[0])) for one in (first, second)]
+    found = [("value", at_zero[node.number])]
+    if name == "power" and node.value.denominator == 1 and node.value > 0:
+        return []
+    if name in ("power", "sqrt", "log"):
+        found.append(("inverse", 1 / x[0]))
+    if name == "atan":
+        found.append(("inverse", 1 / (1 + x[0] ** 2)))
+    return found
+
+
+class _Maker:
+    """Series up to h^most of nodes, from those of their inputs."""
+
+    def __init__(self, ring: Ring, most: int, known: dict[tuple[int, str], Poly]) -> None:
+        self.ring, self.most, self.known = ring, most, known
+
+    def constant(self, x: Poly) -> Series:
+        return Series.of(self.ring, [x], self.most)
+
+    def series(self, node: Node, inputs: Sequence[Series]) -> Series:
+        ring = self.ring
+        match node.operation:
+            case "number":
+                return self.constant(ring.constant(node.value))
+            case "symbol" if node.value == "h":
+                return self.constant(ring.one).shifted(1)
+            case "symbol":
+                return self.constant(ring.variable(node.value))
+            case "pi":
+                return self.constant(self.known[node.number, "value"])
+            case "add":
+                return inputs[0] + inputs[1]
+            case "subtract":
+                return inputs[0] - inputs[1]
+            case "multiply":
+                return inputs[0] * inputs[1]
+        return self._function(node, inputs)
+
+    def _function(self, node: Node, inputs: Sequence[Series]) -> Series:
+        x, name = inputs[0], node.operation
+        if name == "divide":
+            return self._quotient(x, inputs[1], self.known[node.number, "inverse"])
+        if name in _PAIRED:
+            first, second, sign = _PAIRED[name]
+            pair = self._pair(x, self.known[node.number, first], self.known[node.number, second],
+                              sign)  # fmt: skip
+            return pair[name == second]
+        if name == "power" and (node.number, "value") not in self.known:
+            return self._natural(x, int(node.value))
+        value = self.known[node.number, "value"]
+        inverse = self.known.get((node.number, "inverse"))
+        match name:
+            case "power":
+                return self._power(x, node.value, value, inverse)
+            case "sqrt":
+                return self._power(x, Fraction(1, 2), value, inverse)
+            case "log":  # y' = x'/x
+                return self._integral(value, self._quotient(_slope(x), x, inverse))
+            case "atan":  # y' = x'/(1 + x²)
+                below = self.constant(self.ring.one) + x * x
+                return self._integral(value, self._quotient(_slope(x), below, inverse))
+            case "exp":
+                return self._solved(value, x, lambda y: y)
+            case "tan":
+                return self._solved(value, x, lambda y: self.constant(self.ring.one) + y * y)
+            case "tanh":
+                return self._solved(value, x, lambda y: self.constant(self.ring.one) - y * y)
+        raise InputError("step", name, "is a function whose series is not known")
+
+    def _natural(self, x: Series, n: int) -> Series:
+        result, base = None, x
+        while n:
+            if n & 1:
+                result = base if result is None else result * base
+            n >>= 1
+            base = base * base if n else base
+        return result or self.constant(self.ring.one)
+
+    def _quotient(self, x: Series, y: Series, inverse: Poly) -> Series:
+        ring = self.ring
+        found: list[Poly] = []
+        for k in range(self.most + 1):
+            total = x.coefficients[k] if k <= x.most else ring.zero
+            for j in range(1, k + 1):
+                if y.coefficients[j] != 0:
+                    total = total - y.coefficients[j] * found[k - j]
+            found.append(ring.multiply(ring.reduce(total), inverse))
+        return Series.of(ring, found, self.most)
+
+    def _power(self, x: Series, exponent: Fraction, value: Poly, inverse: Poly) -> Series:
+        """x y' = r x' y for y = x^r."""
+        ring, found = self.ring, [value]
+        for k in range(1, self.most + 1):
+            total = ring.zero
+            for j in range(1, k + 1):
+                weight = (j * exponent - (k - j)) / k
+                total += ring.constant(weight) * x.coefficients[j] * found[k - j]
+            found.append(ring.multiply(ring.reduce(total), inverse))
+        return Series.of(ring, found, self.most)
+
+    def _integral(self, value: Poly, slope: Series) -> Series:
+        shares = [
+            c * self.ring.constant(Fraction(1, k + 1)) for k, c in enumerate(slope.coefficients)
+        ]
+        return Series.of(self.ring, [value, *shares], self.most)
+
+    def _solved(self, value: Poly, x: Series, slope: Callable[[Series], Series]) -> Series:
+        """y' = slope(y) x', coefficient by coefficient."""
+        y = Series.of(self.ring, [value], self.most)
+        for k in range(1, self.most + 1):
+            product = slope(y) * _slope(x)
+            coefficient = product.coefficients[k - 1] * self.ring.constant(Fraction(1, k))
+            y = Series.of(self.ring, [*y.coefficients[:k], coefficient], self.most)
+        return y
+
+    def _pair(self, x: Series, odd: Poly, even: Poly, sign: int) -> tuple[Series, Series]:
+        """s' = c x' and c' = ± s x'."""
+        ring, s, c = self.ring, [odd], [even]
+        for k in range(1, self.most + 1):
+            up, down = ring.zero, ring.zero
+            for j in range(1, k + 1):
+                if x.coefficients[j] != 0:
+                    part = ring.constant(Fraction(j, k)) * x.coefficients[j]
+                    up, down = up + part * c[k - j], down + part * s[k - j]
+            s.append(ring.reduce(up))
+            c.append(ring.reduce(down * sign))
+        return Series.of(ring, s, self.most), Series.of(ring, c, self.most)
+
+
+def _slope(x: Series) -> Series:
+    """dx/dh; its last coefficient is not known, and not asked for."""
+    ring = x.ring
+    moved = [c * ring.constant(Fraction(k)) for k, c in enumerate(x.coefficients)][1:]
+    return Series.of(ring, moved, x.most)

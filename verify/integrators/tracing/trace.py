@@ -1,0 +1,183 @@
+"""What a user's step does to symbols: its operations as a graph, each written once.
+
+`Tape` makes the symbols p, q, h and holds the nodes; numbers are folded as they come, exactly.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from verify.algebra.formula import FUNCTIONS, MAX_EXPONENT, symbol
+from verify.integrators.tracing.number import Carried, UntraceableError
+
+MOST_NODES = 20_000
+_MOST_BITS = 20_000  # of a folded number
+_SYMBOLS = "symbol"
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """One operation; `value` is a number's Fraction, a power's exponent or a symbol's name.
+
+    Nodes are written once, so that the same operation is the same object. `number` says which.
+    """
+
+    operation: str
+    inputs: tuple["Node", ...]
+    value: Any
+    number: int
+
+
+class Tape:
+    """Makes nodes; `Kind` of the numbers that record."""
+
+    def __init__(self) -> None:
+        self.readings: dict[float, Fraction] = {}
+        self.rounded: set[float] = set()
+        self.refused: list[str] = []
+        self.positive = False  # whether it was asked for the sign of h
+        self._nodes: dict[tuple[Any, ...], Node] = {}
+
+    def symbol(self, name: str) -> "Traced":
+        return Traced(self, self.node(_SYMBOLS, (), name))
+
+    def rational(self, value: Fraction) -> "Traced":
+        if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_BITS:
+            raise UntraceableError("its numbers become too long")
+        return Traced(self, self.node("number", (), value))
+
+    def pi(self) -> "Traced":
+        return Traced(self, self.node("pi", (), None))
+
+    def node(self, operation: str, inputs: tuple[Node, ...], value: Any = None) -> Node:
+        key = (operation, *(x.number for x in inputs), value)
+        if key not in self._nodes:
+            if len(self._nodes) >= MOST_NODES:
+                raise UntraceableError(f"it does more than {MOST_NODES} operations")
+            self._nodes[key] = Node(operation, inputs, value, len(self._nodes))
+        return self._nodes[key]
+
+
+class Traced(Carried):
+    """A number that records what is done to it."""
+
+    __slots__ = ("node",)
+    kind: Tape
+
+    def __init__(self, kind: Tape, node: Node) -> None:
+        super().__init__(kind)
+        self.node = node
+
+    def known(self) -> Fraction | None:
+        return self.node.value if self.node.operation == "number" else None
+
+    def compared(self, other: Any) -> int:
+        """h > 0, and nothing is known of the sign of anything else."""
+        known = other.known()
+        is_h = (self.node.operation, self.node.value) == (_SYMBOLS, "h")
+        if is_h and known is not None and known <= 0:
+            self.kind.positive = True
+            return 1
+        self.refuse("it compares numbers")
+
+    def combined(self, name: str, other: Any) -> "Traced":
+        x, y = self.known(), other.known()
+        if x is not None and y is not None:
+            if name == "divide" and y == 0:
+                raise ZeroDivisionError
+            return self.kind.rational(_FOLDED[name](x, y))
+        if y == (0 if name in ("add", "subtract") else 1):
+            return self
+        if name == "multiply" and x is not None and y is None:
+            return other if x == 1 else other._times(x)  # type: ignore[no-any-return]
+        if name == "multiply" and y is not None:
+            return self._times(y)
+        if name == "add" and x == 0:
+            return other  # type: ignore[no-any-return]
+        return Traced(self.kind, self.kind.node(name, (self.node, other.node)))
+
+    def _times(self, x: Fraction) -> "Traced":
+        """The number stands first, and 0 times anything is 0."""
+        number = self.kind.rational(x)
+        if x == 0:
+            return number
+        return Traced(self.kind, self.kind.node("multiply", (number.node, self.node)))
+
+    def applied(self, name: str) -> "Traced":
+        return Traced(self.kind, self.kind.node(name, (self.node,)))
+
+    def raised(self, exponent: Fraction) -> "Traced":
+        if abs(exponent.numerator) > MAX_EXPONENT or exponent.denominator > MAX_EXPONENT:
+            raise UntraceableError(f"it has the exponent {float(exponent):g}")
+        if exponent == 0:
+            return self.kind.rational(Fraction(1))
+        if exponent == 1:
+            return self
+        known = self.known()
+        if known is not None and exponent.denominator == 1:
+            return self.kind.rational(known ** int(exponent))
+        return Traced(self.kind, self.kind.node("power", (self.node,), exponent))
+
+
+_FOLDED = {
+    "add": lambda x, y: x + y,
+    "subtract": lambda x, y: x - y,
+    "multiply": lambda x, y: x * y,
+    "divide": lambda x, y: x / y,
+}
+
+
+def in_order(*roots: Node) -> list[Node]:
+    """The nodes that the roots are made of, each after its inputs."""
+    seen: dict[int, Node] = {}
+    waiting = list(roots)
+    while waiting:
+        node = waiting.pop()
+        if node.number not in seen:
+            seen[node.number] = node
+            waiting += node.inputs
+    return [seen[number] for number in sorted(seen)]
+
+
+def expressions(
+    nodes: Sequence[Node],
+    put: Mapping[str, sympy.Expr],
+    known: Mapping[int, sympy.Expr] | None = None,
+) -> dict[int, sympy.Expr]:
+    """Each node as an expression, by its number, with symbols replaced by what is put for them.
+
+    `known`: expressions of other nodes, of which these are made.
+    """
+    made: dict[int, sympy.Expr] = dict(known or {})
+    for node in nodes:
+        made[node.number] = _expression(node, [made[x.number] for x in node.inputs], put)
+    return made
+
+
+def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) -> sympy.Expr:
+    match node.operation:
+        case "symbol":
+            return put.get(node.value, symbol(node.value))
+        case "number":
+            return sympy.Rational(node.value.numerator, node.value.denominator)
+        case "pi":
+            return sympy.pi
+        case "power":
+            return inputs[0] ** sympy.Rational(node.value.numerator, node.value.denominator)
+        case "divide":
+            return inputs[0] / inputs[1]
+        case "add" | "subtract" | "multiply" as name:
+            return _FOLDED[name](*inputs)
+        case name:
+            return FUNCTIONS[name](inputs[0])
+
+
+def sizes(nodes: list[Node]) -> dict[int, int]:
+    """How many operations each node is, by its number, where nothing is written once."""
+    made: dict[int, int] = {}
+    for node in nodes:
+        made[node.number] = 1 + sum(made[x.number] for x in node.inputs)
+    return made

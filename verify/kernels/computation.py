@@ -1,0 +1,160 @@
+"""What one step of a kernel computes, whatever the numbers: a step map → a straight-line program.
+
+It depends on the map, and on what is asked of it, but on no precision and on no number system
+beyond `Asked`. So it is made once for a map, and shared by the runs of it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.increments import increments
+from verify.kernels.program import Evaluator, Program
+from verify.kernels.scaling import divided, lowest_power
+from verify.kernels.tangent_map import Tangent
+from verify.schemes import get
+from verify.schemes.step_map import StepMap, Substep
+
+_STATE = ("p", "q")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """ΔJ; the determinant of the four entries; A − 1 of the tangent map; see `verify.kernels.kernel`.
+
+    `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
+    `verify.arithmetic.number_system.Arithmetic`.
+    """
+
+    pipelined: bool
+    scaled: bool
+    delta_j: bool
+    determinant: bool
+    tangent: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Computation:
+    """`outputs`: the indices of the increments of p and q, `dp` and `dq`, of ΔJ, `dj`, and of det J
+    where it is asked for, `det`. `power` is the r of κ. Nobody writes into the program any more.
+    """
+
+    program: Program
+    outputs: Mapping[str, int]
+    tangent: Tangent | None
+    power: int
+
+    @property
+    def roots(self) -> list[int]:
+        """What is read of the program's values."""
+        return [*self.outputs.values(), *(self.tangent.needed if self.tangent else ())]
+
+
+class _Itself:
+    """A step map as a key: that very object, since to compare maps takes long."""
+
+    def __init__(self, step_map: StepMap) -> None:
+        self.step_map = step_map
+
+    def __hash__(self) -> int:
+        return id(self.step_map)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Itself) and self.step_map is other.step_map
+
+
+def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
+    """The scheme's map of a Hamiltonian; the same one for the next that asks."""
+    return get(scheme).step_map(hamiltonian)
+
+
+def computed(step_map: StepMap, asked: Asked) -> Computation:
+    """What is asked of a map, made once as long as it is among the last ones."""
+    return _computed(_Itself(step_map), asked)
+
+
+@dataclass(frozen=True, eq=False)
+class _Begun:
+    """A program with the inputs, `named`, and ΔJ of the first substep, as `evaluator` wrote it."""
+
+    program: Program
+    named: Mapping[str, int]
+    evaluator: Evaluator
+    delta_j: int
+
+    def copy(self) -> tuple[Program, Evaluator]:
+        evaluator = self.evaluator.copy()
+        return evaluator.program, evaluator
+
+
+@lru_cache(maxsize=64)
+def _begun(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -> _Begun:
+    """What all that is asked of a map has in common: ΔJ is the longest part of it."""
+    step_map, program = itself.step_map, Program()
+    # A user's parameter may be named like anything; in the source it is x0, x1, ….
+    parameters = step_map.hamiltonian.symbols
+    arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(parameters)}
+    named = {n: program.input(a, static=True) for n, a in arguments.items()}
+    found = program.constant(Fraction(0))
+    named |= {n: program.input(n, static=False) for n in _STATE}
+    if scaled:
+        program.input("kappa", static=True)
+    first = step_map.substeps[0]
+    evaluator = Evaluator(program, first.ring, named, pipelined)
+    if delta_j and not first.preserves_area:
+        found = _delta_j(evaluator, first, scaled, _common_power(step_map, scaled))
+    return _Begun(program, named, evaluator, found)
+
+
+@lru_cache(maxsize=64)
+def _computed(itself: _Itself, asked: Asked) -> Computation:
+    step_map, power = itself.step_map, _common_power(itself.step_map, asked.scaled)
+    begun = _begun(itself, asked.pipelined, asked.scaled, asked.delta_j)
+    program, evaluator = begun.copy()
+    tangent = Tangent(program) if asked.tangent else None
+    total = dict.fromkeys(_STATE, program.constant(Fraction(0)))
+    delta_j, jacobian = begun.delta_j, None
+    for k, step in enumerate(step_map.substeps):
+        if k > 0:
+            at = {n: program.add(begun.named[n], total[n]) for n in _STATE}
+            evaluator = Evaluator(program, step.ring, {**begun.named, **at}, asked.pipelined)
+        if k > 0 and asked.delta_j and not step.preserves_area:
+            own = _delta_j(evaluator, step, asked.scaled, power)
+            both = program.mul(delta_j, own)
+            if asked.scaled and not program.is_constant(both, 0):
+                both = program.mul(program.input("down", static=True), both)
+            delta_j = program.add(program.add(delta_j, own), both)
+        if asked.determinant:
+            own_j = [evaluator.evaluate(entry) for entry in step.jacobian]
+            jacobian = own_j if jacobian is None else _product(program, own_j, jacobian)
+        if tangent:
+            tangent.follow(step, evaluator)
+        changes = increments(evaluator, step, begun.named["h"])
+        for n, change in zip(_STATE, changes, strict=True):
+            total[n] = program.add(total[n], change)
+    result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
+    if jacobian is not None:
+        a, b, c, d = jacobian
+        minus = program.neg(program.mul(b, c))
+        result["det"] = program.add(program.mul(a, d), minus)
+    return Computation(program, result, tangent, power)
+
+
+def _delta_j(evaluator: Evaluator, step: Substep, scaled: bool, power: int) -> int:
+    """ΔJ of a substep, or 2^s ΔJ by κ (ΔJ/h^r)."""
+    scale = evaluator.program.input("kappa", static=True) if scaled else None
+    return evaluator.evaluate(divided(step, power), scale)
+
+
+def _common_power(step_map: StepMap, scaled: bool) -> int:
+    """The greatest r for which h^r divides ΔJ of every substep; 0 where it is not divided."""
+    changing = [step for step in step_map.substeps if scaled and not step.preserves_area]
+    return min(map(lowest_power, changing), default=0)
+
+
+def _product(program: Program, x: Sequence[int], y: Sequence[int]) -> list[int]:
+    """The 2 × 2 matrix product x y, row by row."""
+    add, mul = program.add, program.mul
+    return [add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])) for i in (0, 1) for j in (0, 1)]

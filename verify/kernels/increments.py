@@ -1,0 +1,74 @@
+"""The increments of p and q, written with what they have in common only once.
+
+For H = p²/2 + V(q) the Lie-derivative scheme has q' = q + h p + (h²/2) X p + (h³/6) X² p + … beside
+p' = p + h X p + (h²/2) X² p + …: with a_k = h^k/(k+1)! X^k p they are p' = p + 2 a_1 + 3 a_2 + …
+and q' = q + h (p + a_1 + a_2 + …). So wherever the coefficient of h^(k+1) in one of them is the one
+of h^k in the other over a small integer, it is computed once. Both ways are tried, and the cheapest
+is taken; where latency counts and not the number of operations, the increments stay apart.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+from verify.algebra.ring import Poly, Ring
+from verify.kernels.program import Evaluator
+from verify.schemes.step_map import Substep, h_inside
+
+_MOST = 12  # times a value is added to itself at most
+Pair = tuple[int, int]
+
+
+def increments(evaluator: Evaluator, step: Substep, h: int) -> Pair:
+    """The indices of the increments of p and q; `h` is the index of the step size."""
+    ways = [_Way(step, None)]
+    if not (evaluator.pipelined or h_inside(step.ring, step.p_next, step.q_next)):
+        ways += [way for first in (0, 1) if (way := _Way(step, first)).shared]
+    return evaluator.cheapest([partial(way.write, evaluator, h) for way in ways])
+
+
+@dataclass
+class _Way:
+    """`first`: which increment's coefficients are taken from the other's; None where none are."""
+
+    step: Substep
+    first: int | None
+
+    @cached_property
+    def parts(self) -> tuple[dict[int, Poly], dict[int, Poly]]:
+        """(coefficients of the first, of the second) by powers of h."""
+        ring, (u, v) = self.step.ring, self.step.increments
+        one, two = ring.powers(u, "h"), ring.powers(v, "h")
+        return (one, two) if self.first == 0 else (two, one)
+
+    @cached_property
+    def shared(self) -> dict[int, int]:
+        """{k: r}: the first's coefficient of h^k is r times the second's of h^(k+1)."""
+        one, two = self.parts
+        if not two or min(two) < 1:
+            return {}
+        pairs = {k: (x, two[k + 1]) for k, x in one.items() if k >= 1 and k + 1 in two}
+        ratios = ((k, r) for k, (x, y) in pairs.items() for r in range(1, _MOST) if x == r * y)
+        return dict(ratios)
+
+    def write(self, evaluator: Evaluator, h: int) -> Pair:
+        program, ring = evaluator.program, self.step.ring
+        if self.first is None:
+            u, v = self.step.increments
+            return evaluator.evaluate(u), evaluator.evaluate(v)
+        (one, two), shared = self.parts, self.shared
+        own = evaluator.evaluate(_sum(ring, {k: x for k, x in one.items() if k not in shared}))
+        inner = {k - 1: x for k, x in two.items() if k - 1 not in shared}
+        other = evaluator.evaluate(_sum(ring, inner))
+        for k, times in shared.items():
+            value = evaluator.evaluate(_sum(ring, {k: two[k + 1]}))
+            other = program.add(other, value)
+            own = program.add(own, program.times(value, times))
+        other = program.mul(h, other)
+        return (own, other) if self.first == 0 else (other, own)
+
+
+def _sum(ring: Ring, parts: Mapping[int, Poly]) -> Poly:
+    """Σ h^k parts[k]."""
+    h = ring.variable("h")
+    return sum((h**k * x for k, x in parts.items()), ring.zero)

@@ -1,0 +1,284 @@
+"""Step map + observables → a loop over N steps in one arithmetic, with nothing not asked for.
+
+Observables: `delta_j_max` max |ΔJ|, `mse` Σ ΔJ² (Eq. 15 before its 1/N), `lambda` Λ (Eq. 16) by
+the closed form of ΔJ as Λ ← Λ + ΔJ + Λ ΔJ, `lambda_max` the greatest |Λ| after any step,
+`lambda_plain` Π det J the plain way (four entries,
+their determinant, the product), `extremes` the least and greatest ΔJ and Λ of one call's steps.
+
+`tangent` carries the tangent map along (see `verify.kernels.tangent_map`), for a rigorous bound.
+
+Where an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
+so are its sums, so that they keep their significant digits however small h is; it is evaluated from
+ΔJ/h^r, r as great as can be, with κ = 2^s h^r in its coefficients. Λ itself is carried beside them
+as `part`, since it multiplies. There the loop ends where p, q, Λ, Π det J or a function's value
+leaves the limits that are given with the parameters.
+
+A compensated kernel adds the increments to the state, and ΔJ to its sums, in twice the working
+precision (Knuth's two-sum): what remains is the rounding of the increments, smaller by a factor of
+about h. Its difference from the plain kernel estimates the plain kernel's rounding error.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels import newton
+from verify.kernels import tangent_map as tangent
+from verify.kernels.computation import Asked, Computation, computed, step_map_of
+from verify.kernels.lowering import Lowering
+from verify.schemes.step_map import StepMap
+
+OBSERVABLES = (
+    "delta_j_max", "mse", "lambda", "lambda_max", "lambda_plain", "extremes", "tangent",
+)  # fmt: skip
+CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes"})
+PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
+SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
+LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
+LOOP = "    for k in range(steps):"  # what is before this line is the same for every k
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """`function(steps, h, *parameters, *scales, *limits, *carried)` → (steps done, *carried).
+
+    `carried` names the state and accumulators in their order: p, q, then those of the observables;
+    `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start` has the initial values,
+    p and q apart; "p" and "q" there are those in float64. An arithmetic of absolute precision has
+    `scales` and `limits`, the numbers that the loop's guard compares with, and `power` is the r of
+    κ. `lowering` and `outputs` are what is computed: the program and the indices of its results;
+    `names` what the source's names stand for.
+    """
+
+    function: Callable[..., tuple[Any, ...]]
+    parameters: tuple[str, ...]
+    scales: tuple[str, ...]
+    limits: tuple[str, ...]
+    carried: tuple[str, ...]
+    kinds: tuple[str, ...]
+    start: tuple[int | str, ...]
+    power: int
+    lowering: Lowering
+    outputs: Mapping[str, int]
+    tangent: tangent.Tangent | None
+    source: str
+    names: Mapping[str, Any]
+
+    @property
+    def roots(self) -> list[int]:
+        """What the source computes before its statements, as indices of the program."""
+        return [*self.outputs.values(), *(self.tangent.needed if self.tangent else ())]
+
+
+@lru_cache(maxsize=64)
+def kernel_for(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    arithmetic: Arithmetic,
+    observables: frozenset[str],
+    compensated: bool = False,
+) -> Kernel:
+    """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once."""
+    step_map = step_map_of(hamiltonian, scheme)
+    return Writer(step_map, arithmetic, observables, compensated).kernel()
+
+
+class Writer:
+    """Writes the source of one kernel."""
+
+    def __init__(
+        self,
+        step_map: StepMap,
+        arithmetic: Arithmetic,
+        observables: frozenset[str],
+        compensated: bool,
+        scaled: bool = True,
+    ) -> None:
+        self.arithmetic, self.observables, self.compensated = arithmetic, observables, compensated
+        needs_delta_j = bool(observables & CLOSED_FORM)
+        self.scaled = scaled and arithmetic.absolute and needs_delta_j
+        self.made: Computation = computed(
+            step_map,
+            Asked(
+                pipelined=arithmetic.pipelined,
+                scaled=self.scaled,
+                delta_j=needs_delta_j,
+                determinant="lambda_plain" in observables,
+                tangent="tangent" in observables,
+            ),
+        )
+        self.program, self.tangent = self.made.program, self.made.tangent
+        self.lowering = Lowering(
+            self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
+        )
+        self.parameters = step_map.hamiltonian.symbols
+        self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
+
+    # -- what is computed ---------------------------------------------------------------------
+
+    def kernel(self) -> Kernel:
+        outputs = self.made.outputs
+        lines = self.statements(outputs)
+        limits = LIMITS if self.arithmetic.absolute else ()
+        scales = SCALES if self.scaled else ()
+        needed = self.made.roots
+        self.check(needed)
+        source = self.assemble(needed, lines, (*scales, *limits))
+        scope = {
+            **self.arithmetic.functions,
+            **self.lowering.named_constants(self.arithmetic.number, needed),
+            **newton.constants(self.arithmetic.bits, self.arithmetic.number),
+            **self.constants_of_tangent(),
+        }
+        names, kinds, start = zip(*self.carried, strict=True)
+        return Kernel(
+            function=self.arithmetic.compile(source, "kernel", scope),
+            parameters=self.parameters,
+            scales=scales,
+            limits=limits,
+            carried=names,
+            kinds=kinds,
+            start=start[2:],
+            power=self.made.power,
+            lowering=self.lowering,
+            outputs=outputs,
+            tangent=self.tangent,
+            source=source,
+            names=scope,
+        )
+
+    def check(self, needed: Sequence[int]) -> None:
+        """Raises UnsupportedError where the arithmetic lacks a function, or solves no equations."""
+        for function in sorted(self.lowering.called(needed)):
+            if function not in self.arithmetic.functions:
+                raise UnsupportedError(f"{self.arithmetic.name} has no {function}")
+        rounded = not self.arithmetic.absolute and self.arithmetic.radius is None
+        if self.lowering.solves(needed) and not rounded:
+            raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
+
+    def constants_of_tangent(self) -> dict[str, Any]:
+        made = self.tangent
+        return made.lowering.named_constants(tangent.number, made.change) if made else {}
+
+    # -- how it is written --------------------------------------------------------------------
+
+    def statements(self, outputs: Mapping[str, int]) -> list[str]:
+        """The loop's statements after the values: observables first, then the step."""
+        value = {name: self.lowering.name(index) for name, index in outputs.items()}
+        lines: list[str] = []
+        asked = self.observables
+        if "lambda_plain" in asked:
+            self.carry("plain", 1)
+            lines.append(f"plain = plain * {value['det']}")
+        if asked & CLOSED_FORM:
+            lines.append(f"dj = {value['dj']}")
+        if {"lambda", "lambda_max", "extremes"} & asked:
+            lines += self.product_of_factors()
+        if "lambda_max" in asked:
+            self.carry("lam_top", 0, "sum")
+            lines += ["lam_size = abs(lam)", self.keep_extreme("lam_top", "lam_size", ">")]
+        if "mse" in asked:
+            lines += self.accumulate("mse", "dj * dj")
+        if "delta_j_max" in asked:
+            self.carry("top", 0)
+            lines += ["size = abs(dj)", self.keep_extreme("top", "size", ">")]
+        if "extremes" in asked:
+            for name, kind in (("dj", "wide"), ("lam", "sum")):
+                self.carry(f"{name}_low", 0, kind)
+                self.carry(f"{name}_high", 0, kind)
+                lines += [
+                    self.keep_extreme(f"{name}_low", name, "<", first="k == 0 or "),
+                    self.keep_extreme(f"{name}_high", name, ">", first="k == 0 or "),
+                ]
+        if self.tangent:
+            for name, start in tangent.CARRIED:
+                self.carry(name, start, "float")
+            change = [self.tangent.lowering.name(index) for index in self.tangent.change]
+            lines += tangent.statements(change)
+        return lines + self.accumulate("p", value["dp"]) + self.accumulate("q", value["dq"])
+
+    def product_of_factors(self) -> list[str]:
+        """Λ ← Λ + ΔJ + Λ ΔJ."""
+        lines = self.accumulate("lam", "dj + lam * dj")
+        product = "lam"
+        if self.arithmetic.absolute:
+            self.carry("part", 0)
+            product = "part"
+            lines = [
+                "grown = dj + dj * part",
+                "part = part + shifted(grown, shift)",
+                "lam = lam + grown",
+            ]
+        if self.tangent:
+            for end, relation in (("least", "<"), ("most", ">")):
+                self.carry(end, 0)
+                lines.append(f"if {product} {relation} {end}: {end} = {product}")
+        return lines
+
+    def keep_extreme(self, name: str, of: str, order: str, first: str = "") -> str:
+        """The statement that makes `name` the least or greatest of what it was and of `of`."""
+        choose, opposite = {"<": ("minimum", ">="), ">": ("maximum", "<=")}[order]
+        if choose not in self.arithmetic.functions:
+            return f"if {first}{of} {order} {name}: {name} = {of}"
+        # Balls, of which neither may be certainly the greater: then the extreme is a third ball.
+        either = f"{choose}({of}, {name})"
+        value = f"{of} if k == 0 else {either}" if first else either
+        return f"if {first}not {of} {opposite} {name}: {name} = {value}"
+
+    def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
+        self.carried.append((name, kind, start))
+
+    def accumulate(self, name: str, increment: str) -> list[str]:
+        if name not in ("p", "q"):
+            self.carry(name, 0, "sum")
+        if not self.compensated:
+            return [f"{name} = {name} + ({increment})"]
+        self.carry(f"{name}_rest", 0)
+        return [
+            f"add = {name}_rest + ({increment})",
+            f"total = {name} + add",
+            f"rest = total - {name}",
+            f"{name}_rest = ({name} - (total - rest)) + (add - rest)",
+            f"{name} = total",
+        ]
+
+    def assemble(
+        self, needed: Sequence[int], statements: list[str], more_arguments: Sequence[str]
+    ) -> str:
+        static, dynamic = self.lowering.lines(needed)
+        if self.tangent:
+            more = self.tangent.lowering.lines(self.tangent.change)
+            static, dynamic = static + more[0], dynamic + more[1]
+        names = ", ".join(name for name, _, _ in self.carried)
+        parameters = [f"x{k}" for k in range(len(self.parameters))]
+        given = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]
+        annotated = [f"{name}: '{kind}'" for name, kind, _ in self.carried]
+        arguments = ", ".join(["steps: 'int'", "h", *parameters, *given, *annotated])
+        guard = self.guard(needed)
+        return "\n".join(
+            [
+                f"def kernel({arguments}):",
+                *(f"    {line}" for line in static),
+                LOOP,
+                *(f"        {line}" for line in [*dynamic, *statements]),
+                *([f"        if not ({guard}): return k, {names}"] if guard else []),
+                f"    return steps, {names}",
+                "",
+            ]
+        )
+
+    def guard(self, needed: Sequence[int]) -> str:
+        """What holds as long as the orbit is in range; empty where nothing is to be looked at."""
+        if not self.arithmetic.absolute:
+            template = self.arithmetic.guard
+            return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
+        looked_at = {"p": "reach_p", "q": "reach_q"}
+        products = [name for name, _, _ in self.carried if name in ("part", "plain")]
+        looked_at |= dict.fromkeys(products, "reach_part")
+        for index in self.lowering.live(needed):
+            if self.program.ops[index].kind in PARTIAL:
+                looked_at[self.lowering.name(index)] = "reach_value"
+        return " and ".join(["valid", *(f"inside({x}, {m})" for x, m in looked_at.items())])

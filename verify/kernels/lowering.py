@@ -1,0 +1,181 @@
+"""A program's operations → lines of source, those before the loop apart from those in it."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import gmpy2
+
+from verify.kernels import newton
+from verify.kernels.operations import Loop, Program
+
+_INFIX = {"add": "+", "sub": "-", "mul": "*"}
+_GUARD = 64  # bits of a given root beyond those of the arithmetic
+_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi", "loop", "solved")
+
+
+@dataclass
+class Lowering:
+    """Writes a program's values as variables `prefix` + index.
+
+    `functions`: the names an arithmetic has; cos and sin of one argument are written as one call
+    where it has `cos_sin` or `sin_cos`. Where it has no `root` that of a number is a number too,
+    given to its `bits`. `guard`: a condition on `{x}` that a number in range satisfies (see
+    `verify.arithmetic.number_system`).
+    """
+
+    program: Program
+    functions: Collection[str]
+    prefix: str = "v"
+    bits: int = 0
+    guard: str | None = None
+    _written: set[int] = field(default_factory=set)
+
+    def name(self, index: int) -> str:
+        return f"{self.prefix}{index}"
+
+    def live(self, roots: Sequence[int]) -> list[int]:
+        """The operations that the roots need, in their order."""
+        return self.program.live(roots)
+
+    def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
+        """The lines that compute the roots: those before the loop, and those in it."""
+        program, live = self.program, self.live(roots)
+        ops, prefix, static_ones = program.ops, self.prefix, program.static
+        static: list[str] = []
+        dynamic: list[str] = []
+        for index in live:
+            kind, args, *_ = op = ops[index]
+            if kind in _INFIX:
+                x, y = args
+                line = f"{prefix}{index} = {prefix}{x} {_INFIX[kind]} {prefix}{y}"
+            elif kind == "const" or index in self._written:
+                continue
+            elif kind == "loop":
+                before, inside = self._newton(program.loops[op.degree])
+                static += before
+                dynamic += inside
+                continue
+            else:
+                line = self._pair(index, live) or f"{self.name(index)} = {self._operation(index)}"
+            (static if static_ones[index] else dynamic).append(line)
+        return static, dynamic
+
+    def _pair(self, index: int, live: Sequence[int]) -> str | None:
+        """cos and sin of one argument in one call, where the arithmetic has that."""
+        op = self.program.ops[index]
+        both = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
+        if op.kind not in ("cos", "sin") or both is None:
+            return None
+        found = {
+            self.program.ops[i].kind: i
+            for i in live
+            if self.program.ops[i].kind in ("cos", "sin") and self.program.ops[i].args == op.args
+        }
+        if len(found) < 2:
+            return None
+        self._written |= set(found.values())
+        first, second = (self.name(found[kind]) for kind in both.split("_"))
+        return f"{first}, {second} = {both}({self.name(op.args[0])})"
+
+    def inner(self, loop: Loop) -> "Lowering":
+        return Lowering(loop.inner, self.functions, f"n{loop.number}_", self.bits)
+
+    def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
+        """The lines before the outer loop, and the inner loop."""
+        inner = self.inner(loop)
+        static, turn = inner.lines([*loop.updates, *loop.determinants])
+        made = newton.Source(
+            prefix=f"u{loop.number}_",
+            starts=[self.name(index) for index in loop.starts],
+            updates=[inner.name(index) for index in loop.updates],
+            added_to=[self.name(index) for index in loop.added_to],
+            determinants=[inner.name(index) for index in loop.determinants],
+            turn=turn,
+            guard=self.guard,
+        )
+        return static, made.lines()
+
+    def function(self, index: int) -> str | None:
+        """The name of the function that an operation calls, where it calls one."""
+        op = self.program.ops[index]
+        if self._given(index):
+            return None
+        if op.kind == "root":
+            return "sqrt" if op.degree == 2 else "root"
+        return None if op.kind in _OPERATORS else op.kind
+
+    def called(self, roots: Sequence[int]) -> set[str]:
+        """The names of all functions that the roots need, those in inner loops included."""
+        live = self.live(roots)
+        names = {self.function(index) for index in live} - {None}
+        for loop in self.loops(live):
+            names |= self.inner(loop).called([*loop.updates, *loop.determinants])
+        return {name for name in names if name is not None}
+
+    def solves(self, roots: Sequence[int]) -> bool:
+        """Whether equations are solved for the roots."""
+        return bool(self.loops(self.live(roots)))
+
+    def loops(self, live: Sequence[int]) -> list[Loop]:
+        ops = (self.program.ops[index] for index in live)
+        return [self.program.loops[op.degree] for op in ops if op.kind == "loop"]
+
+    def _operation(self, index: int) -> str:
+        op = self.program.ops[index]
+        args = [self.name(a) for a in op.args]
+        match op.kind:
+            case "input":
+                return op.name
+            case "neg":
+                return f"-{args[0]}"
+            case "inverse":
+                return f"1 / {args[0]}"
+            case "root" if self._given(index):
+                return f"number_{self.name(index)}"
+            case "root" if op.degree != 2:
+                return f"root({args[0]}, {op.degree})"
+            case "pi":
+                return "pi"
+            case "solved":
+                return f"u{self.program.ops[op.args[0]].degree}_{op.degree}"
+        return f"{self.function(index)}({args[0]})"
+
+    def _given(self, index: int) -> bool:
+        """Whether it is a root of a number, not a square root, and there is no function for it."""
+        op = self.program.ops[index]
+        if op.kind != "root" or op.degree == 2 or "root" in self.functions:
+            return False
+        radicand = self.program.ops[op.args[0]]
+        return radicand.kind == "const" and radicand.value > 0
+
+    def constants(self) -> Mapping[int, Fraction]:
+        return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
+
+    def named_constants(self, number: Any, roots: Sequence[int] | None = None) -> dict[str, Any]:
+        """The constants, and roots that are given, as numbers by their names in the source.
+
+        `roots`: those alone that these need.
+        """
+        program, found = self.program, {}
+        live = range(len(program.ops)) if roots is None else self.live(roots)
+        for index in live:
+            op = program.ops[index]
+            if op.kind == "const":
+                found[self.name(index)] = number(op.value)
+            elif self._given(index):
+                radicand = program.ops[op.args[0]].value
+                found[f"number_{self.name(index)}"] = number(
+                    _root(radicand, op.degree, self.bits + _GUARD)
+                )
+        for loop in self.loops(live):
+            needed = None if roots is None else [*loop.updates, *loop.determinants]
+            found |= self.inner(loop).named_constants(number, needed)
+        return found
+
+
+def _root(x: Fraction, degree: int, bits: int) -> Fraction:
+    """x^(1/degree), less than 2^(1 − bits) below it, for x > 0."""
+    scaled = (x.numerator << degree * bits) // x.denominator
+    return Fraction(int(gmpy2.iroot(gmpy2.mpz(scaled), degree)[0]), 1 << bits)

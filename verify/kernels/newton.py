@@ -1,0 +1,124 @@
+"""Newton's method for unknowns that are given by equations, as the source of a loop in the loop.
+
+It goes on until an update is no more than the last places of what it is added to, p or q, or is
+followed by one that would be. Of Newton's updates each is a multiple of the square of the one
+before; the last two give the multiple, so that after one of `size` the next would have the size
+size·(size/last)². That is believed once half of the digits stand. An update that is no smaller than
+the one before is rounding and no more, if half of the digits stand, and ends it as well.
+
+What is wanted is the solution that goes over into 0 with h. On the way there ∂F/∂Z, which is the
+unit matrix at h = 0, does not become singular; so a solution where its determinant is not positive
+is another one. Where that is found, where an update grows out of all proportion, an unknown leaves
+the arithmetic's range, or 25 updates do not settle, it is begun once more, at 0. Where that fails
+too the unknowns are set to 0/0, by which the run ends at that step. (Where h is so large that there
+are several solutions with a positive determinant, it may be any of them.)
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+MOST_UPDATES = 25  # where h is small 2 … 4 are needed for 17 digits, 5 … 8 for 200
+_ATTEMPTS = 2
+
+
+def constants(bits: int, number: Any) -> dict[str, Any]:
+    """What the loops compare with, by its names in the source, for numbers of so many bits."""
+    return {
+        "newton_zero": number(Fraction(0)),
+        "newton_last": number(Fraction(1, 2 ** (bits + 1))),
+        "newton_half": number(Fraction(1, 2 ** (bits // 2))),
+        "newton_most": number(Fraction(2**16)),
+    }
+
+
+@dataclass(frozen=True)
+class Source:
+    """The loop for unknowns `prefix`0, `prefix`1, …; everything else are names of values.
+
+    `turn`: the lines that make the `updates`, to be subtracted, and the `determinants`, whose
+    product is that of ∂F/∂Z. `guard` as in `verify.arithmetic.number_system.Arithmetic`.
+    """
+
+    prefix: str
+    starts: Sequence[str]
+    updates: Sequence[str]
+    added_to: Sequence[str]
+    determinants: Sequence[str]
+    turn: Sequence[str]
+    guard: str | None
+
+    @property
+    def unknowns(self) -> list[str]:
+        return [f"{self.prefix}{k}" for k in range(len(self.updates))]
+
+    def lines(self) -> list[str]:
+        found = f"{self.prefix}found"
+        pairs = zip(self.unknowns, self.starts, strict=True)
+        positive = " * ".join(self.determinants)
+        attempt = [
+            f"{found} = 0",
+            f"for turn in range({MOST_UPDATES}):",
+            *(f"    {line}" for line in self._turn(f"{found} = 1")),
+            f"if {found} == 1 and {positive} > newton_zero: break",
+            f"if attempt == {_ATTEMPTS - 1}:",
+            *(f"    {u} = ({u} - {u}) / ({u} - {u})" for u in self.unknowns),
+            "    break",
+            *(f"{u} = newton_zero" for u in self.unknowns),
+        ]
+        # The first values of these are never read: they give them a type.
+        names = [self.prefix + n for n in ("size", "last", "first", "ratio")]
+        names += [x for x in self.determinants if any(s.startswith(f"{x} =") for s in self.turn)]
+        return [
+            *(f"{u} = {x}" for u, x in pairs),
+            f"{' = '.join(names)} = newton_zero",
+            f"for attempt in range({_ATTEMPTS}):",
+            *(f"    {line}" for line in attempt),
+        ]
+
+    def _turn(self, done: str) -> list[str]:
+        size, last, first, ratio = (self.prefix + n for n in ("size", "last", "first", "ratio"))
+        changed = zip(self.unknowns, self.updates, strict=True)
+        sizes, widths, small = self._by_component()
+        whole = " + ".join(width for width, _ in widths)
+        end = [f"    {done}", "    break"]
+        return [
+            *self._guarded(),
+            *self.turn,
+            *(f"{u} = {u} - {d}" for u, d in changed),
+            *(f"{name} = {sum_}" for name, sum_ in (*sizes, *widths)),
+            f"{size} = {' + '.join(name for name, _ in sizes)}",
+            f"if {small('')}:",
+            *end,
+            f"if turn == 0: {first} = {size} + {whole}",
+            f"if turn > 0 and {size} <= newton_half * ({whole}):",
+            f"    {ratio} = {size} / {last}",
+            f"    if {size} >= {last} or {small(f' * {ratio} * {ratio}')}:",
+            *(f"    {line}" for line in end),
+            f"if not {size} <= newton_most * {first}: break",
+            f"{last} = {size}",
+        ]
+
+    def _by_component(self) -> Any:
+        """Of p and of q: names and sums of the updates' sizes, and of what they are added to; and
+        the condition that all sizes, times a factor, are small."""
+        sizes, widths = [], []
+        for part, of in enumerate(dict.fromkeys(self.added_to)):
+            own = [k for k, name in enumerate(self.added_to) if name == of]
+            total = " + ".join(f"abs({self.updates[k]})" for k in own)
+            sizes.append((f"{self.prefix}by{part}", total))
+            total = " + ".join(f"abs({x})" for x in (of, *(self.unknowns[k] for k in own)))
+            widths.append((f"{self.prefix}of{part}", total))
+
+        def small(factor: str) -> str:
+            both = zip(sizes, widths, strict=True)
+            return " and ".join(f"{x}{factor} <= newton_last * {w}" for (x, _), (w, _) in both)
+
+        return sizes, widths, small
+
+    def _guarded(self) -> list[str]:
+        if self.guard is None:
+            return []
+        inside = " and ".join(self.guard.format(x=u) for u in self.unknowns)
+        return [f"if not ({inside}): break"]

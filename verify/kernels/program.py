@@ -1,0 +1,234 @@
+"""Polynomials in generators → a straight-line program (`verify.kernels.operations`): nothing twice.
+
+A polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters look like
+inside it, since what is static is computed once before the loop.
+"""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from fractions import Fraction
+from itertools import permutations
+from typing import Any, TypeVar
+
+from verify.algebra.generator import Generator, terms_of
+from verify.algebra.implicit_unknowns import System
+from verify.algebra.ring import Poly, Ring
+from verify.kernels.operations import Loop, Tail
+from verify.kernels.operations import Op as Op
+from verify.kernels.operations import Program as Program
+
+_MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
+
+Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
+# A polynomial by the exponents of its variables, one after the other: its coefficients' indices.
+Nest = dict[int, Any]  # down to indices
+Cost = tuple[int, int]
+T = TypeVar("T")
+
+
+class _TooDearError(Exception):
+    """A trial that costs more than the best one so far."""
+
+
+class Evaluator:
+    """Writes ring elements into a program, at the point whose variables are given inputs.
+
+    `pipelined`: of the ways to sum a polynomial take that of least latency, not of fewest
+    operations.
+    """
+
+    def __init__(
+        self, program: Program, ring: Ring, inputs: Mapping[str, int], pipelined: bool
+    ) -> None:
+        self.program = program
+        self.ring = ring
+        self.pipelined = pipelined
+        self._at: dict[int, int] = {}
+        self._inputs = inputs
+        self._most: int | None = None  # operations, beyond which a trial is given up
+
+    def evaluate(self, x: Poly, factor: int | None = None) -> int:
+        """The index of x's value, or of its product with a static value (the index `factor`)."""
+        used = self.ring.used(x, solved=False)
+        for generator in used:
+            self.at(generator)
+        dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
+        terms = self._collect(x, dynamic, {g.index for g in used}.difference(dynamic))
+        if factor is not None:
+            terms = [(outer, self.program.mul(c, factor)) for outer, c in terms]
+        return self._nested(terms, [self._at[i] for i in dynamic])
+
+    def cheapest(self, ways: Sequence[Callable[[], T]]) -> T:
+        """What the way returns that writes the fewest operations; of such the first."""
+        if len(ways) == 1:
+            return ways[0]()
+        program, known, most, mark = self.program, self._at, self._most, self.program.mark()
+        best: tuple[int, Tail, dict[int, int], T] | None = None
+        for way in ways:
+            self._at = dict(known)
+            try:
+                found = way()
+            except _TooDearError:
+                program.cut(mark)
+                continue
+            cost, tail = program.cost, program.cut(mark)
+            if best is None or cost < best[0]:
+                best = cost, tail, self._at, found
+                self._most = cost
+        self._most = most
+        if best is None:
+            raise _TooDearError
+        program.put_back(best[1])
+        self._at = best[2]
+        return best[3]
+
+    def copy(self) -> "Evaluator":
+        """The same, with a copy of its program."""
+        other = Evaluator(self.program.copy(), self.ring, self._inputs, self.pipelined)
+        other._at = dict(self._at)
+        return other
+
+    def at(self, generator: Generator) -> int:
+        """The index of a generator's value."""
+        if generator.index not in self._at:
+            self._at[generator.index] = self._generator(generator)
+        return self._at[generator.index]
+
+    def set(self, generator: Generator, index: int) -> None:
+        """Takes a value that the program has already for the generator's."""
+        self._at[generator.index] = index
+
+    def _generator(self, g: Generator) -> int:
+        if g.kind == "variable":
+            return self._inputs[str(g.expression)]
+        if g.kind == "pi":
+            return self.program.apply("pi")
+        if g.kind == "stage":
+            return self.evaluate(g.argument)
+        if g.kind == "solved":
+            self._solve(self.ring.systems[g.index])
+            return self._at[g.index]
+        return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
+
+    def _solve(self, system: System) -> None:
+        """Writes the loop that finds a system's unknowns, with what moves in it inside."""
+        ring, program, number = self.ring, self.program, len(self.program.loops)
+        inner, given = Program(), set()
+        own = Evaluator(inner, ring, {}, self.pipelined)
+        unknown = system.unknowns
+        for k, g in enumerate(unknown):
+            own.set(g, inner.input(f"u{number}_{k}", static=False))
+        for g in ring.used(*system.updates, solved=False):
+            inside = () if g.argument is None else ring.used(g.argument, solved=False)
+            if g not in unknown and not any(x in unknown for x in inside):
+                at = self.at(g)
+                given.add(at)
+                own.set(g, inner.input(f"v{at}", static=program.static[at]))
+        updates = tuple(own.evaluate(x) for x in system.updates)
+        starts = tuple(self.evaluate(x) for x in system.starts)
+        added_to = tuple(self.evaluate(x) for x in system.added_to)
+        determinants = tuple(own.evaluate(x) for x in system.determinants)
+        loop = Loop(number, inner, updates, starts, added_to, determinants)
+        found = program.solve(loop, sorted(given))
+        for g, at in zip(unknown, found, strict=True):
+            self.set(g, at)
+
+    def _collect(self, x: Poly, dynamic: Sequence[int], static: Collection[int]) -> list[Term]:
+        """x by monomials in the dynamic generators, the static coefficients evaluated."""
+        parts: dict[tuple[int, ...], int] = {}
+        program, at = self.program, [(i, self._at[i]) for i in sorted(static)]
+        by_outer: dict[tuple[int, ...], list[tuple[Any, Any]]] = {}
+        for monomial, c in terms_of(x):
+            outer = tuple([int(monomial[i]) for i in dynamic])
+            by_outer.setdefault(outer, []).append((monomial, c))
+        zero, powers = Fraction(0), dict[tuple[int, Any], int]()
+        for outer, terms in by_outer.items():
+            total = program.constant(zero)
+            for monomial, c in terms:
+                product = program.quotient(int(c.p), int(c.q))
+                for index, value in at:
+                    if n := monomial[index]:
+                        power = powers.get((index, n))
+                        if power is None:
+                            power = powers[index, n] = program.power(value, int(n))
+                        product = program.mul(product, power)
+                total = program.add(total, product)
+            parts[outer] = total
+        return list(parts.items())
+
+    def _nested(self, terms: list[Term], variables: list[int]) -> int:
+        """The sum of the terms by the cheapest of the ways that are tried.
+
+        Ways: each order of the variables, by Horner's rule (fewest operations) or by Estrin's
+        (least latency: pairs of coefficients first, then pairs of pairs).
+        """
+        if not terms:
+            return self.program.constant(Fraction(0))
+        occurring = [k for k in range(len(variables)) if any(outer[k] for outer, _ in terms)]
+        if not occurring:
+            return terms[0][1]
+        orders = [tuple(occurring)]
+        if len(variables) <= _MOST_VARIABLES:
+            orders = list(permutations(occurring))
+        program, mark = self.program, self.program.mark()
+        best: tuple[Cost, Tail, int] | None = None
+        for order in orders:
+            nest = _nest(terms, order)
+            values = [variables[k] for k in order]
+            for sum_ in (self._horner, self._estrin):
+                result = self._sum(nest, values, 0, sum_)
+                latency, count = program.depth[result], program.cost
+                cost = (latency, count) if self.pipelined else (count, latency)
+                tail = program.cut(mark)
+                if best is None or cost < best[0]:
+                    best = cost, tail, result
+        assert best is not None  # noqa: S101 - there is one way at least
+        program.put_back(best[1])
+        if self._most is not None and program.cost > self._most:
+            raise _TooDearError
+        return best[2]
+
+    def _sum(
+        self, nest: Nest, values: list[int], at: int, sum_: Callable[[dict[int, int], int], int]
+    ) -> int:
+        """A polynomial in the variable of number `at`, its coefficients in those after it."""
+        coefficients: dict[int, int] = nest
+        if at + 1 < len(values):
+            coefficients = {n: self._sum(part, values, at + 1, sum_) for n, part in nest.items()}
+        if len(coefficients) == 1 and 0 in coefficients:
+            return coefficients[0]
+        return sum_(coefficients, values[at])
+
+    def _horner(self, coefficients: dict[int, int], x: int) -> int:
+        program = self.program
+        add, mul, power = program.add, program.mul, program.power
+        powers = sorted(coefficients, reverse=True)
+        above = powers[0]
+        total = coefficients[above]
+        for n in powers[1:]:
+            total = add(mul(total, power(x, above - n)), coefficients[n])
+            above = n
+        return mul(total, power(x, above))
+
+    def _estrin(self, coefficients: dict[int, int], x: int) -> int:
+        """c₀ + c₁ x + (c₂ + c₃ x) x² + …, pairwise again in x²."""
+        program = self.program
+        while set(coefficients) != {0}:
+            paired: dict[int, int] = {}
+            for n, c in sorted(coefficients.items()):
+                term = program.mul(c, x) if n % 2 else c
+                half = n // 2
+                paired[half] = program.add(paired[half], term) if half in paired else term
+            coefficients, x = paired, program.mul(x, x)
+        return coefficients[0]
+
+
+def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
+    """The terms by the exponents of the variables in this order."""
+    *outer, last = order
+    nest: dict[int, Any] = {}
+    for exponents, coefficient in terms:
+        inner = nest
+        for k in outer:
+            inner = inner.setdefault(exponents[k], {})
+        inner[exponents[last]] = coefficient
+    return nest

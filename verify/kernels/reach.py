@@ -1,0 +1,107 @@
+"""How far an orbit may go in a fixed-point format: limits within which nothing can overflow.
+
+Interval arithmetic over the box |p| < reach_p, |q| < reach_q bounds every operation of a step, with
+functions' values taken to stay below reach_value. A large box of rounded sides for which all of
+them stay in the format is found before the run; the kernel ends the loop where the orbit leaves it,
+or a function's value its limit. So an overflow is not looked for at every operation, and cannot
+happen.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+import flint
+
+from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.kernels.kernel import Kernel
+from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
+
+_TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
+_VALUE_LIMITS = tuple(Fraction(2) ** n for n in (13, 11, 9, 7, 5, 4, 3, 2, 1))
+_SIDES = tuple(
+    Fraction(2) ** n * share * Fraction(1023, 1024)
+    for n in range(15, -8, -1)
+    for share in (1, Fraction(3, 4))
+)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `verify.kernels.kernel.LIMITS`."""
+
+    p: Fraction
+    q: Fraction
+    part: Fraction
+    value: Fraction
+
+    def __iter__(self) -> Iterator[Fraction]:
+        return iter((self.p, self.q, self.part, self.value))
+
+
+def limits(
+    kernel: Kernel, inputs: Mapping[str, Fraction], start: Mapping[str, Fraction]
+) -> Limits | None:
+    """The kernel's limits for these h and parameters, by the names that its source has for them.
+
+    None where no box that holds the start is safe.
+    """
+
+    def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
+        return _room(kernel, inputs, p, q, value)
+
+    def largest(p: Fraction, q: Fraction, value: Fraction) -> Limits:
+        """Grows a safe box, first to all sides."""
+        boxes = ((max(p, r), max(q, r)) for r in _SIDES)
+        p, q = next((p, q) for p, q in boxes if safe(p, q, value) is not None)
+        # q first: it is an angle more often than p, and grows where that turns.
+        q = next(r for r in _SIDES if r == q or safe(p, r, value) is not None)
+        p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
+        part = safe(p, q, value)
+        assert part is not None  # noqa: S101 - as was just seen
+        return Limits(p, q, part, value)
+
+    with working_precision(PRECISION):
+        own = [abs(start[n]) for n in ("p", "q")]
+        roomy = [[room * max(own)] * 2 for room in (16, 2)]
+        for sizes, value in product([*roomy, own], _VALUE_LIMITS):
+            p, q = map(_side, sizes)
+            if p and q and safe(p, q, value) is not None:
+                return largest(p, q, value)
+    return None
+
+
+def _side(size: Fraction) -> Fraction | None:
+    """The least side beyond a size."""
+    return min((r for r in _SIDES if r > size), default=None)
+
+
+def _room(
+    kernel: Kernel, inputs: Mapping[str, Fraction], p: Fraction, q: Fraction, value: Fraction
+) -> Fraction | None:
+    """How large Λ may become; None where an operation may leave the format in this box."""
+    given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs.items()}
+    around = flint.arb(0, 1)
+    given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in (("p", p), ("q", q))}
+    program, live = kernel.lowering.program, kernel.lowering.live(kernel.roots)
+    found = analyse(program, live, given, lambda *_: flint.arb(0), rational_ball(value))
+    if found is None:
+        return None
+    sizes = [x.magnitude for x in found.values()]
+    size = {name: found[index].magnitude for name, index in kernel.outputs.items()}
+    sizes += [rational_ball(p) + size["dp"], rational_ball(q) + size["dq"]]
+    sizes.append(size["dj"] * size["dj"])
+    top = rational_ball(_TOP)
+    return _part_limit(size) if all(x < top for x in sizes) else None
+
+
+def _part_limit(size: Mapping[str, Ball]) -> Fraction | None:
+    """The power of two that Λ, and the plain product of determinants, may reach: D (1 + Λ),
+    Λ + D (1 + Λ) and the next product stay below 2^15."""
+    determinant = size.get("det", flint.arb(0))
+    for n in range(13, -1, -1):
+        if size["dj"] * (1 + 2**n) < 2**14 and determinant * 2**n < 2**14:
+            return Fraction(2**n)
+    return None

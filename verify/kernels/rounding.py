@@ -1,0 +1,168 @@
+"""What rounding does to a program's values, counted operation by operation over a box of states.
+
+Every value gets an interval that holds it for all states in the box, and a bound on the error of
+its computed value there. The rules are those of forward error analysis, without linearisation:
+with |x̂ − x| ≤ a and |ŷ − y| ≤ b, |x̂ŷ − xy| ≤ |x| b + |y| a + a b, and a function's error is its
+greatest slope over the interval, widened by a, times a; each operation adds its own rounding.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import flint
+
+from verify.algebra.enclosure import BALLS, square
+from verify.arithmetic.number_system import Arithmetic
+from verify.kernels.program import Op, Program
+
+Ball = Any  # flint.arb
+PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digits
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """An interval that holds the exact value, and a bound on the computed one's error."""
+
+    interval: Ball
+    error: Ball
+
+    @cached_property
+    def size(self) -> Ball:
+        """An upper bound of |exact value|."""
+        return self.interval.abs_upper()
+
+    @property
+    def magnitude(self) -> Ball:
+        """An upper bound of |exact value| and |computed value|."""
+        return self.size + self.error
+
+    @property
+    def widened(self) -> Ball:
+        return self.interval + self.error * flint.arb(0, 1)
+
+
+Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
+
+
+def is_known(arithmetic: Arithmetic) -> bool:
+    """Whether the errors of the arithmetic's operations are known."""
+    return arithmetic.name in ("fixed", *_FUNCTIONS)
+
+
+def rounding_of(arithmetic: Arithmetic) -> Rounding:
+    """The error of one operation of the arithmetic, which must be known."""
+    unit = flint.arb(2) ** -arithmetic.bits
+
+    def own(op: Op, size: Ball) -> Ball:
+        if op.kind == "const":
+            found = arithmetic.exact(arithmetic.number(op.value))
+            return flint.arb(abs(_fmpq(found) - _fmpq(op.value)))
+        if arithmetic.absolute:
+            given = op.kind == "root" and op.degree != 2  # a number; there is no function for it
+            return unit * (_FIXED["pi" if given else op.kind](size))
+        return size * unit * (1 if op.kind in _CORRECT else _FUNCTIONS[arithmetic.name])
+
+    return own
+
+
+# In units of the last place, by the size of the result; see `verify.arithmetic.wide.functions`.
+_FIXED: dict[str, Callable[[Ball], Ball]] = {
+    "add": lambda _: flint.arb(0), "sub": lambda _: flint.arb(0), "neg": lambda _: flint.arb(0),
+    "pi": lambda _: flint.arb("0.501"), "mul": lambda _: flint.arb("0.501"),
+    "sin": lambda _: flint.arb("0.6"), "cos": lambda _: flint.arb("0.6"),
+    "log": lambda _: flint.arb("0.6"), "exp": lambda y: 1 + y / 64,
+    # Half of what e^x and e^−x lose, and of a unit more.
+    "sinh": lambda y: flint.arb("1.04") + y / 64, "cosh": lambda y: flint.arb("1.54") + y / 64,
+    # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
+    "inverse": lambda y: flint.arb("0.51") * (1 + y), "root": lambda _: flint.arb(2**11 + 8),
+}  # fmt: skip
+# Of functions, in half units of the last place or less: MPFR's are all rounded right, mpmath's are
+# held to 4 units by the conformance suite.
+_FUNCTIONS = {"mpfr": 1, "mpmath": 8}
+_CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
+
+_UNIT, _LEAST = flint.arb(2) ** -52, flint.arb(2) ** -1000
+FLOAT: Rounding = lambda op, size: size * _UNIT + _LEAST  # noqa: E731
+
+
+def _fmpq(x: Fraction) -> Any:
+    """flint's rational, whose differences take a tenth of the time."""
+    return flint.fmpq(x.numerator, x.denominator)
+
+
+def analyse(
+    program: Program,
+    live: Sequence[int],
+    inputs: Mapping[str, Rounded],
+    rounding: Rounding,
+    limit: Ball = None,
+) -> dict[int, Rounded] | None:
+    """Each live operation's value over the inputs' intervals; None where one may be undefined.
+
+    `limit`, for inputs without an error: where a function may leave a range, its values are taken
+    to be within ±limit, since the kernel's guard ends the loop otherwise.
+    """
+    found: dict[int, Rounded] = {}
+    for index in live:
+        op = program.ops[index]
+        if op.kind == "input":
+            found[index] = inputs[op.name]
+            continue
+        if op.kind == "loop":  # how far Newton's method is from the solution is not counted
+            return None
+        interval, error = _value(op, [found[a] for a in op.args])
+        if limit is not None and op.kind in _SLOPES and not _within(interval, limit):
+            interval = limit * flint.arb(0, 1)
+        if not (interval.is_finite() and error.is_finite()):
+            return None
+        own = rounding(op, interval.abs_upper() + error)
+        found[index] = Rounded(interval, (error + own).abs_upper())
+    return found
+
+
+def _within(interval: Ball, limit: Ball) -> bool:
+    return bool(interval.is_finite() and abs(interval) < limit)
+
+
+def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
+    """The interval of the exact result, and the error that the arguments' errors make."""
+    zero = flint.arb(0)
+    match op.kind:
+        case "const":
+            return flint.arb(flint.fmpq(op.value.numerator, op.value.denominator)), zero
+        case "pi":
+            return flint.arb.pi(), zero
+        case "neg":
+            return -args[0].interval, args[0].error
+        case "add" | "sub":
+            x, y = args
+            total = x.interval + y.interval if op.kind == "add" else x.interval - y.interval
+            return total, x.error + y.error
+        case "mul":
+            x, y = args
+            error = x.size * y.error + y.size * x.error + x.error * y.error
+            if op.args[0] == op.args[1]:
+                return square(x.interval), error
+            return x.interval * y.interval, error
+    x = args[0]
+    value = BALLS[op.kind](x.interval, op.degree)
+    if x.error.is_zero():  # of no matter then is a slope without a bound
+        return value, zero
+    slope = _SLOPES[op.kind](x.widened, op.degree)
+    return value, slope.abs_upper() * x.error
+
+
+_SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
+    "sin": lambda x, _: flint.arb(1),
+    "cos": lambda x, _: flint.arb(1),
+    "atan": lambda x, _: flint.arb(1),
+    "exp": lambda x, _: x.exp(),
+    "sinh": lambda x, _: x.cosh(),
+    "cosh": lambda x, _: x.sinh(),
+    "log": lambda x, _: 1 / x,
+    "inverse": lambda x, _: square(1 / x),
+    "root": lambda x, n: x.root(n) / (n * x),
+}

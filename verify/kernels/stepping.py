@@ -1,0 +1,200 @@
+"""Stepping: a job of N steps, in chunks, in whatever arithmetic it is given."""
+
+from collections.abc import Callable, Iterator, Mapping
+from copy import copy
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+
+from verify.arithmetic.exact import text
+from verify.arithmetic.number_system import Arithmetic
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.chunked_loop import Progress, Walk
+from verify.kernels.computation import step_map_of
+from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.reach import Limits, limits
+from verify.scenes.results.core import SeriesPoint
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done.
+
+    `tangents` has what `verify.kernels.tangent_map.NAMES` names, at the same checkpoints; `kernel` made them.
+    `radii`: how far from the last values the true ones may be, where numbers are enclosures.
+    `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run ended early,
+    where that is the number format's doing.
+    """
+
+    done: int
+    trail: tuple[dict[str, Fraction], ...]
+    tangents: tuple[dict[str, Fraction], ...]
+    series: tuple[SeriesPoint, ...]
+    seconds: float
+    kernel: Kernel | None
+    radii: Mapping[str, Fraction]
+    shift: int = 0
+    reason: str = ""
+
+    @property
+    def values(self) -> dict[str, Fraction]:
+        return self.trail[-1]
+
+
+_FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
+_NOWHERE = Outcome(
+    0, (), (), (), 0.0, None, {}, 0, "an operation of the first step may leave the range of fixed"
+)
+
+
+def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
+    """H with its parameters as the kernel's arguments, where the scheme takes it so.
+
+    A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
+    a = 1; then the values are put in.
+    """
+    generic = hamiltonian.generic()
+    return generic if _takes(generic, scheme) else Hamiltonian(hamiltonian.exact)
+
+
+@lru_cache(maxsize=256)
+def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
+    try:
+        step_map_of(hamiltonian, scheme)
+    except InputError:
+        return False
+    return True
+
+
+class Job:
+    """What is run, apart from the arithmetic it is run in.
+
+    The state is noted `points` times on the way where a series is kept, else `sections` times.
+    """
+
+    def __init__(
+        self,
+        hamiltonian: Hamiltonian,
+        scheme: str,
+        start: dict[str, Fraction],
+        steps: int,
+        observables: frozenset[str],
+        points: int,
+        keeper: Keeper = NOTHING,
+        sections: int = 16,
+    ) -> None:
+        self.generic, self.scheme = _compilable(hamiltonian, scheme), scheme
+        self.parameters, self.start = dict(hamiltonian.values), start
+        self.steps, self.observables, self.points = steps, observables, points
+        self.sections = points or sections
+        self.keeper = keeper
+
+    @property
+    def solved(self) -> bool:
+        """Whether a step solves equations; there is no certificate of such runs."""
+        return step_map_of(self.generic, self.scheme).solved
+
+    def observing(self, observables: frozenset[str]) -> "Job":
+        """The same job with other observables, and without a series."""
+        other = copy(self)
+        other.observables, other.points = observables, 0
+        other.sections = 16
+        return other
+
+    def fits(self, arithmetic: Arithmetic) -> bool:
+        """Whether a step from the start stays in an arithmetic of limited range.
+
+        Raises UnsupportedError where that lacks a function.
+        """
+        made = (self.generic, self.scheme, arithmetic, self.observables | {"tangent"}, False)
+        return any(True for _ in self._formats(kernel_for(*made)))
+
+    def go(
+        self,
+        arithmetic: Arithmetic,
+        *,
+        compensated: bool = False,
+        tangent: bool = False,
+        progress: Progress | None = None,
+        enough: Callable[[Outcome], bool] | None = None,
+    ) -> Outcome:
+        """All steps in this arithmetic; the series only where the kernel collects extremes.
+
+        `tangent` carries the tangent map along. `enough` is asked at the first checkpoint whether
+        to go on; where it says no the run ends there. A fixed-point run that cannot stay within its
+        limits ends early.
+        """
+        observables = self.observables if not compensated else self.observables - {"extremes"}
+        observables |= {"tangent"} if tangent else frozenset()
+        made = (self.generic, self.scheme, arithmetic, observables, compensated)
+        kernel = kernel_for(*made)
+        if not arithmetic.absolute:
+            return self._walk(kernel, arithmetic, (), 0, progress, enough)
+        outcome = _NOWHERE
+        for shift, found in self._formats(kernel):
+            outcome = self._walk(kernel, arithmetic, tuple(found), shift, progress, enough)
+            if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
+                return outcome
+            reason = (
+                f"at step {outcome.done + 1} the orbit left |p| < {text(found.p)}, "
+                f"|q| < {text(found.q)}, or a value was too large for fixed"
+            )
+            outcome = replace(outcome, reason=reason)
+        return outcome
+
+    def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
+        """h, the parameters and the scales by the names that the kernel's source has for them."""
+        h = self.start["h"]
+        named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
+        scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
+        return {"h": h, **named, **(scales if kernel.scales else {})}
+
+    def _formats(self, kernel: Kernel) -> Iterator[tuple[int, Limits]]:
+        """Scalings s of ΔJ with the limits that they have, the finest first.
+
+        With a smaller s, 2^s ΔJ is smaller and the orbit may go farther.
+        """
+        h_power = self.start["h"] ** kernel.power
+        finest = min(63, max(0, (1 / h_power).__floor__().bit_length() - 1))
+        last = None
+        for shift in range(finest, -1, -_FEWER_BITS):
+            found = limits(kernel, self.inputs(kernel, shift), self.start)
+            if found is not None and found != last:
+                last = found
+                yield shift, found
+
+    def _walk(
+        self,
+        kernel: Kernel,
+        arithmetic: Arithmetic,
+        limits: tuple[Fraction, ...],
+        shift: int,
+        progress: Progress | None,
+        enough: Callable[[Outcome], bool] | None,
+    ) -> Outcome:
+        walk = Walk(self, kernel, arithmetic, limits, shift)
+
+        def outcome() -> Outcome:
+            return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
+                           walk.seconds, kernel, walk.radii(), walk.shift)  # fmt: skip
+
+        def falls_short() -> bool:
+            return enough is not None and walk.done >= walk.section and not enough(outcome())
+
+        try:
+            # A run that goes on from beyond its first checkpoint is asked about that one as well.
+            asked = walk.done >= walk.section
+            if asked and falls_short():
+                return replace(_NOWHERE, done=walk.done, seconds=walk.seconds)
+            for done in walk.chunks():
+                if progress:
+                    progress(done)
+                if not asked and falls_short():
+                    return replace(_NOWHERE, done=done, seconds=walk.seconds)
+                asked = asked or done >= walk.section
+        except KeyboardInterrupt:
+            walk.keep()
+            raise
+        return outcome()

@@ -1,0 +1,80 @@
+"""Λ as the growth law predicts it and as it was measured, against the step size, as inline SVG."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from verify.pages.figures.axes import MOST_STYLES, decades, grid_lines, line_style, step_sizes
+from verify.pages.figures.figures import Line, plot_line
+from verify.pages.figures.logarithm import lg
+from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.svg import INK, drawn
+
+_POINT = 1 / 72
+_WIDTH, _HEIGHT = 370, 520
+_GUIDE_GAP = 0.4  # decades between the guide and the points below it
+_LEGEND = 2  # columns
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """One initial value: |Λ| predicted and measured, and their relative difference."""
+
+    predicted: Line
+    measured: Line
+    difference: Line
+
+
+def predicted_against_measured(orbits: Sequence[Orbit], *, name: str, label: str) -> Markup:
+    """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
+    return drawn(lambda: draw_predicted_against_measured(orbits), name=name, label=label)
+
+
+def draw_predicted_against_measured(orbits: Sequence[Orbit]) -> Figure:
+    figure = Drawing(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    for index, orbit in enumerate(orbits):
+        style = line_style(index, len(orbits))
+        _prediction(above, orbit, style)
+        plot_line(below, orbit.difference, style)
+    _guide(below, [orbit.difference for orbit in orbits])
+    for axes in (above, below):
+        grid_lines(axes)
+        axes.margins(y=0.08)
+        decades(axes.yaxis, most=6)
+    step_sizes(below, [h for orbit in orbits for h, _ in orbit.measured.points])
+    above.set_title("(a) |Λ|: points measured, lines predicted")
+    below.set_title("(b) |predicted − measured| / |measured|")
+    if len(orbits) <= MOST_STYLES:
+        handles, labels = above.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=_LEGEND, handlelength=3.2)
+    return figure
+
+
+def _prediction(axes: Any, orbit: Orbit, style: dict[str, Any]) -> None:
+    """The predicted line without marks, and the measured marks without a line."""
+    plot_line(axes, orbit.predicted, {**style, "marker": None})
+    points = {"color": style["color"], "marker": style.get("marker", "o"), "markersize": 5}
+    plot_line(axes, orbit.measured, {**points, "linestyle": "none"})
+    # One entry an orbit: the mark on its line.
+    line, marks = axes.lines[-2:]
+    line.set_label("_")
+    marks.set_label("_")
+    axes.plot([], [], label=orbit.measured.label, **style)
+
+
+def _guide(axes: Any, lines: Sequence[Line]) -> None:
+    """A line of slope 1 above all points, labelled at its left end."""
+    points = [(lg(h), y) for line in lines for h, y in line.points]
+    if not points:
+        return
+    ends = min(x for x, _ in points), max(x for x, _ in points)
+    height = max(y - x for x, y in points) + _GUIDE_GAP
+    axes.plot(ends, [height + x for x in ends], color=INK, alpha=0.55, linewidth=0.9)
+    axes.annotate(
+        "∝ h", (ends[0], height + ends[0]), xytext=(0, 4), textcoords="offset points",
+        ha="left", fontsize=11,
+    )  # fmt: skip

@@ -1,0 +1,209 @@
+"""Which figures a scene's data asks for, each with a caption: what to see and how it was computed.
+
+The drawing, and with it matplotlib, is imported only where something is drawn.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from verify.pages.sections.claim_view import ClaimView, is_decimal
+from verify.pages.text.typography import number, start, superscript, whole
+from verify.scenes.results.core import ProofResult, RunResult
+from verify.scenes.results.report import SceneResult
+
+if TYPE_CHECKING:
+    from verify.pages.figures.figures import Line
+
+_MOST_SHOWN = 4  # significant digits of a number in a caption
+
+
+@dataclass(frozen=True)
+class Plot:
+    """An inline SVG with its caption; `lead` is also the image's text alternative.
+
+    One that is `wide` spans the text column.
+    """
+
+    svg: Markup
+    lead: str
+    caption: str
+    wide: bool = False
+
+
+# -- how it was computed --------------------------------------------------------------------------
+
+
+def computed(runs: Sequence[RunResult]) -> str:
+    """The arithmetic, the number of steps and the origin of the error bounds, in one sentence."""
+    steps = sorted({run.steps for run in runs})
+    count = whole(steps[0]) if len(steps) == 1 else f"{whole(steps[0])} … {whole(steps[-1])}"
+    systems = " and ".join(dict.fromkeys(_arithmetic(run) for run in runs))
+    methods = dict.fromkeys(
+        f"{run.error_kind}: {run.error_method}" for run in runs if run.status == "finished"
+    )
+    bounds = f"; error bounds {' or '.join(methods)}" if methods else ""
+    return f"Computed in {systems} with N = {count} steps{bounds}."
+
+
+def _arithmetic(run: RunResult) -> str:
+    return (
+        run.arithmetic if run.arithmetic == "float64" else f"{run.arithmetic} ({run.digits} digits)"
+    )
+
+
+# -- against the step size ------------------------------------------------------------------------
+
+
+def against_step_size(
+    runs: Sequence[RunResult], scene: SceneResult, proof: ProofResult, *, name: str
+) -> Iterator[Plot]:
+    """|Λ| and MSE/|Λ| over h, where there are step sizes to compare and values to show."""
+    if len({run.step_size for run in runs}) < 2 or not any("lambda" in run.values for run in runs):
+        return
+    from verify.pages.figures import figures
+
+    order = proof.order
+    span = f"over [0, {scene.time}]" if scene.time else "over all steps"
+    lam = figures.lines(runs, "lambda")
+    if lam:
+        guides = (order - 1, order) if order is not None and order > 1 else ()
+        lead = f"Cumulative total error |Λ| {span} against the step size h"
+        yield Plot(
+            figures.against_step_size(
+                lam, quantity="|Λ|", guides=guides, name=f"lambda-of-{name}", label=f"{lead}."
+            ),
+            f"{lead}.",
+            " ".join([_trend(lam), _bound(runs, guides), _guides(guides), computed(runs)]),
+        )
+    ratio = figures.lines(runs, "mse", "lambda")
+    if ratio:
+        guides = (order, order + 1) if order is not None else ()
+        lead = f"Ratio MSE/|Λ| {span} against the step size h"
+        yield Plot(
+            figures.against_step_size(
+                ratio, quantity="MSE/|Λ|", guides=guides, name=f"ratio-of-{name}", label=f"{lead}."
+            ),
+            f"{lead}.",
+            " ".join([_trend(ratio), _guides(guides), computed(runs)]),
+        )
+
+
+def _trend(plotted: Sequence["Line"]) -> str:
+    """What the lines do, as they are drawn."""
+    steps = [[b - a for (_, a), (_, b) in pairwise(line.points)] for line in plotted]
+    rising = sum(all(s > 0 for s in line) for line in steps)
+    falling = sum(all(s < 0 for s in line) for line in steps)
+    every = (
+        "The line" if len(steps) == 1 else f"Each of the {len(steps)} lines (one an initial value)"
+    )
+    if rising == len(steps):
+        return f"{every} rises with h."
+    if falling == len(steps):
+        return f"{every} falls as h grows."
+    return f"Of {len(steps)} lines (one an initial value), {rising} rise with h throughout."
+
+
+def _bound(runs: Sequence[RunResult], guides: Sequence[int]) -> str:
+    """The measured slopes beside the proved bound."""
+    from verify.studies.criteria import measured_slopes
+
+    slopes = sorted(measured_slopes("lambda", runs))
+    if not slopes:
+        return ""
+    low, high = f"{slopes[0][0]:.2f}", f"{slopes[-1][0]:.2f}"
+    seen = (
+        f"The measured slope is {low}" if low == high else f"The measured slopes are {low} … {high}"
+    )
+    proved = f"; proved is Λ = O({_h(guides[0])}) for h → 0" if guides else ""
+    return f"{seen.replace('-', '−')}{proved}."
+
+
+def _guides(guides: Sequence[int]) -> str:
+    return f"Grey: the slopes of {' and '.join(_h(g) for g in guides)}." if guides else ""
+
+
+def _h(power: int) -> str:
+    return "h" if power == 1 else f"h{superscript(power)}"
+
+
+# -- over time ------------------------------------------------------------------------------------
+
+
+def over_time(run: RunResult, *, name: str) -> Plot:
+    """det J, ΔJ and Λ along one run."""
+    from verify.pages.figures import figures
+
+    source = f"For {run.source}: " if run.source else ""
+    lead = f"{source}h = {run.step_size} from {start(run)}: (a) det J, (b) ΔJ and (c) Λ over time"
+    bucket = max(point.last - point.first + 1 for point in figures.merged(run.series))
+    seen = ""
+    if {"delta_j_max", "lambda"} <= set(run.values):
+        top, end = (few(run.values[key].value) for key in ("delta_j_max", "lambda"))
+        seen = f" The greatest |ΔJ| is {top}; at the end Λ is {end}."
+    if run.status == "left range":
+        seen = f" The run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
+    band = "Each level is one step."
+    if bucket > 1:
+        band = (
+            f"Each band reaches from the least to the greatest value within {whole(bucket)} steps."
+        )
+    caption = f"{band}{seen} {computed([run])}"
+    return Plot(figures.over_time(run, name=name, label=f"{lead}."), f"{lead}.", caption)
+
+
+def few(text: str) -> str:
+    """The first of the known digits."""
+    digits = sum(c.isdigit() for c in text.lower().partition("e")[0])
+    if not is_decimal(text) or digits <= _MOST_SHOWN or Decimal(text) == 0:
+        return number(text)
+    return number(f"{Decimal(text):.{_MOST_SHOWN - 1}e}")
+
+
+# -- a printed table ------------------------------------------------------------------------------
+
+
+def table(claim: ClaimView, *, name: str) -> Plot | None:
+    """lg MSE as printed and as computed; None where fewer than two step sizes can be drawn."""
+    from verify.pages.figures import figures
+
+    source = claim.result.source
+    printed, lines = rows_of(claim)
+    if len(printed.points) < 2 or not lines:
+        return None
+    lead = f"{source}: lg MSE against the step size h, printed and computed"
+    svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
+    return Plot(svg, f"{lead}.", _gap(printed, lines))
+
+
+def rows_of(claim: ClaimView) -> "tuple[Line, list[Line]]":
+    """The printed row, and the computed ones of which two step sizes and more can be drawn."""
+    from verify.pages.figures import figures
+
+    def line(label: str, cells: Sequence[str]) -> "Line":
+        known = [
+            (h, float(cell))
+            for h, cell in zip(claim.step_sizes, cells, strict=True)
+            if is_decimal(cell)
+        ]
+        return figures.Line(label.replace("-", "−"), tuple(known))
+
+    computed = [line(row[0], row[1:]) for row in claim.computed]
+    printed = line(f"printed: {claim.result.source}", claim.printed)
+    return printed, [each for each in computed if len(each.points) > 1]
+
+
+def _gap(printed: "Line", lines: Sequence["Line"]) -> str:
+    at = dict(printed.points)
+    gaps = [at[h] - y for line in lines for h, y in line.points if h in at]
+    low, high = min(gaps), max(gaps)
+    row = "The printed row (thick) is one row for all initial values"
+    if low > 0 or high < 0:
+        side = "below" if low > 0 else "above"
+        least, most = sorted((abs(low), abs(high)))
+        return f"{row}; what was computed lies {least:.1f} to {most:.1f} decades {side} it."
+    return f"{row}; what was computed differs from it by up to {max(-low, high):.1f} decades."

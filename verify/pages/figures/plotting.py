@@ -1,0 +1,130 @@
+"""The report's figures as matplotlib figures, to show, to restyle and to save.
+
+Each function gives a `matplotlib.figure.Figure` with white ground; `figure.axes` and all that
+stands on them are the caller's. Logarithms are taken before anything is drawn, so that 1e-500 has
+its place too: the data of a logarithmic axis are decimal logarithms, and its ticks say 10ⁿ. All
+quantities are without units. What there is nothing to draw of is an `InputError`.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+
+from matplotlib.figure import Figure
+
+from verify.errors import InputError
+from verify.pages.figures import (
+    crossover_figure,
+    figures,
+    flow_figure,
+    growth_figure,
+    stability_figure,
+)
+from verify.pages.figures import work_precision_figure as work_figure
+from verify.pages.figures.plots import rows_of
+from verify.pages.figures.svg import styled
+from verify.pages.figures.work_precision_plots import error_panels
+from verify.pages.sections.claim_view import ClaimView
+from verify.pages.sections.growth_view import orbits
+from verify.scenes.results.core import ClaimResult, GrowthLawResult, RunResult, SeparationGrid
+from verify.scenes.results.regions import FlowResult
+from verify.scenes.results.stability import StabilityMapResult
+from verify.scenes.results.work_precision import WorkPrecisionResult
+
+QUANTITIES = {
+    "lambda": "|Λ|",
+    "lambda_plain": "|Λ|, the plain way",
+    "lambda_max": "max |Λ|",
+    "mse": "MSE",
+    "delta_j_max": "max |ΔJ|",
+}
+
+
+def plot_runs(
+    runs: Sequence[RunResult], quantity: str = "lambda", *, slopes: Sequence[int] = ()
+) -> Figure:
+    """A quantity of `QUANTITIES` against the step size, one line a scheme and initial value.
+
+    A grey guide stands above the points for each of `slopes`, powers of h.
+    """
+    if quantity not in QUANTITIES:
+        raise InputError("quantity", quantity, f"unknown; allowed: {', '.join(QUANTITIES)}")
+    schemes = dict.fromkeys(run.scheme for run in runs)
+    lines = [
+        figures.Line(f"{scheme}, {line.label}" if len(schemes) > 1 else line.label, line.points)
+        for scheme in schemes
+        for line in figures.lines([run for run in runs if run.scheme == scheme], quantity)
+    ]
+    if not lines:
+        raise InputError("runs", len(runs), f"hold no {quantity} to draw at two step sizes or more")
+    return _made(lambda: figures.draw_against_step_size(lines, QUANTITIES[quantity], slopes))
+
+
+def plot_over_time(run: RunResult) -> Figure:
+    """det J, ΔJ and Λ over t of a run that holds a series, as bands between their extremes."""
+    if not run.series:
+        raise InputError("run", run.scheme, "holds no series; run(…, points=400) keeps one")
+    return _made(lambda: figures.draw_over_time(run))
+
+
+def plot_separation(grid: SeparationGrid) -> Figure:
+    """The greatest |truncation| and |rounding| in Λ against the step size, and where they cross."""
+    lines, marks = crossover_figure.contents(grid)
+    if len(lines) < 2:
+        raise InputError(
+            "grid", len(grid.points), "does not hold truncation and rounding at two step sizes"
+        )
+    return _made(lambda: crossover_figure.draw_truncation_against_rounding(lines, marks))
+
+
+def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
+    """Λ as the growth law predicts it and as measured, and by what they differ."""
+    drawable = orbits(laws)
+    if not drawable:
+        raise InputError("laws", len(laws), "hold no prediction to draw at two step sizes")
+    return _made(lambda: growth_figure.draw_predicted_against_measured(drawable))
+
+
+def plot_table(claim: ClaimResult) -> Figure:
+    """A table's lg MSE as it is printed and as it is computed, against the step size."""
+    view = ClaimView(claim, anchor="", scene_anchor="", scene_title="")
+    printed, computed = rows_of(view) if view.is_table else (figures.Line("", ()), [])
+    if len(printed.points) < 2 or not computed:
+        raise InputError("claim", claim.id, "is no table with two step sizes to draw")
+    return _made(lambda: figures.draw_printed_against_computed(computed, printed))
+
+
+def plot_work_precision(found: WorkPrecisionResult) -> Figure:
+    """Solution error at T against run time in seconds, and against the step size."""
+    panels = error_panels(found)
+    if not panels[0].lines:
+        raise InputError("found", len(found.lines), "hold no run with an error and a run time")
+    return _made(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))
+
+
+def plot_stability(over: StabilityMapResult) -> Figure:
+    """Verdicts in the plane of step size and stiffness."""
+    return _made(lambda: stability_figure.draw_plane(stability_figure.plane_of(over)))
+
+
+def plot_flow(flow: FlowResult) -> Figure:
+    """A region and its images by each map, q to the right and p upwards, on equal axes."""
+    if not flow.before or not any(image.outlines for image in flow.images):
+        raise InputError("flow", flow.shape, "holds no image to draw")
+    return _made(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
+
+
+def _made(draw: Callable[[], Figure]) -> Figure:
+    """The figure on white; what a title says is drawn stands at the vertical axis."""
+    # What the caller sets in place of our labels may be a formula between dollar signs.
+    with styled(**{"figure.facecolor": "white", "axes.facecolor": "white"}):
+        figure = draw()
+        for axes in figure.axes:
+            for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
+                text.set_parse_math(True)
+            named = axes.get_title(loc="left")
+            if axes.get_ylabel():
+                continue
+            axes.set_ylabel(re.sub(r"^\([a-z]\) |:.*", "", named))
+            if len(figure.axes) == 1:
+                axes.set_title("", loc="left")
+    return figure

@@ -1,0 +1,272 @@
+"""Error and |Λ| against run time and step size, digits against run time, as inline SVG.
+
+Full marks are limited by truncation, hollow ones by rounding; a cross at the upper edge is a run
+that failed; grey dots are the rounding part of each error. Marks at the ends of a line are labelled
+where there is room.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import isfinite
+from typing import Any
+
+from markupsafe import Markup
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.markers import CARETUPBASE, MarkerStyle
+from matplotlib.transforms import Bbox
+
+from verify.pages.figures.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
+from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.svg import INK, SERIES, drawn
+
+_POINT = 1 / 72
+_WIDTH = 400
+_PANEL, _LEGEND_ROW = 300, 17
+_SIZE = 5.5
+_PEER_MARKERS = ("1", "2", "3", "4")  # without a face: a peer's marks are neither full nor hollow
+_LABEL = 9
+_OFFSETS = (
+    (6, 3), (6, -11), (-6, 3), (-6, -11), (0, 8), (0, -16), (8, -4), (-8, -4), (10, 12), (-10, 12),
+    (10, -20), (-10, -20),
+)  # fmt: skip
+_TOP = 4  # decades: an error or a Λ beyond that is no longer about the orbit, and hides the others
+_APART = 5  # pixels between places of a line that a label must not cover
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A point, by logarithms: lg of the abscissa and of the ordinate, and its label if it has one.
+
+    `full`: limited by truncation. A failed run has no `y`.
+    """
+
+    x: float
+    y: float | None
+    full: bool = True
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One line of marks. `place`: which of the looks it has, the same in every figure; those of
+    peers are apart."""
+
+    label: str
+    marks: tuple[Mark, ...]
+    place: int
+    peer: bool = False
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Lines over one abscissa; `floor` holds the rounding parts as (x, y)."""
+
+    title: str
+    axis: str
+    lines: tuple[Drawn, ...]
+    floor: tuple[tuple[float, float], ...] = ()
+    logarithmic: bool = True
+
+    def beyond(self, mark: Mark) -> bool:
+        """Whether the value lies above what is shown."""
+        return self.logarithmic and mark.y is not None and mark.y > _TOP
+
+
+def panels(shown: Sequence[Panel], *, name: str, label: str) -> Markup:
+    """The panels below one another, with one legend for all: the labels of the first."""
+    return drawn(lambda: draw_panels(shown), name=name, label=label)
+
+
+def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
+    """`quantity`: what stands at all vertical axes, where the titles do not suffice."""
+    count = len(shown[0].lines) + _keys(shown)
+    height = _PANEL * len(shown) + _LEGEND_ROW * (count + 1) // 2 + 12
+    figure = Drawing(figsize=(_WIDTH * _POINT, height * _POINT), dpi=72, layout="constrained")
+    FigureCanvasAgg(figure)
+    engine: Any = figure.get_layout_engine()
+    engine.set(hspace=0.04)
+    all_axes: Any = figure.subplots(len(shown), 1, squeeze=False)
+    for axes, panel in zip(all_axes[:, 0], shown, strict=True):
+        _panel(axes, panel)
+        axes.set_ylabel(quantity)
+    _legend(figure, shown)
+    # The layout is made once, so that labels can be placed where nothing else is.
+    figure.canvas.draw()
+    figure.set_layout_engine("none")
+    for axes, panel in zip(all_axes[:, 0], shown, strict=True):
+        _place_labels(axes, panel)
+    return figure
+
+
+def style(line: Drawn) -> dict[str, Any]:
+    """Colour, mark and dash of a line; beyond the colours they combine anew."""
+    index = line.place
+    if line.peer:
+        marker = _PEER_MARKERS[index % len(_PEER_MARKERS)]
+        return {"color": INK, "marker": marker, "markersize": 7, "linewidth": 0.8}
+    shifted = (index + index // len(SERIES)) % len(MARKERS)
+    found: dict[str, Any] = {
+        "color": SERIES[index % len(SERIES)], "marker": MARKERS[shifted], "markersize": _SIZE,
+        "linewidth": 1.2,
+    }  # fmt: skip
+    return found | ({"dashes": DASHES[shifted]} if DASHES[shifted] else {})
+
+
+# -- one panel ------------------------------------------------------------------------------------
+
+
+def _panel(axes: Any, panel: Panel) -> None:
+    if panel.floor:
+        x, y = zip(*panel.floor, strict=True)
+        axes.plot(x, y, linestyle="none", marker=".", markersize=3.5, color=INK, alpha=0.4)
+    for line in panel.lines:
+        _line(axes, panel, line)
+    axes.margins(x=0.09, y=0.07)
+    if any(panel.beyond(m) for line in panel.lines for m in line.marks):
+        axes.set_ylim(_bottom(panel) - 1, _TOP)
+    _at_the_edge(axes, panel)
+    grid_lines(axes, "both")
+    decades(axes.xaxis)
+    if panel.logarithmic:
+        decades(axes.yaxis, most=8)
+    else:
+        whole_numbers(axes.yaxis)
+    axes.set_title(panel.title)
+    axes.set_xlabel(panel.axis)
+
+
+def _line(axes: Any, panel: Panel, line: Drawn) -> None:
+    look = style(line)
+    known = [m for m in line.marks if m.y is not None and isfinite(m.y)]
+    bare = {k: v for k, v in look.items() if k not in ("marker", "markersize")}
+    axes.plot([m.x for m in known], [m.y for m in known], **bare)
+    for full in (True, False):
+        marks = [m for m in known if m.full is full and not panel.beyond(m)]
+        face = look["color"] if full else "none"
+        axes.plot(
+            [m.x for m in marks], [m.y for m in marks], linestyle="none", color=look["color"],
+            marker=look["marker"], markersize=look["markersize"], markerfacecolor=face,
+            markeredgewidth=1.1,
+        )  # fmt: skip
+
+
+def _bottom(panel: Panel) -> float:
+    placed = [m.y for line in panel.lines for m in line.marks if m.y is not None and isfinite(m.y)]
+    return min((*placed, *(y for _, y in panel.floor)))
+
+
+def _at_the_edge(axes: Any, panel: Panel) -> None:
+    """At the upper edge a cross where a run failed, a caret where a value lies beyond it."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.05 * (high - low))
+    for line in panel.lines:
+        failed = [m.x for m in line.marks if m.y is None]
+        beyond = [m.x for m in line.marks if panel.beyond(m)]
+        for places, marker in ((failed, "x"), (beyond, CARETUPBASE)):
+            if not places:
+                continue  # an unclipped line without points would still ask for room
+            axes.plot(
+                places, [0.985] * len(places), transform=axes.get_xaxis_transform(),
+                linestyle="none", marker=marker, markersize=7, markeredgewidth=1.6, clip_on=False,
+                color=style(line)["color"],
+            )  # fmt: skip
+
+
+# -- legend ---------------------------------------------------------------------------------------
+
+
+def _keys(shown: Sequence[Panel]) -> int:
+    return len(_explained(shown))
+
+
+def _explained(shown: Sequence[Panel]) -> list[Line2D]:
+    """What the marks mean, as far as they occur."""
+    marks = [m for panel in shown for line in panel.lines for m in line.marks]
+    grey: dict[str, Any] = {"color": INK, "linestyle": "none", "markersize": _SIZE}
+    found = []
+    if any(not m.full and m.y is not None for m in marks):
+        found.append(
+            Line2D(
+                [],
+                [],
+                marker="o",
+                markerfacecolor="none",
+                label="hollow: limited by rounding",
+                **grey,
+            )
+        )
+    if any(m.y is None for m in marks):
+        found.append(Line2D([], [], marker="x", label="× at the edge: failed", **grey))
+    if any(panel.beyond(m) for panel in shown for line in panel.lines for m in line.marks):
+        found.append(
+            Line2D([], [], marker=MarkerStyle(CARETUPBASE), label="beyond the edge", **grey)
+        )
+    if any(panel.floor for panel in shown):
+        found.append(Line2D([], [], marker=".", alpha=0.4, label="floor: rounding part", **grey))
+    return found
+
+
+def _legend(figure: Figure, shown: Sequence[Panel]) -> None:
+    entries = [Line2D([], [], label=line.label, **style(line)) for line in shown[0].lines]
+    figure.legend(
+        handles=[*entries, *_explained(shown)], loc="outside lower center", ncols=2,
+        handlelength=3.0, columnspacing=1.2, fontsize=10,
+    )  # fmt: skip
+
+
+# -- labels ---------------------------------------------------------------------------------------
+
+
+def _place_labels(axes: Any, panel: Panel) -> None:
+    """Each label at the first of a few places near its mark where it covers nothing."""
+    renderer = axes.figure.canvas.get_renderer()
+    taken = [_box(x, y, 3) for x, y in _covered(axes, panel)]
+    inside = axes.get_window_extent(renderer)
+    for line in panel.lines:
+        for mark in line.marks:
+            if not mark.label or mark.y is None or not isfinite(mark.y) or panel.beyond(mark):
+                continue
+            text = axes.annotate(
+                mark.label, (mark.x, mark.y), xytext=(0, 0), textcoords="offset points",
+                fontsize=_LABEL, color=style(line)["color"],
+            )  # fmt: skip
+            _settle(text, taken, inside, renderer)
+
+
+def _covered(axes: Any, panel: Panel) -> Iterator[tuple[float, float]]:
+    """Pixels under marks, lines and the floor, a few apart."""
+    to_pixels = axes.transData.transform
+    for x, y in panel.floor:
+        yield tuple(to_pixels((x, y)))
+    for line in panel.lines:
+        known = [(m.x, m.y) for m in line.marks if m.y is not None and isfinite(m.y)]
+        places = [tuple(to_pixels(each)) for each in known]
+        yield from places
+        for (x0, y0), (x1, y1) in pairwise(places):
+            count = int(max(abs(x1 - x0), abs(y1 - y0)) / _APART)
+            for k in range(1, count):
+                yield x0 + (x1 - x0) * k / count, y0 + (y1 - y0) * k / count
+
+
+def _settle(text: Any, taken: list[Any], inside: Any, renderer: Any) -> None:
+    for x, y in _OFFSETS:
+        text.set_ha("left" if x > 0 else "right" if x < 0 else "center")
+        text.set_position((x, y))
+        box = text.get_window_extent(renderer)
+        within = inside.x0 <= box.x0 and box.x1 <= inside.x1 and inside.y0 <= box.y0
+        if within and box.y1 <= inside.y1 and not any(_meet(box, other) for other in taken):
+            taken.append(box)
+            return
+    text.remove()
+
+
+def _box(x: float, y: float, half: float) -> Any:
+    return Bbox.from_extents(x - half, y - half, x + half, y + half)
+
+
+def _meet(one: Any, other: Any) -> bool:
+    apart = one.x1 < other.x0 or other.x1 < one.x0 or one.y1 < other.y0 or other.y1 < one.y0
+    return not apart

@@ -1,0 +1,268 @@
+"""The first screen: the finding in a sentence, counts as tiles, and the most telling picture.
+
+A tile says what it says by its sign and its word; the colour only helps.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from verify.pages.figures.plots import Plot
+from verify.pages.sections.claim_view import ClaimView
+from verify.pages.sections.scene_view import SceneView
+from verify.pages.text.typography import listed, superscript, whole
+from verify.pages.text.words import counts_of
+from verify.scenes.results.core import ProofResult
+from verify.scenes.results.report import Report
+from verify.scenes.results.stability import KINDS, Kind, StabilityResult
+from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from verify.pages.sections.gallery_view import GalleryView
+
+SIGNS = {
+    Verdict.PROVED: ("✓", "exact algebra shows it"),
+    Verdict.ENCLOSED: ("⊂", "a rigorous numeric enclosure shows it; its error bound is certain"),
+    Verdict.MEASURED: ("≈", "numbers show it; their error bounds are estimates, not certificates"),
+    Verdict.REFUTED: ("✗", "a counterexample, or the proof of the contrary, contradicts it"),
+    Verdict.UNDECIDED: ("?", "neither shown nor contradicted by what was computed"),
+}
+# A judged run's sign, and the verdict whose colour it has.
+_RUN_SIGNS: dict[Kind, tuple[str, Verdict]] = {
+    "stable": ("✓", Verdict.PROVED),
+    "drifts": ("↝", Verdict.MEASURED),
+    "unstable: scheme": ("✗", Verdict.REFUTED),
+    "unstable: arithmetic": ("✗", Verdict.REFUTED),
+    "escapes": ("↗", Verdict.ENCLOSED),
+    "overflow": ("∞", Verdict.REFUTED),
+    "underflow": ("↓", Verdict.REFUTED),
+    "undecided": ("?", Verdict.UNDECIDED),
+}
+_FEW = 4  # proofs that are told one by one
+
+
+@dataclass(frozen=True)
+class Tile:
+    """`weight`: its share of the bar below the tiles, 0 where counts are not what is told."""
+
+    verdict: Verdict
+    sign: str
+    figure: str
+    word: str
+    meaning: str = ""
+    weight: int = 0
+
+
+@dataclass(frozen=True)
+class Refutation:
+    """The most telling one; `same_row`: other refuted tables that print the very same row."""
+
+    claim: ClaimView
+    same_row: tuple[ClaimView, ...]
+
+
+@dataclass(frozen=True)
+class Place:
+    anchor: str
+    name: str
+
+
+@dataclass(frozen=True)
+class FirstScreen:
+    """`plot` stands here and nowhere else on the page; `place`: what it is of."""
+
+    finding: str
+    tiles: tuple[Tile, ...]
+    refutation: Refutation | None
+    plot: Plot | None
+    place: Place | None
+
+
+def first_screen(
+    report: Report,
+    claims: Sequence[ClaimView],
+    scenes: Sequence[SceneView],
+    gallery: "GalleryView | None" = None,
+) -> FirstScreen:
+    told = _refutation(claims)
+    plot, place = (told.claim.plot if told else None), None
+    if plot is None:
+        pictures = chain(_pictures(scenes), _pictures_of_the_worst(gallery))
+        plot, place = next(pictures, (None, None))
+    tiles = tuple(_tiles(report)) or tuple(_tiles_of_the_worst(gallery))
+    return FirstScreen(finding(report, told, gallery), tiles, told, plot, place)
+
+
+# -- the finding in one sentence ------------------------------------------------------------------
+
+
+def finding(
+    report: Report, told: Refutation | None = None, gallery: "GalleryView | None" = None
+) -> str:
+    if report.claims:
+        return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(told)}."
+    proofs, judged = _proofs(report), _judged(report)
+    if not proofs and not judged:
+        if gallery:
+            return gallery.finding
+        return "The report holds no claim and no proof."
+    sentences = [_finding_of_runs(judged)] if judged else []
+    if proofs and (len(proofs) <= _FEW or not judged):
+        sentences = [_finding_of_proofs(proofs), *sentences]
+    return " ".join(sentences)
+
+
+def _proofs(report: Report) -> list[ProofResult]:
+    return [proof for scene in report.scenes for proof in scene.proofs]
+
+
+def _judged(report: Report) -> list[StabilityResult]:
+    return [case for scene in report.scenes for case in scene.stability]
+
+
+def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
+    counted = Counter(verdicts)
+    words = [(counted[v], v.lower()) for v in Verdict if counted[v]]
+    if len(words) == 1:
+        count, word = words[0]
+        return f"The one claim is {word}" if count == 1 else f"All {count} claims are {word}"
+    (count, word), *rest = words
+    first = f"{count} {'is' if count == 1 else 'are'} {word}"
+    return f"Of {len(verdicts)} claims, {listed([first, *(f'{n} {w}' for n, w in rest)])}"
+
+
+def _worst(told: Refutation | None) -> str:
+    """How much of the refuted table is wrong, as its evidence begins."""
+    if told is None or not told.claim.is_table:
+        return ""
+    share = told.claim.result.evidence.partition(":")[0]
+    return f"; in {told.claim.name}, {share}"
+
+
+def _finding_of_proofs(proofs: Sequence[ProofResult]) -> str:
+    if len(proofs) <= _FEW:
+        return "; ".join(_finding_of_proof(p) for p in proofs) + "."
+    shown = listed(f"{n} {text}" for _, n, text in _proof_counts(proofs))
+    return f"{len(proofs)} step maps were examined: {shown}."
+
+
+def _proof_counts(proofs: Sequence[ProofResult]) -> list[tuple[Verdict, int, str]]:
+    preserving = sum(p.area_preserving is True for p in proofs)
+    ordered = sum(p.order is not None for p in proofs)
+    parts = [
+        (Verdict.PROVED, preserving, "with det J ≡ 1"),
+        (Verdict.PROVED, ordered, "with a ΔJ of a proved order in h"),
+        (Verdict.UNDECIDED, len(proofs) - preserving - ordered, "undecided"),
+    ]
+    return [part for part in parts if part[1]]
+
+
+def _finding_of_proof(proof: ProofResult) -> str:
+    if proof.area_preserving:
+        return f"{proof.scheme} preserves area exactly (det J ≡ 1)"
+    if proof.order is not None:
+        return f"ΔJ of {proof.scheme} is of order {_h(proof.order)}"
+    return f"the order of ΔJ of {proof.scheme} is undecided"
+
+
+def _finding_of_runs(judged: Sequence[StabilityResult]) -> str:
+    counted = Counter(case.kind for case in judged)
+    return f"Of {whole(len(judged))} judged runs: {counts_of(counted)}."
+
+
+def _h(power: int) -> str:
+    return f"h{superscript(power)}"
+
+
+# -- tiles ----------------------------------------------------------------------------------------
+
+
+def _tiles(report: Report) -> list[Tile]:
+    if report.claims:
+        verdicts = Counter(c.verdict for c in report.claims)
+        return [
+            Tile(v, sign, whole(verdicts[v]), v.lower(), meaning, verdicts[v])
+            for v, (sign, meaning) in SIGNS.items()
+            if verdicts[v]
+        ]
+    proofs, judged = _proofs(report), _judged(report)
+    if judged and len(proofs) > _FEW:
+        return _tiles_of_runs(judged)
+    if len(proofs) > _FEW:
+        return [
+            Tile(v, SIGNS[v][0], whole(n), text, weight=n) for v, n, text in _proof_counts(proofs)
+        ]
+    return [_tile_of_proof(proof) for proof in proofs]
+
+
+def _tiles_of_runs(judged: Sequence[StabilityResult]) -> list[Tile]:
+    from verify.pages.sections.stability_view import MEANINGS
+
+    tiles = []
+    for kind, count in Counter(case.kind for case in judged).items():
+        sign, verdict = _RUN_SIGNS[kind]
+        tiles.append(Tile(verdict, sign, whole(count), kind, MEANINGS[kind], count))
+    return sorted(tiles, key=lambda tile: KINDS.index(tile.word))
+
+
+def _tile_of_proof(proof: ProofResult) -> Tile:
+    verdict, sign = proof.verdict, SIGNS[proof.verdict][0]
+    if proof.area_preserving:
+        return Tile(verdict, sign, "ΔJ ≡ 0", proof.scheme, "preserves area exactly")
+    if proof.order is not None:
+        meaning = "changes area at this order in every step"
+        return Tile(verdict, sign, f"ΔJ ∼ {_h(proof.order)}", proof.scheme, meaning)
+    return Tile(verdict, sign, "ΔJ", proof.scheme, "its order is undecided")
+
+
+def _tiles_of_the_worst(gallery: "GalleryView | None") -> Iterator[Tile]:
+    verdict = Verdict.MEASURED
+    for card in gallery.cards[:_FEW] if gallery else ():
+        figure, unit = card.short
+        of = card.result.separation
+        meaning = f"{of.scheme}, h = {of.step_size}"
+        yield Tile(verdict, SIGNS[verdict][0], figure, unit, meaning)
+
+
+# -- the most telling picture ---------------------------------------------------------------------
+
+
+def _refutation(claims: Sequence[ClaimView]) -> Refutation | None:
+    """A refuted table if there is one, since it sets numbers against numbers; else the first."""
+    refuted = [c for c in claims if c.result.verdict is Verdict.REFUTED]
+    if not refuted:
+        return None
+    tables = [c for c in refuted if c.is_table]
+    claim = next(iter(tables), refuted[0])
+    same = [c for c in tables if c is not claim and c.printed == claim.printed]
+    return Refutation(claim, tuple(same))
+
+
+def _pictures(scenes: Sequence[SceneView]) -> Iterator[tuple[Plot, Place]]:
+    """The most telling first: what a step size costs in area, then where schemes are stable."""
+    schemes = [(s, Place(s.anchor, s.proof.scheme)) for scene in scenes for s in scene.schemes]
+    yield from ((plot, place) for scheme, place in schemes for plot in scheme.plots[:1])
+    maps = [
+        (found, plot, Place(f"stability-of-{scene.anchor}", scene.result.title))
+        for scene in scenes
+        if scene.stability
+        for found, plot in zip(scene.result.stability_maps, scene.stability.plots, strict=True)
+    ]
+    for _, plot, place in sorted(maps, key=lambda each: -len(each[0].counted())):
+        yield plot, place
+    for scene in scenes:
+        carried = scene.flows.regions if scene.flows else ()
+        yield from ((r.plot, Place(r.anchor, r.title)) for r in carried if r.plot is not None)
+    for scheme, place in schemes:
+        parted = scheme.separation.plots if scheme.separation else ()
+        yield from ((plot, place) for plot in (*parted, *scheme.series))
+    for scene in scenes:
+        timed = scene.work_precision.plots if scene.work_precision else ()
+        yield from ((plot, Place(f"work-of-{scene.anchor}", scene.result.title)) for plot in timed)
+
+
+def _pictures_of_the_worst(gallery: "GalleryView | None") -> Iterator[tuple[Plot, Place]]:
+    for card in gallery.cards if gallery else ():
+        yield from ((plot, Place(card.anchor, card.title)) for plot in card.plots)

@@ -1,0 +1,206 @@
+"""What regions carried by maps show, in sentences: on all of a scene, and on each of them."""
+
+from collections.abc import Iterator, Sequence
+from decimal import ROUND_CEILING, Decimal
+from fractions import Fraction
+
+from verify.pages.text.typography import NBSP, listed, number, step, whole
+from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
+
+IS = f"{NBSP}={NBSP}"
+_SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture; the sentence says it
+
+# -- sentences on all of a scene ------------------------------------------------------------------
+
+Found = tuple[FlowResult, FlowImage]
+
+
+def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
+    images = [(flow, image) for flow in flows for image in flow.images]
+    changing = [each for each in images if each[1].area_preserving is not True]
+    known = [each for each in changing if each[1].area_change is not None]
+    if known:
+        yield _largest(known)
+        yield _probe(known)
+        yield from _means(known)
+    yield from _preserved([each for each in images if each[1].area_preserving])
+    yield from _distances([each for each in images if each[1].distance is not None])
+    problems = [each for each in images if each[1].problem]
+    if problems:
+        count = "image has" if len(problems) == 1 else "images have"
+        yield f"{whole(len(problems))} {count} no known change of area; the table says why."
+
+
+def _largest(known: Sequence[Found]) -> str:
+    flow, image = max(known, key=lambda each: _size(each[1].area_change))
+    return (
+        f"The largest relative change of area is that by {image.map} with {_at(flow, image)}: "
+        f"{_change(image)}."
+    )
+
+
+def _probe(known: Sequence[Found]) -> str:
+    """How far below the change the probe's error is, in the worst case."""
+    ratios = [
+        _size(image.area_change) / Fraction(image.probe_error)
+        for _, image in known
+        if image.probe_error and Fraction(image.probe_error)
+    ]
+    if not ratios:
+        return "The probe’s own error is 0."
+    least = whole(_floor_of(min(ratios)))
+    if len(ratios) == 1:
+        return f"The probe’s own error is {least} times smaller."
+    return f"The probe’s own error is at least {least} times smaller than the change it measures."
+
+
+def _floor_of(ratio: Fraction) -> int:
+    """Two digits, rounded downwards."""
+    count = int(ratio)
+    unit = int("1" + "0" * max(0, len(str(count)) - 2))
+    return count // unit * unit
+
+
+def _means(known: Sequence[Found]) -> Iterator[str]:
+    compared = [image for _, image in known if image.agree is not None]
+    if not compared:
+        return
+    apart = sum(not image.agree for image in compared)
+    all_of = "In the one image" if len(compared) == 1 else f"In all {whole(len(compared))} images"
+    if apart:
+        yield (
+            f"The mean of Λ over the region, computed without any area, differs from it in "
+            f"{whole(apart)} of {whole(len(compared))} images: one of the two is wrong there."
+        )
+    else:
+        yield (
+            f"{all_of} the mean of Λ over the region, computed without any area, is the same "
+            "within the errors, as it must be by the change of variables."
+        )
+
+
+def _preserved(images: Sequence[Found]) -> Iterator[str]:
+    schemes = list(dict.fromkeys(i.map for _, i in images if i.map != EXACT_FLOW))
+    exact = any(image.map == EXACT_FLOW for _, image in images)
+    whose = [f"det J ≡ 1 is proved for {listed(schemes)}"] if schemes else []
+    if exact:
+        whose.append("the exact flow preserves area by Liouville’s theorem")
+    measured = [image for _, image in images if image.area_change is not None]
+    if not whose or not measured:
+        return
+    said = " and ".join(whose)
+    above = [i for i in measured if _size(i.area_change) > Fraction(i.probe_error or 0)]
+    most = max(measured, key=lambda image: Fraction(image.probe_error or 0))
+    if above:
+        yield (
+            f"{_capital(said)}, but for {whole(len(above))} of these images the probe measures a "
+            "change that is larger than its error: the probe is wrong there."
+        )
+        return
+    yield (
+        f"{_capital(said)}; what the probe measures there is below its own error, at most "
+        f"{number(most.probe_error or '0')}."
+    )
+
+
+def _capital(text: str) -> str:
+    return text if text.startswith("det") else text[0].upper() + text[1:]
+
+
+def _distances(images: Sequence[Found]) -> Iterator[str]:
+    """For each scheme, how far its outlines are from the exact ones at most."""
+    by_map: dict[str, list[Found]] = {}
+    for each in images:
+        by_map.setdefault(each[1].map, []).append(each)
+    parts = []
+    for name, own in by_map.items():
+        flow, image = max(own, key=lambda each: _size(each[1].distance))
+        parts.append(f"{name} {_away(image)} ({_at(flow, image)})")
+    if parts:
+        yield f"The outlines’ distance from those by the exact flow: {listed(parts)}."
+
+
+# -- sentences on one region ----------------------------------------------------------------------
+
+
+def finding(flow: FlowResult) -> Iterator[str]:
+    """The change of area of each scheme after the most steps; what is proved; distances.
+
+    Where the last image failed, the last that is known is told too.
+    """
+    last: dict[str, list[FlowImage]] = {}
+    for image in sorted(flow.images, key=lambda image: image.steps):
+        own = last.setdefault(image.map, [])
+        known = [each for each in own if each.area_change is not None]
+        own[:] = [*known[-1:], image]
+    for name, images in last.items():
+        if name == EXACT_FLOW:
+            continue
+        *earlier, image = images
+        if image.area_change is None:
+            yield from (_finding_of(flow, known) for known in earlier)
+        yield _finding_of(flow, image)
+
+
+def _finding_of(flow: FlowResult, image: FlowImage) -> str:
+    start = f"{image.map} with {_at(flow, image)}"
+    if image.area_change is None:
+        return f"{start}: no change of area is known ({image.problem or 'none was measured'})."
+    away = ""
+    if image.distance is not None:
+        away = f" Its outlines are {_away(image)} away from the exact ones."
+    if image.area_preserving:
+        change = f"(measured: {_change(image)})"
+        return f"{start} keeps the area of {region_of(flow)} by proof {change}.{away}"
+    most = _size(image.area_change) + _size(image.probe_error)
+    unseen = ", less than the thousandth that a picture can show" if most < _SEEN else ""
+    text = f"{start} changes the area of {region_of(flow)} by {_change(image)} of it{unseen}."
+    doubt = ""
+    if image.agree is False:
+        mean = _pair(image.mean_lambda, image.mean_lambda_error)
+        doubt = (
+            f" The mean of Λ over it, which must be the same, is {mean}: one of the two is wrong."
+        )
+    return f"{text}{doubt}{away}"
+
+
+def region_of(flow: FlowResult) -> str:
+    """The region whose area it is: the first outline's."""
+    name = flow.before[0].name if flow.before else flow.shape
+    return f"the {flow.shape}" if name == flow.shape else f"the {flow.shape}’s {name}"
+
+
+# -- numbers --------------------------------------------------------------------------------------
+
+
+def _size(text: str | None) -> Fraction:
+    return abs(Fraction(text or 0))
+
+
+def _at(flow: FlowResult, image: FlowImage) -> str:
+    return f"h{IS}{step(flow.step_size)}, N{IS}{whole(image.steps)}"
+
+
+def _change(image: FlowImage) -> str:
+    return _pair(image.area_change, image.probe_error)
+
+
+def _away(image: FlowImage) -> str:
+    """A distance with its error; where that is as large, only what the two bound together."""
+    found, error = _size(image.distance), _size(image.distance_error)
+    if error < found:
+        return f"up to {_pair(image.distance, image.distance_error)}"
+    return f"at most {number(_rounded_up(found + error))}"
+
+
+def _rounded_up(value: Fraction) -> str:
+    """A bound with two digits."""
+    exact = Decimal(value.numerator) / Decimal(value.denominator)
+    return f"{exact.quantize(Decimal((0, (1,), exact.adjusted() - 1)), ROUND_CEILING):.1e}"
+
+
+def _pair(value: str | None, error: str | None) -> str:
+    """value ± error."""
+    if value is None:
+        return "–"
+    return number(value) if error is None else f"{number(value)}{NBSP}±{NBSP}{number(error)}"

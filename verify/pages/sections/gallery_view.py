@@ -1,0 +1,171 @@
+"""The worst scenes of a hunt as the page shows them: what was hunted, and a card for each scene."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from verify.pages.figures.plots import Plot
+from verify.pages.sections.gallery_finding import in_short, lambda_of, run_beyond, told
+from verify.pages.text import mathml
+from verify.pages.text.typography import NBSP, start, step, whole
+from verify.scenes.results.exploration import Gallery, GalleryScene
+
+ANCHOR = "gallery"
+_SHORT = 80  # characters of a formula that stands in a caption
+
+
+@dataclass(frozen=True)
+class CardView:
+    """One scene: `title` says how bad it is, `short` the number of that and its unit."""
+
+    result: GalleryScene
+    anchor: str
+    title: str
+    short: tuple[str, str]
+    setting: Markup
+    finding: tuple[str, ...]
+    plots: tuple[Plot, ...]
+    command: str
+
+
+@dataclass(frozen=True)
+class GalleryView:
+    """`finding`: what the first screen says; `hunted`: of which scenes they are the worst."""
+
+    result: Gallery
+    finding: str
+    hunted: tuple[str, ...]
+    cards: tuple[CardView, ...]
+
+
+def gallery_view(gallery: Gallery) -> GalleryView:
+    cards = tuple(_card(each, n, gallery) for n, each in enumerate(gallery.scenes, start=1))
+    return GalleryView(
+        result=gallery,
+        finding=_finding(gallery, cards),
+        hunted=tuple(_hunted(gallery)),
+        cards=cards,
+    )
+
+
+# -- sentences ------------------------------------------------------------------------------------
+
+
+def _finding(gallery: Gallery, cards: Sequence[CardView]) -> str:
+    count = f"{_scenes(gallery.examples)} of seed {gallery.seed}"
+    where = f"{_within(gallery)}, {whole(gallery.steps)} steps each"
+    if not cards:
+        return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
+    worst = gallery.scenes[0].separation
+    return (
+        f"In the worst of {count} ({where}), "
+        f"{told(gallery.measure, gallery.sentence, gallery.scenes[0].value)}: {worst.scheme} with "
+        f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
+    )
+
+
+def _scenes(count: int) -> str:
+    return "1 scene" if count == 1 else f"{whole(count)} scenes"
+
+
+def _within(gallery: Gallery) -> str:
+    least, most = map(step, gallery.step_sizes)
+    reach = f"|q|, |p|{NBSP}≤{NBSP}{gallery.reach}"
+    return f"{reach}, h from {least} to {most}"
+
+
+def _hunted(gallery: Gallery) -> Iterator[str]:
+    low, high = gallery.coefficients
+    yield f"Hunted for: the {gallery.sentence}."
+    yield (
+        "Scenes were drawn at random, those near bad ones more often, and then moved a little as "
+        f"long as that made them worse: initial values with {_within(gallery)}, coefficients of H "
+        f"as drawn, of size {low} to {high} where they were moved, N{NBSP}={NBSP}"
+        f"{whole(gallery.steps)} steps."
+    )
+    yield (
+        "Of each shape of H only the worst scene is shown, the worst of all first. What it "
+        "measures was measured again with twice the digits, and is the same."
+    )
+
+
+def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
+    anchor = f"worst-{place}"
+    said = told(gallery.measure, gallery.sentence, each.value)
+    return CardView(
+        result=each,
+        anchor=anchor,
+        title=f"Scene {place}: {said}",
+        short=in_short(gallery.measure, each.value),
+        setting=_setting(each, gallery.steps),
+        finding=(*lambda_of(each), *run_beyond(each)),
+        plots=tuple(_plots(each, place, gallery.steps, anchor)),
+        command=f"verify report {anchor}.toml",
+    )
+
+
+def _setting(each: GalleryScene, steps: int) -> Markup:
+    of = each.separation
+    return Markup("<code>{0}</code> with h{1}={1}{2} from {3}, over {4} steps.").format(
+        of.scheme, NBSP, step(of.step_size), start(of), whole(steps)
+    )
+
+
+# -- figures --------------------------------------------------------------------------------------
+
+
+def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[Plot]:
+    """Truncation against rounding, which the first screen shows of the worst, and the orbit."""
+    of = each.separation
+    series = of.plain.series if of.plain else ()
+    drawable = [at for at in series if _known(at.truncation) or _known(at.total)]
+    if len(drawable) > 1:
+        from verify.pages.figures import gallery_figure
+
+        lead = f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps"
+        svg = gallery_figure.parts(each, name=f"parts-of-{anchor}", label=f"{lead}.")
+        # That of the worst scene stands on the first screen, far from its card.
+        formula = [_formula(of.hamiltonian)] if place == 1 else []
+        yield Plot(svg, f"{lead}.", Markup(" ").join([*formula, _parts_said(each)]))
+    if len(each.orbit) > 1:
+        from verify.pages.figures import gallery_figure
+
+        lead = f"Scene {place}: the orbit in the (q, p) plane, {whole(steps)} steps"
+        svg = gallery_figure.orbit(each.orbit, steps, name=f"orbit-of-{anchor}", label=f"{lead}.")
+        yield Plot(svg, f"{lead}.", _orbit_said(each, steps))
+
+
+def _formula(text: str) -> Markup:
+    """H in a caption, where it is short enough for one."""
+    if len(text) > _SHORT:
+        return Markup("")
+    return Markup("H{0}={0}{1}.").format(NBSP, mathml.formula(text))
+
+
+def _parts_said(each: GalleryScene) -> str:
+    of = each.separation
+    series = of.plain.series if of.plain else ()
+    said = [
+        f"Λ in float64, evaluated the plain way, split after up to {whole(of.steps)} steps: what "
+        "the scheme does to area, and what rounding adds."
+    ]
+    if any(not _known(size) for at in series for size in (at.truncation, at.total)):
+        said.append("What is 0, or of what no digit is known, has no place on these axes.")
+    said.append(f"In place of exact arithmetic: {of.arithmetic}; {of.error_method}.")
+    return " ".join(said)
+
+
+def _orbit_said(each: GalleryScene, steps: int) -> str:
+    shown = len(each.orbit) - 1
+    every = -(-steps // shown)
+    points = "each step" if every == 1 else f"every {whole(every)} steps"
+    still = len(set(each.orbit)) == 1
+    at_rest = " It stays where it starts." if still else ""
+    return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits.{at_rest}"
+
+
+def _known(size: str) -> bool:
+    from verify.pages.figures.logarithm import lg
+
+    return lg(size) > float("-inf")

@@ -1,0 +1,126 @@
+"""Text and the page's markup → GitHub flavoured Markdown in which what others wrote stays text.
+
+Inside a line GitHub allows a few HTML elements, which, unlike asterisks and backticks, mean the
+same in a table, beside any letter and around any text.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+
+from markupsafe import escape
+
+from verify.pages.text.markup import Node, tree
+from verify.pages.text.tex import tex
+from verify.pages.text.typography import prose
+
+_MARKS = re.compile(r"[\\`*_\[\]|~#]")
+_AT_THE_START = re.compile(
+    r"[-+=:]|[0-9]+(?=[.)](?:\s|$))"
+)  # a list, an underline, a table's alignment
+_ENTITIES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
+_KEPT = {"sub": "sub", "sup": "sup", "b": "b", "strong": "b", "em": "i", "i": "i", "code": "code"}
+_ASIDES = {"bound", "muted"}  # what the page sets smaller beside or below a number
+_SAFE_LINK = re.compile(r"#[A-Za-z0-9_.-]+|results\.json")
+
+
+class Markdown(str):
+    """Text that is Markdown already."""
+
+    __slots__ = ()
+
+
+def markdown(found: object) -> Markdown:
+    """Anything as Markdown inside a line: Markdown as it is, markup set anew, all else as text."""
+    if isinstance(found, Markdown):
+        return found
+    if hasattr(found, "__html__"):
+        return Markdown(_started(_inline(tree(found.__html__())).strip(" ")))
+    return escaped("" if found is None else str(found))
+
+
+def escaped(text: str) -> Markdown:
+    """The text in one line, with no character that means anything to Markdown or to HTML."""
+    line = " ".join(re.split(r"[\s\x00-\x1f]+", text.replace("\u00a0", "\ue000"))).strip()
+    return Markdown(_started(_quoted(line).replace("\ue000", "\u00a0")))
+
+
+def in_html(text: str) -> Markdown:
+    """A sentence as HTML, for a <summary>, in which Markdown's marks mean nothing.
+
+    A formula could not be set there: a text that holds one is given as it is.
+    """
+    set_out = tree(prose(text))
+    plain = "math" in {child.tag for child in set_out.children if isinstance(child, Node)}
+    return Markdown(_html(text if plain else set_out).strip())
+
+
+def _html(node: Node | str) -> str:
+    if isinstance(node, str):
+        return escape(re.sub(r"[\s\x00-\x1f]+", " ", node)).replace("$", "<span>$</span>")
+    inner = "".join(_html(child) for child in node.children)
+    kept = _KEPT.get(node.tag)
+    return f"<{kept}>{inner}</{kept}>" if kept else inner
+
+
+def _started(line: str) -> str:
+    """A line that starts no list and underlines no heading."""
+    start = _AT_THE_START.match(line)
+    if start is None:
+        return line
+    return f"{start[0]}\\{line[start.end() :]}" if start[0].isdigit() else f"\\{line}"
+
+
+def _quoted(text: str) -> str:
+    text = _MARKS.sub(r"\\\g<0>", text.translate(_ENTITIES))
+    # GitHub would read the rest as a formula, or make a link of it.
+    text = text.replace("$", "<span>$</span>").replace("://", "&#58;//")
+    return re.sub(r"(?i)\bwww\.", lambda m: f"{m[0][:-1]}&#46;", text)
+
+
+# -- markup ---------------------------------------------------------------------------------------
+
+
+def _inline(node: Node | str) -> str:
+    if isinstance(node, str):
+        return _quoted(re.sub(r"[ \t\r\n]+", " ", node))
+    if node.tag == "math":
+        return _formula(node)
+    if node.tag == "br":
+        return "<br>"
+    if node.attributes.get("class") == "digits":
+        return _quoted(node.text)  # the groups are the style sheet's
+    inner = "".join(_inline(child) for child in node.children)
+    if node.tag in _KEPT:
+        return f"<{_KEPT[node.tag]}>{inner}</{_KEPT[node.tag]}>"
+    if node.tag == "a" and _SAFE_LINK.fullmatch(node.attributes.get("href", "")):
+        return f"[{inner}]({node.attributes['href']})"
+    if node.attributes.get("class") in _ASIDES and not inner.startswith("±"):
+        return f"({inner})"
+    return inner
+
+
+def _formula(node: Node) -> str:
+    """Between ``$` `` and `` `$``, where Markdown's own marks mean nothing; a display by itself."""
+    if node.attributes.get("display") == "block":
+        return f"\n\n```math\n{tex(node).strip()}\n```\n\n"
+    return f"$`{tex(node).strip()}`$"
+
+
+# -- blocks ---------------------------------------------------------------------------------------
+
+
+def table(heads: Sequence[object], rows: Iterable[Sequence[object]], words: str = "") -> Markdown:
+    """A table whose columns are numbers, aligned right; `words`: a letter for each column, where
+    they are not: l (left) or r (right)."""
+    places = words.ljust(len(heads), "r")
+    rule = "|".join(":---" if place == "l" else "---:" for place in places[: len(heads)])
+    lines = [
+        _row(heads),
+        f"|{rule}|",
+        *(_row([*row, *[""] * (len(heads) - len(row))]) for row in rows),
+    ]
+    return Markdown("\n".join(lines))
+
+
+def _row(cells: Sequence[object]) -> str:
+    return "| " + " | ".join(" ".join(markdown(cell).split("\n")) for cell in cells) + " |"

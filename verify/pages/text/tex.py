@@ -1,0 +1,88 @@
+"""MathML, as `verify.pages.text.mathml` sets it → TeX, as a repository page sets it.
+
+Only what `verify.pages.text.mathml` writes is known; of any other element what stands in it is set. A leaf is
+never taken for a command: its letters are set one by one or as upright text.
+"""
+
+import re
+
+from verify.pages.text.markup import Node
+
+_GREEK = {
+    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "varepsilon", "ζ": "zeta",
+    "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu",
+    "ξ": "xi", "π": "pi", "ρ": "rho", "σ": "sigma", "τ": "tau", "υ": "upsilon", "φ": "varphi",
+    "χ": "chi", "ψ": "psi", "ω": "omega", "Γ": "Gamma", "Δ": "Delta", "Θ": "Theta",
+    "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
+}  # fmt: skip
+_FUNCTIONS = {"sin", "cos", "tan", "exp", "ln", "log", "sinh", "cosh", "tanh", "arctan"}
+_SIGNS = {
+    "−": "-", "\u2061": "", "\u2062": r"\,", "′": "'", "≡": r"\equiv ", "≤": r"\le ",
+    "·": r"\cdot ", "±": r"\pm ", "×": r"\times ", "|": r"\vert ", "⟨": r"\langle ",
+    "⟩": r"\rangle ", "ο": "o",
+}  # fmt: skip
+_PLAIN = re.compile(r"[A-Za-z0-9+\-=/().,;:! ]")
+_ESCAPED = set("#%&_{}")
+
+
+def tex(node: Node) -> str:
+    """The element as TeX, without delimiters; it holds no backtick, no dollar sign and no pipe."""
+    inner = [tex(c) for c in node.children if isinstance(c, Node)]
+    match node.tag, inner:
+        case (("mi" | "mn" | "mtext"), _):
+            return _leaf(node.text)
+        case "mo", _:
+            return _operator(node)
+        case "msup", [base, upper]:
+            return f"{_group(base)}^{{{upper}}}"
+        case "msub", [base, lower]:
+            return f"{_group(base)}_{{{lower}}}"
+        case "mfrac", [above, below]:
+            return rf"\frac{{{above}}}{{{below}}}"
+        case "msqrt", _:
+            return rf"\sqrt{{{''.join(inner)}}}"
+        case "mroot", [base, degree]:
+            return rf"\sqrt[{degree}]{{{base}}}"
+        case "mtable", _:
+            return _table(node)
+    return "".join(inner)
+
+
+def _table(node: Node) -> str:
+    rows = [row for row in node.children if isinstance(row, Node)]
+    entries = [[e for e in row.children if isinstance(e, Node)] for row in rows]
+    lines = r" \\ ".join(" & ".join(tex(e) for e in row) for row in entries)
+    # Lines of one sum carry how they are aligned; the entries of a matrix do not.
+    aligned = any("class" in e.attributes for row in entries for e in row)
+    name = "aligned" if aligned else "matrix"
+    return rf"\begin{{{name}}} {lines} \end{{{name}}}"
+
+
+def _operator(node: Node) -> str:
+    if node.attributes.get("stretchy") != "false":
+        if node.text == "(":
+            return r"\left("
+        if node.text == ")":
+            return r"\right)"
+    return "".join(_character(c) for c in node.text)
+
+
+def _leaf(text: str) -> str:
+    if text in _FUNCTIONS:
+        return f"\\{text} "
+    shown = "".join(_character(c) for c in text)
+    if len(text) > 1 and not re.fullmatch(r"[0-9.]+", text):
+        return rf"\mathrm{{{shown}}}"
+    return shown
+
+
+def _character(c: str) -> str:
+    if c in _GREEK:
+        return f"\\{_GREEK[c]} "
+    if c in _ESCAPED:
+        return f"\\{c}"
+    return _SIGNS.get(c, c if _PLAIN.fullmatch(c) else "?")
+
+
+def _group(base: str) -> str:
+    return base if len(base) == 1 else f"{{{base}}}"

@@ -1,0 +1,85 @@
+"""Certificates of proofs: the polynomials and the identities between them, as JSON.
+
+A polynomial is a list of terms `[coefficient, name, name, …]`, a name once for each power.
+- `hamiltonian`: a polynomial, or "every": then the names are p, q and H_p, H_q, H_pp, … as free
+  derivatives of H (`separable`: the mixed ones are 0).
+- `functions`: `[name, kind, argument]`, kind one of sin, cos, exp, inverse, inner ones first.
+- `p_next`, `q_next`: the coefficients of h⁰, h¹, … of the map, as far as they are needed.
+- `convergence_order` c: those of h⁰ … h^c are (Xⁿp)/n! and (Xⁿq)/n!, by X = H_p ∂_q − H_q ∂_p.
+- `order` r and `leading`: the coefficients of h … h^(r−1) in det J vanish, that of h^r is
+  `leading`, not zero (at the point `witness`, for one H). null: all vanish.
+- `potential` G, where it is there: X·G = `leading`.
+- `cofactors`: what has to be zero is Σ cofactor·relation over the functions' relations.
+- `stages`, alone: rows (kick, drift, share of p', share of q') of a scheme that is
+  p' = p − h·kick·H_q, q' = q + h·drift·H_p, with H_p and H_q taken at those shares of the way from
+  (p, q) to (p', q'): det J = 1.
+
+`verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from verify.algebra.generator import terms_of
+from verify.algebra.jets import Jets
+from verify.algebra.ring import Poly
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.proof.certificates.file import FORMAT
+from verify.proof.every import EveryProof
+from verify.proof.telescoping import telescopes, telescopes_of_lie
+from verify.schemes import get
+from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.splitting_conditions import Splitting
+from verify.verdict import Verdict
+
+
+def of_every(proof: EveryProof) -> dict[str, Any]:
+    """The certificate of a proof for every H; InputError where nothing is proved."""
+    scheme = get(proof.scheme)
+    generic = scheme.generic
+    if proof.verdict is not Verdict.PROVED or generic is None or proof.convergence_order is None:
+        raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
+    data: dict[str, Any] = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
+    data["separable"] = proof.separable
+    stages = generic.stages if isinstance(generic, Splitting) else generic
+    if isinstance(stages, StageEquations) and proof.area_preserving:
+        rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in stages.stages)
+        return data | {"stages": [[text(x) for x in row] for row in rows]}
+    if proof.order is None or not isinstance(generic, BySeries):
+        problem = "is proved by its coefficients; the checker knows rational ones, of stages"
+        raise InputError("scheme", proof.scheme, problem)
+    jets = Jets(proof.order + 2, separable=proof.separable)
+    series = generic.taylor(jets, proof.order)
+    leading = list(jets.delta_j(*series))[-1]
+    names = dict(enumerate(jets.names))
+    data |= map_of(proof.order, proof.convergence_order, leading, series, names)
+    if proof.telescopes:
+        data["potential"] = terms(_potential(jets, generic, leading), names)
+    return data
+
+
+def _potential(jets: Jets, generic: BySeries, leading: Poly) -> Poly:
+    if isinstance(generic, TaylorSeries):
+        return telescopes_of_lie(jets, leading, generic.eta).potential
+    return telescopes(jets, leading).potential
+
+
+def map_of(
+    order: int | None, agreed: int, leading: Poly, series: tuple[Any, Any], names: dict[int, str]
+) -> dict[str, Any]:
+    return {
+        "order": order,
+        "convergence_order": agreed,
+        "leading": terms(leading, names),
+        "p_next": [terms(x, names) for x in series[0]],
+        "q_next": [terms(x, names) for x in series[1]],
+    }
+
+
+def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
+    """The polynomial as a list of terms; `names`: of the variables by their index."""
+    return [
+        [str(c), *(names[k] for k, n in enumerate(monomial) for _ in range(int(n)))]
+        for monomial, c in terms_of(x)
+    ]

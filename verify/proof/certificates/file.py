@@ -1,0 +1,47 @@
+"""A certificate's file, checked: what it says where it holds, and else why it is refused."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from verify.errors import InputError
+from verify.proof.certificates.checker import check
+
+FORMAT = "areaproof certificate 1"
+
+
+def checked(path: Path) -> tuple[bool, str]:
+    """(whether it holds, its statement or why not); InputError where it is no certificate."""
+    try:
+        data = json.loads(path.read_bytes())
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+    except (ValueError, RecursionError):
+        raise InputError("file", str(path), "is not JSON") from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise InputError("file", str(path), f"is not of the format {FORMAT!r}")
+    try:
+        check(data)
+        return True, statement(data)
+    except ValueError as reason:
+        return False, str(reason)
+    except (LookupError, TypeError, AttributeError, ArithmeticError, StopIteration) as error:
+        return False, f"an entry is missing or malformed ({type(error).__name__}: {error})"
+    except RecursionError:
+        return False, "its functions are nested too deeply"
+
+
+def statement(data: dict[str, Any]) -> str:
+    """What the certificate says, from the entries that the checker looks at."""
+    every = "every smooth H = T(p) + V(q)" if data.get("separable") else "every smooth H"
+    where = every if data["hamiltonian"] == "every" else "the H that it holds"
+    if "stages" in data:
+        return f"det J = 1 for {where} and the scheme of its stages"
+    order, agreed = data["order"], data["convergence_order"]
+    generic = " for a generic H" if data["hamiltonian"] == "every" else ""
+    area = "det J = 1"
+    if order is not None:
+        area = f"det J − 1 = L h^{order} + O(h^{order + 1}), L not zero{generic}"
+    telescopes = "; L = X·G" if data.get("potential") is not None else ""
+    flow = f"which agrees with the flow up to h^{agreed}"
+    return f"{area}, for {where} and the map that it holds, {flow}{telescopes}"

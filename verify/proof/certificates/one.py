@@ -1,0 +1,169 @@
+"""The certificate of a proof for one H: its identities, with the cofactors that show them.
+
+Derivatives are taken as the checker takes them, without reducing, so that what has to be zero is
+the same polynomial here and there.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import sympy
+
+from verify.algebra.generator import terms_of
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.proof.certificates.every import map_of, terms
+from verify.proof.certificates.file import FORMAT
+from verify.proof.order import Proof
+from verify.proof.potential import Potential
+from verify.verdict import Verdict
+
+_KINDS = ("sin", "cos", "exp", "inverse")
+
+
+def of_one(proof: Proof, potential: Potential) -> dict[str, Any]:
+    """The certificate of a proof for one H.
+
+    Raises InputError where nothing is proved, where the map is not a polynomial in h, and where H
+    needs other functions than sin, cos, exp and denominators.
+    """
+    step_map = proof.step_map
+    hamiltonian = step_map.hamiltonian
+    if proof.verdict is not Verdict.PROVED or proof.convergence_order is None:
+        raise InputError("proof", proof.verdict.value, "there is nothing to certify")
+    if step_map.flat.degree is None or (proof.order is None) != (proof.area_preserving is True):
+        raise InputError("map", str(step_map.p_next), "is no polynomial in h: no certificate")
+    asked = [
+        hamiltonian.exact,
+        *step_map.composed,
+        proof.leading,
+        potential.potential or sympy.S.Zero,
+    ]
+    field, elements = hamiltonian.field(*asked)
+    plain = _Plain(field.ring)
+    _, p_next, q_next, leading, _ = elements
+    h, potential_ = (_without_constants(plain.ring, x) for x in (elements[0], elements[4]))
+    needed = max(proof.order or 0, proof.convergence_order) if proof.order else None
+    series = [_coefficients(plain.ring, x)[: needed and needed + 1] for x in (p_next, q_next)]
+    data = {
+        "format": FORMAT,
+        "hamiltonian": terms(h, plain.names),
+        "functions": plain.functions,
+        **map_of(
+            proof.order, proof.convergence_order, leading, (series[0], series[1]), plain.names
+        ),
+        "witness": {name: text(value) for name, value in proof.witness.items()},
+    }
+    if proof.order is not None and potential.potential is not None:
+        data["potential"] = terms(potential_, plain.names)
+    data["cofactors"] = dict(_cofactors(plain, data, h, series, leading, potential_))
+    return data
+
+
+def _coefficients(ring: Ring, x: Poly) -> list[Poly]:
+    """Those of h⁰, h¹, … of a polynomial in h."""
+    powers = ring.powers(x, "h")
+    return [powers.get(n, ring.zero) for n in range(max(powers, default=0) + 1)]
+
+
+def _without_constants(ring: Ring, x: Poly) -> Poly:
+    """Without the terms that depend on neither p nor q, which X takes to 0."""
+    kept = {
+        monomial: c
+        for monomial, c in terms_of(x)
+        if any(n and not _parameter(ring, k) for k, n in enumerate(monomial))
+    }
+    return ring.context.from_dict(kept)
+
+
+def _parameter(ring: Ring, index: int) -> bool:
+    return ring.room + 1 < index  # p and q stand first among the variables
+
+
+class _Plain:
+    """A ring's polynomials with ∂/∂p and ∂/∂q by the chain rule, and nothing reduced."""
+
+    def __init__(self, ring: Ring) -> None:
+        self.ring = ring
+        self.names = {
+            g.index: str(g.expression) if g.kind == "variable" else f"#{g.index}"
+            for g in ring.generators
+        }
+        made = [g for g in ring.generators if g.kind != "variable"]
+        for g in made:
+            if g.kind not in _KINDS:
+                raise InputError(
+                    "hamiltonian",
+                    str(g.expression),
+                    "no certificate: it takes sin, cos, exp, denominators",
+                )
+        self.functions = [
+            [self.names[g.index], g.kind, terms(g.argument, self.names)] for g in made
+        ]
+        self._images: dict[int, dict[str, Poly]] = {}
+        gens = ring.context.gens()
+        for g in made:
+            own = gens[g.index]
+            partner = {"sin": "cos", "cos": "sin"}.get(g.kind)
+            side = ring.find(partner, g.argument) if partner else None
+            slope = {"sin": side, "cos": side and -side, "exp": own, "inverse": -(own**2)}[g.kind]
+            self._images[g.index] = {by: slope * self.diff(g.argument, by) for by in "pq"}
+
+    def diff(self, x: Poly, by: str) -> Poly:
+        total = x.derivative(self.ring.room + self.ring.variables.index(by))
+        degrees = x.degrees()
+        for index, image in self._images.items():
+            if degrees[index] > 0:
+                total += x.derivative(index) * image[by]
+        return total
+
+    def cofactors(self, x: Poly) -> dict[str, list[list[str]]]:
+        """By which Σ cofactor·relation is x; InputError where reducing does not end at 0."""
+        found: dict[int, Poly] = {}
+        for index, power, relation in reversed(self.ring.relations):
+            if x.degrees()[index] >= power:
+                quotient, x = divmod(x, relation)
+                found[index] = found.get(index, self.ring.zero) + quotient
+        if x != 0:
+            raise InputError("proof", str(x)[:60], "no certificate: zero is not seen by reducing")
+        return {self.names[index]: terms(c, self.names) for index, c in found.items()}
+
+
+def _cofactors(
+    plain: _Plain, data: Any, h: Poly, series: list[list[Poly]], leading: Poly, potential: Poly
+) -> Iterator[tuple[str, Any]]:
+    """(what is zero, its cofactors), in the checker's words; what is zero as it stands has none."""
+    for what, x in _zeros(plain, data, h, series, leading, potential):
+        if x != 0:
+            yield what, plain.cofactors(x)
+
+
+def _zeros(
+    plain: _Plain, data: Any, h: Poly, series: list[list[Poly]], leading: Poly, potential: Poly
+) -> Iterator[tuple[str, Poly]]:
+    ring, order = plain.ring, data["order"]
+    h_p, h_q = plain.diff(h, "p"), plain.diff(h, "q")
+
+    def along(y: Poly) -> Poly:
+        return h_p * plain.diff(y, "q") - h_q * plain.diff(y, "p")
+
+    last = order or sum(map(len, series))
+    for by, own in zip("pq", series, strict=True):
+        flow = ring.variable(by)
+        for n in range(data["convergence_order"] + 1):
+            yield f"{by} {n}", (own[n] if n < len(own) else ring.zero) - flow / math.factorial(n)
+            flow = along(flow)
+    slopes = [
+        [(plain.diff(x, "p"), plain.diff(x, "q")) for x in own] + [(ring.zero, ring.zero)] * last
+        for own in series
+    ]
+    for n in range(1, last + 1):
+        det = ring.zero - leading if n == order else ring.zero
+        for k in range(n + 1):
+            (p_p, p_q), (q_p, q_q) = slopes[0][k], slopes[1][n - k]
+            det += p_p * q_q - p_q * q_p
+        yield f"det {n}", det
+    if "potential" in data:
+        yield "potential", along(potential) - leading

@@ -1,0 +1,119 @@
+"""The growth law of Λ: what of log(1 + Λ) is bounded, what grows with T, and what remains.
+
+Setting. Φ is one step of size h of a scheme of order η ≥ 1 for a smooth H, z_k = Φᵏ(z₀), T = N h,
+log(1 + Λ) = Σ_{k<N} log(1 + ΔJ(z_k)), and log(1 + ΔJ) = h^r c_r + h^(r+1) c_(r+1) + … with r ≥ 2
+(so c_r and c_(r+1) are those of ΔJ itself: ΔJ² is O(h^2r), and 2r ≥ r + 2). K is a compact ring of
+closed orbits of the exact flow φ, with no equilibrium in it (for a rotation, on the cylinder). For
+g on K, ⟨g⟩ is its time average along the orbit and B_g the solution of X B_g = g − ⟨g⟩; both are
+smooth on K, as g is a smooth periodic function of time on each orbit, whose period is smooth and
+positive. [F] means F(z_N) − F(z₀), at the NUMERICAL end point: the phase of z_N differs from the
+exact one by up to O(h^η T (1 + T)), so that [F] along the exact orbit means nothing for long times.
+|Λ| itself is e^S − 1 for the sum S that is predicted: an error R of S is one of (1 + Λ)(e^R − 1).
+
+Theorem. There are h₀ and C, which depend on H, the scheme and K alone, so that for all h ≤ h₀ and
+all N for which z₀ … z_N lie in K:
+
+  even η, `lieη` (r = η + 1, and c_r = X G, see `telescoping`), with g = c_(r+1):
+    log(1 + Λ) = h^η [G] + h^(η+1) (T ⟨g⟩(z₀) + [B_g − ½ X G]) + R,
+    |R| ≤ C (h^(η+2) T + h^(η+1) Σ h |H(z_k) − H(z₀)|);
+
+  any scheme, in particular `lieη` of odd η (r = η + 1, if that coefficient is not 0), with g = c_r:
+    log(1 + Λ) = h^(r−1) (T ⟨g⟩(z₀) + [B_g]) + R,
+    |R| ≤ C (h^r T + h^(r−1) Σ h |H(z_k) − H(z₀)|).
+
+  |H(z_k) − H(z₀)| ≤ C h^η t_k, t_k = k h, and ≤ C (h^η + h^(η+1) t_k) for `lieη` of even η. So
+    even η:  |R| ≤ C h^(η+2) T (1 + h^η T),    relative to h^(η+1) T ⟨g⟩ ≠ 0:  O(h) + O(h^(η+1) T);
+    odd η:   |R| ≤ C h^(η+1) T (1 + h^(η−1) T), relative to h^η T ⟨g⟩ ≠ 0:  O(h) + O(h^η T).
+  An orbit with a ring around it stays in the ring while h^(η+1) T (odd: h^η T) is below a constant,
+  so there the bounds hold uniformly. In both the boundary part, what stands in [ ], is bounded
+  whatever T is.
+
+Proof. For smooth F, Φ = φ_h + O(h^(η+1)) gives, uniformly on K,
+  (1)  F(Φ z) − F(z) = h X F + ½ h² X² F + O(h³) + O(h^(η+1)).
+Any scheme: c_r = ⟨c_r⟩ + X B, and by (1) h X B = B(Φ z) − B(z) + O(h²). Summed, h^r Σ X B(z_k) =
+h^(r−1) [B] + O(N h^(r+1)), and the terms from h^(r+1) on are O(N h^(r+1)) = O(h^r T). ⟨c_r⟩ depends
+smoothly on the orbit, that is on H: h^r Σ ⟨c_r⟩(z_k) = h^(r−1) T ⟨c_r⟩(z₀) up to what R has.
+Even η: (1) for G reads h X G = G(Φ z) − G(z) − ½ h² X² G + O(h³), as η ≥ 2. Times h^η and summed,
+h^(η+1) Σ X G(z_k) = h^η [G] − ½ h^(η+2) Σ X² G(z_k) + O(N h^(η+3)). Both X² G = X (X G) and the
+oscillating part of g are derivatives along the flow: (1) sums them to −½ h^(η+1) [X G] and to
+h^(η+1) [B_g], up to O(N h^(η+3)). What remains is h^(η+2) Σ ⟨g⟩(z_k), as above, and O(N h^(η+3)).
+Energy: H(φ_h z) = H(z), so H(Φ z) − H(z) = −h^(η+1)/(η+1)! ∇H · X^(η+1) z + O(h^(η+2)) for `lieη`,
+and O(h^(η+1)) for any scheme. With z' = f and ω = dp∧dq, ∇H · X^(η+1) z = ±ω(z', z^(η+1)). Its
+derivative rule ω(z^(a), z^(b))' = ω(z^(a+1), z^(b)) + ω(z^(a), z^(b+1)) makes it, for even η, a
+derivative along the flow up to ±ω(z^(m), z^(m)) = 0, m = η/2 + 1; by (1) its sum is bounded. ∎
+
+At an equilibrium `lieη` stays, Λ = (1 + ΔJ)^N − 1, and the law holds with ⟨g⟩ = g(z₀) and [ ] = 0,
+since X G = 0 there.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.expansion import Expansion
+from verify.proof.telescoping import potential_of_lie
+from verify.schemes import get
+from verify.schemes.methods.taylor.lie import eta_of
+from verify.schemes.step_map import Substep
+
+_MOST_ORDERS = 24
+Element = tuple[Ring, Poly]
+
+
+class NoLawError(Exception):
+    """There is no growth law; the message says why."""
+
+
+@dataclass(frozen=True)
+class GrowthLaw:
+    """log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
+
+    `potential` is G, and `leading` X G; both are None where the leading coefficient of ΔJ is not
+    known to telescope, and the law then has no G.
+    """
+
+    power: int
+    g: Element
+    potential: Element | None
+    leading: Element | None
+
+
+@lru_cache(maxsize=64)
+def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
+    """The law of one H without symbols.
+
+    Raises InputError for a parameter without a value, NoLawError where ΔJ ≡ 0 or its leading order
+    in h is not known.
+    """
+    if hamiltonian.symbols:
+        raise InputError(
+            "parameter", hamiltonian.symbols[0], "has no value; a growth law needs one"
+        )
+    step_map = get(scheme).step_map(hamiltonian)
+    if step_map.preserves_area:
+        raise NoLawError("ΔJ ≡ 0 is proved: Λ is exactly 0")
+    step, eta = step_map.flat, eta_of(scheme)
+    if eta is None or eta % 2:
+        return _plain_law(step)
+    ring = step.ring
+    potential, leading = potential_of_lie(step.field, eta), step.coefficient(eta + 1)
+    g = step.coefficient(eta + 2)
+    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading))
+
+
+def _plain_law(step: Substep) -> GrowthLaw:
+    """By the first coefficient of ΔJ that does not vanish."""
+    expansion = None if step.degree is not None else Expansion(step.ring, step.delta_j)
+    for n in range(_MOST_ORDERS + 1 if step.degree is None else step.degree + 1):
+        ring, x = expansion.coefficient(n) if expansion else (step.ring, step.coefficient(n))
+        zero = ring.decide(x).zero
+        if zero is True:
+            continue
+        if zero is None:
+            raise NoLawError(f"whether the coefficient of h^{n} in ΔJ vanishes is not decided")
+        if n < 2:
+            raise NoLawError(f"ΔJ begins with h^{n}: the map is not consistent with the flow")
+        return GrowthLaw(n - 1, (ring, x), None, None)
+    raise NoLawError(f"the coefficients of ΔJ vanish up to h^{_MOST_ORDERS}")

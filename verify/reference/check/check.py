@@ -1,0 +1,284 @@
+"""A folder of reference data against itself, its manifest and its schemas; and some of it again.
+
+What cannot be read is an InputError. What can be read and is not as it must be is a difference.
+"""
+
+import math
+import random
+import re
+import shlex
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import zip_longest
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from verify.errors import InputError
+from verify.execution.executors import ANYWHERE, HERE, Call, Where, opened, performed
+from verify.execution.keeping import versions
+from verify.reference.check import consistency
+from verify.reference.check.recompute import recomputed
+from verify.reference.compare.difference import Difference, Found
+from verify.reference.compare.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
+from verify.reference.make.models import Data, Manifest
+from verify.reference.make.scene_plan import size_of
+from verify.reference.make.writing import (
+    MANIFEST,
+    SCHEMAS,
+    digest,
+    json_text,
+    names_of,
+    schema_text,
+    tables,
+)
+from verify.scenes.scene import Scene, scene_from_toml
+
+M = TypeVar("M", bound=BaseModel)
+Unit = tuple[Data, str, str, int]  # what `recomputed` takes
+_MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
+_WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
+_VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
+
+
+@dataclass
+class Checked:
+    """What a check found. `rows`: of all data; `recomputed`: how many of them were, again."""
+
+    files: int = 0
+    rows: int = 0
+    recomputed: int = 0
+    seed: int = 0
+    differences: list[Difference] = field(default_factory=list)
+    not_recomputed: list[str] = field(default_factory=list)
+    not_compared: list[str] = field(default_factory=list)
+
+
+def check(
+    folder: Path,
+    *,
+    share: float,
+    seed: int,
+    own: Path | None = None,
+    most_steps: int | None = None,
+    where: Where = ANYWHERE,
+    done: Callable[[int, int], None] | None = None,
+) -> Checked:
+    """Everything of the folder by itself, and a random share of its data computed again.
+
+    `own`: the folder of the scenes that it must have been made from, where that is known.
+    `most_steps`: how many are done again at most; the runs that want more are named. `done`
+    is called with how many recomputations are finished, of how many. InputError where a file cannot
+    be read: it is missing, too large, no UTF-8, no JSON, no CSV.
+    """
+    found = Checked(seed=seed)
+    units = []
+    for data, file in _by_itself(folder, own, found):
+        found.rows += data.count
+        kinds = ("proof", data.proofs), ("run", data.runs), ("flow", data.flow)
+        units += [(data, file, kind, k) for kind, items in kinds for k in range(len(items))]
+    if found.differences:  # what is asked for may not even be known
+        return found
+    chosen = _affordable(_chosen(units, share, seed), most_steps, found)
+    calls = [Call(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
+    parts: dict[str, Found] = {}
+    few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
+    with opened(HERE if few else where) as place:
+        for name, part in performed(place, calls):
+            parts[name] = part
+            if done:
+                done(len(parts), len(calls))
+    for call in calls:  # in the order of the files, whoever was first
+        part = parts[call.name]
+        found.recomputed += part.rows
+        found.differences += part.differences
+        found.not_recomputed += part.not_recomputed
+    return found
+
+
+def _chosen(units: Sequence[Unit], share: float, seed: int) -> list[Unit]:
+    """A share of the units, at least one where it is not 0, in their order."""
+    count = min(len(units), math.ceil(share * len(units)))
+    chosen = random.Random(seed).sample(range(len(units)), count)  # noqa: S311 - no secret
+    return [units[k] for k in sorted(chosen)]
+
+
+def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -> list[Unit]:
+    """The units without the runs that would make more steps than that, which are named."""
+    left, kept = most_steps, []
+    for unit in units:
+        data, file, kind, index = unit
+        if left is not None and kind == "run":
+            run = data.runs[index]
+            steps = run.rows[-1].step
+            if steps > left:
+                label = consistency.run_label(run, steps)
+                why = f"with it, more than {most_steps} steps"
+                found.not_recomputed.append(f"{file}: {label}: {why}; see --most-steps")
+                continue
+            left -= steps
+        kept.append(unit)
+    return kept
+
+
+# -- by itself ------------------------------------------------------------------------------------
+
+
+def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[Data, str]]:
+    if not folder.is_dir():
+        raise InputError("DIR", str(folder), "is no folder")
+    manifest = _model(Manifest, content_of(folder / MANIFEST), MANIFEST, found)
+    if manifest is None:
+        return
+    contents: dict[str, bytes] = {}
+    for listed in _listed(folder, manifest, found):
+        contents[listed] = content_of(folder / listed)
+        if sum(map(len, contents.values())) > _MOST_BYTES_OF_ALL:
+            raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
+    read = {}
+    for name, content in contents.items():  # all are read before one is held against another
+        if name.endswith(".json") and name not in SCHEMAS:
+            read[name] = _model(Data, content, name, found)
+        elif name.endswith(".csv"):
+            rows_of(content, name)
+    for each in manifest.files:
+        if each.name in contents:
+            content = contents[each.name]
+            _same(each.name, "bytes", str(each.bytes), str(len(content)), found)
+            _same(each.name, "sha256", each.sha256, digest(content), found)
+    for name in SCHEMAS.keys() & contents.keys():
+        text = text_of(contents[name], name)
+        found.differences += consistency.of_text(schema_text(name), text, name)
+    scenes = _scenes(manifest, own, found)
+    _told(manifest, scenes, found)
+    _complete(manifest, scenes, found)
+    for name, scene in scenes.items():
+        data = read.get(f"{name}.json")
+        if data is not None:
+            yield from _of_scene(data, f"{name}.json", scene, contents, found)
+
+
+def _of_scene(
+    data: Data, file: str, scene: Scene, contents: dict[str, bytes], found: Checked
+) -> Iterator[tuple[Data, str]]:
+    found.differences += consistency.of_data(data, file, scene)
+    for name, rows in tables(data).items():
+        content = contents.get(f"{name}.csv")
+        if content is not None:
+            found.differences += consistency.of_csv(rows, content, f"{name}.csv")
+        content = contents.get(f"{name}.parquet")
+        if content is not None:
+            from verify.reference.make.parquet import installed, parquet_rows
+
+            if installed():
+                again = parquet_rows(content, f"{name}.parquet")
+                found.differences += consistency.of_table(rows, again, f"{name}.parquet")
+            else:
+                found.not_compared.append(f"{name}.parquet: pyarrow is not installed")
+    yield data, file
+
+
+def _model(model: type[M], content: bytes, name: str, found: Checked) -> M | None:
+    """The model in a file; None, and a difference, where it is not as the schema says."""
+    raw = json_of(content, name)
+    try:
+        made = model.model_validate(raw)
+    except ValidationError as error:
+        told = error.errors(include_url=False)[0]
+        where, what = ".".join(map(str, told["loc"])), f"as the schema says ({told['msg']})"
+        found.differences.append(Difference(name, where, "", what, str(told["input"])))
+        return None
+    found.differences += consistency.of_text(json_text(made), text_of(content, name), name)
+    return made
+
+
+def _listed(folder: Path, manifest: Manifest, found: Checked) -> Iterator[str]:
+    """The files that are listed and there; the others are differences."""
+    there = {path.name for path in folder.iterdir()} - {MANIFEST}
+    names = [each.name for each in manifest.files]
+    for name in sorted({*there, *names}):
+        if name not in there:
+            found.differences.append(Difference(name, "", "", "a file", "missing"))
+        elif name not in names:
+            found.differences.append(
+                Difference(name, "", "", "in the manifest, or not there", "extra")
+            )
+        elif names.count(name) > 1:
+            found.differences.append(Difference(MANIFEST, name, "", "listed once", "listed twice"))
+        else:
+            found.files += 1
+            yield name
+
+
+def _same(file: str, column: str, listed: str, there: str, found: Checked) -> None:
+    if listed != there:
+        found.differences.append(Difference(file, "", column, f"{listed} (manifest)", there))
+
+
+def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, Scene]:
+    """The manifest's scenes by name, each from its own text."""
+    scenes = {}
+    for each in manifest.scenes:
+        where = MANIFEST, f"scene {each.name}"
+        actual = digest(each.toml.encode())
+        if each.sha256 != actual:
+            found.differences.append(Difference(*where, "sha256", actual, each.sha256))
+        try:
+            scene = scene_from_toml(each.toml, each.name)
+        except InputError as error:
+            found.differences.append(Difference(*where, "toml", "a scene", str(error)))
+            continue
+        if size_of(scene) > MOST_BYTES:  # what it asks for is listed, and would fill all memory
+            readable = "a scene whose data can be read"
+            found.differences.append(Difference(*where, "toml", readable, each.toml))
+            continue
+        scenes[each.name] = scene
+    if own is not None:
+        wanted = {path.stem: path.read_text(encoding="utf-8") for path in own.glob("*.toml")}
+        given = {each.name: each.toml for each in manifest.scenes}
+        for name in sorted({*wanted, *given}):
+            mine, theirs = wanted.get(name, ""), given.get(name, "")
+            found.differences += consistency.of_text(mine, theirs, f"{MANIFEST}: scene {name}")
+    return scenes
+
+
+def _told(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
+    """The command and the versions, as far as they can be told to be wrong."""
+    try:
+        words = shlex.split(manifest.command)
+    except ValueError:
+        words = []
+    files = [x for x in words[3:] if x != "--parquet"]
+    made = words[:3] == ["verify", "reference", "make"]
+    if not made or not all(x.endswith(".toml") for x in files):
+        wanted = "verify reference make, and scenes"
+        found.differences.append(Difference(MANIFEST, "command", "", wanted, manifest.command))
+    elif files and len(scenes) == len(manifest.scenes):
+        for file, each in zip_longest(files, manifest.scenes):
+            stem = (file or "").removesuffix(".toml")
+            if each is None or scene_from_toml(each.toml, stem).name != each.name:
+                wanted = " ".join(f"{name}.toml" for name in scenes)
+                given = manifest.command
+                found.differences.append(Difference(MANIFEST, "command", "", wanted, given))
+                break
+    if list(manifest.versions) != list(versions()):
+        wanted = ", ".join(versions())
+        given = ", ".join(manifest.versions)
+        found.differences.append(Difference(MANIFEST, "versions", "", wanted, given))
+    for name, version in manifest.versions.items():
+        if not _VERSION.fullmatch(version):
+            found.differences.append(Difference(MANIFEST, "versions", name, "a version", version))
+
+
+def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
+    """Whether each scene has its files, and each file its scene."""
+    wanted = names_of(scenes, parquet="--parquet" in manifest.command.split())
+    names = [each.name for each in manifest.files]
+    if len(scenes) < len(manifest.scenes):
+        found.differences.append(Difference(MANIFEST, "scenes", "", "one of each name", "two"))
+    for name in sorted(wanted ^ set(names)):
+        given = ("listed", "not listed") if name in wanted else ("not listed", "listed")
+        found.differences.append(Difference(MANIFEST, "files", name, *given))
+    if names != sorted(names):
+        found.differences.append(Difference(MANIFEST, "files", "", "in the order of names", "not"))

@@ -1,0 +1,118 @@
+"""The exact flow by high-order Taylor steps, twice: with another tolerance and another order.
+
+The coefficients of the solution come from the recursion (k+1) z_(k+1) = f_k; a step ends where its
+last terms reach the tolerance (Jorba, Zou, Experimental Mathematics 14 (2005) 99–117). The result
+is what two such integrations say, with several times their difference as its radius: an estimate.
+"""
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.arithmetic.exact import short
+from verify.reference.check.taylor import Number, number
+from verify.reference.check.textbook import Field, flow_series
+
+_MORE = 8  # digits, and orders, of the second integration
+_MOST_STEPS = 5_000
+_BURST, _STOPPED = 40, 60  # |z| above its first size, and steps below the first, in powers of two
+State = tuple[Number, Number]
+
+
+class NotFollowedError(Exception):
+    """The solution could not be followed; the message says why."""
+
+
+class BlowsUpError(NotFollowedError):
+    """The solution grows beyond every bound before the last of the times."""
+
+
+def states_at(
+    field: Field, p: Fraction, q: Fraction, times: Sequence[Fraction], digits: int
+) -> tuple[list[State], NotFollowedError | None]:
+    """Balls of (p, q) at the times, which ascend from 0, and why not at all of them, if so."""
+    bits = math.ceil(3.33 * (digits + _MORE)) + 64
+    with flint.ctx.workprec(bits):
+        start = flint.arb(number(p)), flint.arb(number(q))
+        rough, why = _followed(field, start, times, digits)
+        fine, also = _followed(field, start, times, digits + _MORE)
+        both = [_around(*pair, digits) for pair in zip(rough, fine, strict=False)]
+        return both, why or also
+
+
+def _around(rough: State, fine: State, digits: int) -> State:
+    apart = max((abs(a - b).upper() for a, b in zip(rough, fine, strict=True)), key=_size)
+    scale = max((abs(x).upper() for x in fine), key=_size)
+    radius = 4 * apart + scale * flint.arb(10) ** (-digits - 2)
+    p, q = (x.mid() + flint.arb(0, 1) * radius for x in fine)
+    return p, q
+
+
+def _followed(
+    field: Field, start: State, times: Sequence[Fraction], digits: int
+) -> tuple[list[State], NotFollowedError | None]:
+    order = digits + digits // 4 + 10
+    p, q = start
+    first, done, found = _largest(start), Fraction(0), []
+    waiting = list(times)
+    shortest: float | None = None
+    for _ in range(_MOST_STEPS):
+        while waiting and waiting[0] == done:
+            found.append((p, q))
+            waiting.pop(0)
+        if not waiting:
+            return found, None
+        ps, qs = flow_series(field, p, q, order)
+        reach = _reach(ps, qs, digits)
+        if not all(x.is_finite() for x in (*ps, *qs)):
+            return found, NotFollowedError("H is not defined there")
+        shortest = reach if shortest is None else shortest
+        if _largest((p, q)) > first + _BURST and reach < shortest - _STOPPED:
+            return found, BlowsUpError("the solution blows up before")
+        after = done + _power_of_two(reach)
+        while waiting and waiting[0] <= after:
+            at = flint.arb(number(waiting.pop(0) - done))
+            found.append((_sum(ps, at), _sum(qs, at)))
+        h = flint.arb(number(after - done))
+        p, q, done = _sum(ps, h), _sum(qs, h), after
+    return found, NotFollowedError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
+
+
+def _reach(ps: list[Number], qs: list[Number], digits: int) -> float:
+    """lg₂ of a step whose last terms are 10^−digits of the state."""
+    scale, found = _largest((ps[0], qs[0])), []
+    for k in (len(ps) - 1, len(ps) - 2):
+        last = _largest((ps[k], qs[k]))
+        if last > -math.inf:
+            found.append((scale - 3.3219281 * digits - last) / k)
+    return min(found, default=60.0)  # a polynomial in t
+
+
+def _power_of_two(exponent: float) -> Fraction:
+    """2^exponent, rounded down a little, with few bits."""
+    whole = math.floor(exponent)
+    return Fraction(math.floor(1024 * 2 ** (exponent - whole)), 1024) * Fraction(2) ** whole
+
+
+def _sum(coefficients: list[Number], h: Number) -> Number:
+    """The polynomial at h, its rounding forgotten: the other integration tells it."""
+    total = coefficients[-1]
+    for c in reversed(coefficients[:-1]):
+        total = c + h * total
+    return total.mid()
+
+
+def _largest(z: Sequence[Any]) -> float:
+    return max(_size(x) for x in z)
+
+
+def _size(x: Any) -> float:
+    """About lg₂ |x| of a ball's middle, however large or small."""
+    middle = x.mid()
+    if not middle.is_finite() or middle.is_zero():
+        return -math.inf if middle.is_zero() else math.inf
+    mantissa, exponent = middle.man_exp()
+    return float(abs(int(mantissa)).bit_length() + int(exponent))

@@ -1,0 +1,48 @@
+"""Whether a program in doubles may leave their range on a run, where the reference data do not.
+
+It does where the toolkit's own step does in doubles; and another program may where a number of the
+run, or a product of its determinants, is not far from the largest double.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import lru_cache
+
+import numpy as np
+
+from verify.arithmetic.float_context import FLOAT
+from verify.flows.extrapolation_of_many import arrays
+from verify.kernels.kernel import kernel_for
+from verify.reference.compare.allowance import products
+from verify.reference.compare.scatter import job_of
+from verify.reference.compare.setting import Case, Known
+
+_LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
+_MOST_STEPS = 20_000  # stepped
+
+
+def may_overflow(case: Case, step: int, known: dict[str, Known]) -> bool:
+    """Within so many steps and the next; `known` are the run's numbers then, p and q among them
+    unless it has left the reference data's range, too."""
+    if "p" not in known or "q" not in known:
+        return _overflows(case, step)
+    if any(abs(value) > _LARGE for value, _ in known.values()):
+        return True
+    return products(case, known["p"], known["q"]) > _LARGE or _overflows(case, step)
+
+
+@lru_cache(maxsize=4096)
+def _overflows(case: Case, step: int) -> bool:
+    job = job_of(case)
+    if job.solved:
+        return False
+    arithmetic = replace(arrays(), bits=FLOAT.prec, number=FLOAT.rational)
+    try:
+        kernel = kernel_for(job.generic, case.scheme, arithmetic, job.observables, False)
+        given = [FLOAT.rational(x) for x in job.inputs(kernel, 0).values()]
+        state = [FLOAT.rational(Fraction(x)) for x in (case.p, case.q, *kernel.start)]
+    except OverflowError:  # what is given is no double
+        return True
+    with np.errstate(all="ignore"):
+        _, *after = kernel.function(min(step, _MOST_STEPS) + 1, *given, *state)
+    return not np.isfinite(np.array(after, dtype=float)).all()

@@ -1,0 +1,268 @@
+"""Values of reference data once more: in balls, from the textbook's formulas, by Taylor arithmetic.
+
+Nothing here is shared with what made them: the formula of H is read by `verify.reference.check.tape`, steps and
+Jacobians are those of `verify.reference.check.textbook`, and det J is a d − b c of the four entries. The number
+system is flint's balls, so that what is recomputed of a scheme's orbit is rigorous.
+"""
+
+from fractions import Fraction
+from itertools import zip_longest
+from typing import Any
+
+import flint
+
+from verify.arithmetic.exact import magnitude
+from verify.reference.check.consistency import flow_label, run_label
+from verify.reference.check.exact_flow import BlowsUpError, State, states_at
+from verify.reference.check.recompute_proof import proof_again, shown
+from verify.reference.check.tape import NotReadError
+from verify.reference.check.taylor import Number, number
+from verify.reference.check.textbook import Field, Step, UnknownSchemeError, step_of
+from verify.reference.compare.difference import Difference, Found
+from verify.reference.make.models import Data, Flow, Run
+from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
+
+_FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
+_SHARP = 5  # digits beyond those printed to which an exact value must be met
+_ESCAPED = 4000  # bits of |z| at which an orbit is said to have left
+_FLOW_DIGITS = (8, 40, 100)  # beyond those printed, in turn
+_VALUES = ("p", "q", "delta_j", "mse", "lam")
+
+
+class _TooWide(Exception):  # noqa: N818 - no error: the same is done with more bits
+    """A ball too wide to tell."""
+
+
+def recomputed(data: Data, file: str, kind: str, index: int) -> Found:
+    """One run, flow or proof of the data again."""
+    found = Found()
+    try:
+        given = {name: Fraction(value) for name, value in data.parameters.items()}
+        known = Field(data.hamiltonian, given)
+        if kind == "run":
+            _run(known, data.runs[index], file, found)
+        elif kind == "flow":
+            _flow(known, data.flow[index], file, found)
+        else:
+            proof_again(known, data, data.proofs[index], file, found)
+    except (UnknownSchemeError, NotReadError) as error:
+        found.not_recomputed.append(f"{file}: {kind} no. {index + 1}: {error}")
+    return found
+
+
+# -- a scheme's orbit -----------------------------------------------------------------------------
+
+
+def _run(known: Field, run: Run, file: str, found: Found) -> None:
+    step = step_of(run.scheme, known)
+    bits = _FIRST_BITS + _MORE_PER_DIGIT * run.digits
+    for attempt in range(_DOUBLINGS):
+        again = Found()
+        try:
+            with flint.ctx.workprec(bits):
+                _orbit(step, run, file, again, final=attempt == _DOUBLINGS - 1)
+        except _TooWide:
+            bits *= 2
+            continue
+        found.add(again)
+        return
+    label = run_label(run, run.rows[-1].step)
+    found.not_recomputed.append(f"{file}: {label}: {bits // 2} bits do not tell")
+
+
+def _orbit(step: Step, run: Run, file: str, found: Found, *, final: bool) -> None:
+    """Every row of a run; _TooWide where a ball does not tell. `final`: there is no further try."""
+    orbit = _Orbit(step, Fraction(run.p), Fraction(run.q), Fraction(run.step_size))
+    size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
+    left: int | None = None
+    for row in run.rows:
+        label = run_label(run, row.step)
+        if left is not None:  # and so it has at all later steps
+            found.rows += 1
+            if row.failed_step != left:
+                given = str(row.failed_step)
+                found.differences.append(Difference(file, label, "failed_step", str(left), given))
+            continue
+        if row.status == "unresolved":
+            found.not_recomputed.append(f"{file}: {label}: has no values")
+            continue
+        if row.status == "left range":
+            left = _left(orbit, row, file, label, found, final)
+            if left is None:
+                return
+            continue
+        orbit.to(row.step)
+        values = orbit.values()
+        found.rows += 1
+        for name in _VALUES:
+            cell, shown = getattr(row, name), "lambda" if name == "lam" else name
+            if name == "mse" and row.step == 0:
+                continue
+            if name == "delta_j" and not all(x.is_finite() for x in orbit.ahead()[0]):
+                if not final:
+                    raise _TooWide
+                if cell is not None:  # no step begins there
+                    found.differences.append(Difference(file, label, shown, "null", cell.value))
+                continue
+            scale = size if name in ("p", "q") else Fraction(1)
+            _compare(cell, values[name], run.digits, scale, (file, label, shown), found)
+
+
+class _Orbit:
+    """A scheme's orbit in balls, with the sums and the product over its steps."""
+
+    def __init__(self, step: Step, p: Fraction, q: Fraction, h: Fraction) -> None:
+        self.step, self.h = step, flint.arb(number(h))
+        self.p, self.q = flint.arb(number(p)), flint.arb(number(q))
+        self.done, self.squares, self.lam = 0, flint.arb(0), flint.arb(0)
+        self._next: tuple[Any, Number] | None = None  # the state after, and ΔJ here
+
+    def ahead(self) -> tuple[Any, Number]:
+        if self._next is None:
+            z, (a, b, c, d) = self.step(self.p, self.q, self.h)
+            self._next = z, a * d - b * c - 1
+        return self._next
+
+    def to(self, count: int) -> None:
+        """Goes on to the state after so many steps; _TooWide where a ball is not finite."""
+        while self.done < count:
+            (self.p, self.q), change = self.ahead()
+            self.squares += change * change
+            self.lam += change + self.lam * change
+            self.done, self._next = self.done + 1, None
+            if not (self.p.is_finite() and self.q.is_finite()):
+                raise _TooWide
+
+    def values(self) -> dict[str, Number]:
+        mean = self.squares / self.done if self.done else self.squares
+        return {"p": self.p, "q": self.q, "delta_j": self.ahead()[1], "mse": mean, "lam": self.lam}
+
+
+def _left(
+    orbit: _Orbit, row: OrbitPoint, file: str, label: str, found: Found, final: bool
+) -> int | None:
+    """The step after which the orbit is beyond 2^4000, or not defined; None where it is neither.
+
+    A ball that is not finite may be too wide only: that is not taken for an answer before `final`.
+    """
+    limit = flint.arb(2) ** _ESCAPED
+    while orbit.done < (row.failed_step or 0):
+        try:
+            orbit.to(orbit.done + 1)
+        except _TooWide:
+            if not final:
+                raise
+            break
+        sizes = abs(orbit.p), abs(orbit.q)
+        if any(x > limit for x in sizes):
+            break
+        if not all(x < limit for x in sizes):
+            raise _TooWide
+    else:
+        at = f"{orbit.done} steps"
+        found.differences.append(
+            Difference(file, label, "status", f"defined after {at}", row.status)
+        )
+        return None
+    found.rows += 1
+    if orbit.done != row.failed_step:
+        wanted, given = str(orbit.done), str(row.failed_step)
+        found.differences.append(Difference(file, label, "failed_step", wanted, given))
+    return orbit.done
+
+
+def _compare(
+    cell: Rounded | None,
+    ball: Number,
+    digits: int,
+    size: Fraction,
+    where: tuple[str, str, str],
+    found: Found,
+    places: int = 0,
+) -> None:
+    """Whether the printed number is the one to which every number of the ball rounds.
+
+    An exact number must be met to some digits more; 0 to twice the digits, or to `places`.
+    """
+    if cell is None:
+        found.differences.append(Difference(*where, shown(ball, digits), "null"))
+        return
+    value, radius = flint.arb(cell.value), flint.arb(cell.radius)  # no rationals: 1e+999999999
+    low, high = value - radius, value + radius
+    if ball < low or ball > high:
+        found.differences.append(Difference(*where, shown(ball, digits), cell.value))
+        return
+    if radius == 0:
+        ten, exact_zero = flint.arb(10), bool(value == 0)
+        near = ten ** (magnitude(size) if size else 0) if exact_zero else abs(value)
+        places = places or (2 * digits if exact_zero else digits + _SHARP)
+        sharp = near / ten**places
+        inside = ball.rad() <= sharp
+    else:
+        inside = ball >= low and ball <= high
+    if not inside:
+        raise _TooWide
+
+
+# -- the exact flow -------------------------------------------------------------------------------
+
+
+def _flow(known: Field, flow: Flow, file: str, found: Found) -> None:
+    rows = [row for row in flow.rows if row.status != "not followed"]
+    for row in flow.rows:
+        if row.status == "not followed":
+            found.not_recomputed.append(f"{file}: {flow_label(flow, row.step)}: has no values")
+    times = [row.step * Fraction(flow.step_size) for row in rows]
+    for more in _FLOW_DIGITS:
+        again, digits = Found(), flow.digits + more
+        states, why = states_at(known, Fraction(flow.p), Fraction(flow.q), times, digits)
+        try:
+            with flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
+                for row, state in zip_longest(rows, states):
+                    where = file, flow_label(flow, row.step)
+                    if state is None:
+                        _not_reached(known, flow, row, why, where, again)
+                    else:
+                        _reached(flow, row, state, where, again)
+        except _TooWide:
+            continue
+        found.add(again)
+        return
+    label = flow_label(flow, flow.rows[-1].step)
+    found.not_recomputed.append(f"{file}: {label}: more digits do not tell")
+
+
+def _reached(
+    flow: Flow, row: FlowPoint, state: State, where: tuple[str, str], found: Found
+) -> None:
+    """A row whose time was reached."""
+    found.rows += 1
+    if row.status == "blows up":
+        found.differences.append(Difference(*where, "status", "finished", row.status))
+        return
+    size, places = max(abs(Fraction(flow.p)), abs(Fraction(flow.q))), flow.digits + _SHARP
+    for name, ball in zip(("p", "q"), state, strict=True):
+        cell = getattr(row, name)
+        _compare(cell, ball, flow.digits, size, (*where, name), found, places)
+
+
+def _not_reached(
+    known: Field,
+    flow: Flow,
+    row: FlowPoint,
+    why: Exception | None,
+    where: tuple[str, str],
+    found: Found,
+) -> None:
+    """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
+    if row.status == "blows up" and isinstance(why, BlowsUpError):
+        found.rows += 1
+        return
+    found.not_recomputed.append(f"{': '.join(where)}: {why}")
+    if row.p is not None and row.q is not None:
+        start = (flint.arb(number(Fraction(x))) for x in (flow.p, flow.q))
+        ends = (flint.arb(x.value) + flint.arb(0, 1) * flint.arb(x.radius) for x in (row.p, row.q))
+        first, last = known.energy(*start), known.energy(*ends)
+        if first < last or first > last:
+            told = f"p and q where H is {shown(first, flow.digits)}"
+            found.differences.append(Difference(*where, "p, q", told, shown(last, flow.digits)))

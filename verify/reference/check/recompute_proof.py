@@ -1,0 +1,139 @@
+"""What is proved of a scheme, looked at again: powers of h in det J and in the map, at some points.
+
+The step is done with power series in h for p, q and the Jacobian: their coefficients are balls.
+"""
+
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.reference.check.taylor import Expansion, Number, number
+from verify.reference.check.textbook import Field, Step, flow_series, step_of
+from verify.reference.compare.difference import Difference, Found
+from verify.reference.make.models import Data, Proof
+
+_MOST_ORDER = 12  # to which a map is looked at that agrees with another
+_ANY_ORDER = 100  # beyond which no proof goes
+_BITS = 512
+
+
+def proof_again(known: Field, data: Data, proof: Proof, file: str, found: Found) -> None:
+    """The powers of h in det J and in the map, at points near the initial values.
+
+    That a coefficient vanishes for every p and q is not seen so, but that it does not is.
+    """
+    order, convergence = proof.order, proof.convergence_order
+    file_row = file, f"proof of {proof.scheme}"
+    for column, given in (("order", order), ("convergence_order", convergence)):
+        if (given or 0) > _ANY_ORDER:
+            wanted = f"at most {_ANY_ORDER}"
+            found.differences.append(Difference(*file_row, column, wanted, str(given)))
+            return
+    most = max(_MOST_ORDER if order is None else order, (convergence or 0) + 1)
+    looking = _Looking(known, proof, file_row, most, found)
+    for p, q in _points(data):
+        with flint.ctx.workprec(_BITS), _cap(most + 1):
+            looking.at(p, q)
+    looking.end()
+
+
+class _Looking:
+    """One proof's coefficients at one point after another."""
+
+    def __init__(
+        self, known: Field, proof: Proof, row: tuple[str, str], most: int, found: Found
+    ) -> None:
+        self.known, self.proof, self.row, self.most, self.found = known, proof, row, most, found
+        self.step, self.leading = step_of(proof.scheme, known), known.tape.read(proof.leading)
+        self.looked, self.seen = 0, {"order": False, "convergence_order": False}
+
+    def differs(self, column: str, wanted: str, given: str) -> None:
+        self.found.differences.append(Difference(*self.row, column, wanted, given))
+
+    def at(self, p: Fraction, q: Fraction) -> None:
+        area, apart, lead = _powers(self.known, self.step, p, q, self.most, self.leading)
+        if not all(x.is_finite() for x in (*area, *apart, lead)):
+            return
+        self.looked += 1
+        order, convergence = self.proof.order, self.proof.convergence_order
+        self._vanish("order", area[: self.most + 1 if order is None else order])
+        upto = self.most - 1 if convergence is None else convergence
+        self._vanish("convergence_order", apart[: upto + 1])
+        if order is not None:
+            if not (area[order] - lead).contains(0):
+                self.differs("leading", f"{shown(area[order], 20)} at a point", shown(lead, 20))
+            self.seen["order"] |= not area[order].contains(0)
+        if convergence is not None:
+            self.seen["convergence_order"] |= not apart[convergence + 1].contains(0)
+
+    def _vanish(self, column: str, coefficients: list[Number]) -> None:
+        for k, c in enumerate(coefficients):
+            if not c.contains(0):
+                least = k if column == "order" else k - 1
+                wanted = f"{least}, since the coefficient of h^{k} is {shown(c, 12)}"
+                self.differs(column, wanted, str(getattr(self.proof, column)))
+                return
+
+    def end(self) -> None:
+        """What was claimed not to vanish, and did wherever it was looked at."""
+        if not self.looked:
+            told = f"{self.row[0]}: {self.row[1]}: H is not defined nearby"
+            self.found.not_recomputed.append(told)
+            return
+        self.found.rows += 1
+        for column, seen in self.seen.items():
+            given = getattr(self.proof, column)
+            if given is not None and not seen:
+                self.differs(column, "more, since that coefficient is 0", str(given))
+
+
+def _powers(
+    known: Field, step: Step, p: Fraction, q: Fraction, most: int, leading: int
+) -> tuple[list[Number], list[Number], Number]:
+    """Coefficients of h⁰ … in det J − 1; in the map less the flow (the larger of two); leading."""
+    x, y = flint.arb(number(p)), flint.arb(number(q))
+    h = flint.arb_series([0, 1], most + 1)
+    zero = 0 * h
+    (p_next, q_next), (a, b, c, d) = step(x + zero, y + zero, h)
+    ps, qs = flow_series(known, x, y, most)
+    value = Expansion(known.tape, [leading])
+    value.begin(x, y)
+    area = _coefficients(a * d - b * c - 1 + zero, most)
+    along = [_coefficients(z + zero, most) for z in (p_next, q_next)]
+    apart = [
+        max(u - v, w - s, key=lambda ball: not ball.contains(0))
+        for u, v, w, s in zip(along[0], ps, along[1], qs, strict=True)
+    ]
+    return area, apart, value.value(leading)
+
+
+def _coefficients(series: Any, most: int) -> list[Number]:
+    return [series[k] for k in range(most + 1)]
+
+
+def shown(ball: Number, digits: int) -> str:
+    return str(ball.str(digits + 2, radius=False))
+
+
+def _points(data: Data) -> list[tuple[Fraction, Fraction]]:
+    """Points near the initial values, of no pattern; both coordinates are other than 0."""
+    starts = dict.fromkeys((Fraction(run.p), Fraction(run.q)) for run in data.runs)
+    found = []
+    for p, q in list(starts)[:3]:
+        p, q = p or q / 3 or Fraction(2, 3), q or p / 5 or Fraction(4, 5)
+        found += [(p * Fraction(29, 31), q * Fraction(17, 16)), (p * Fraction(-5, 7), q)]
+    return found
+
+
+class _cap:  # noqa: N801 - used as a statement's word
+    """flint's length of power series, set for a while and given back."""
+
+    def __init__(self, length: int) -> None:
+        self.length = length
+
+    def __enter__(self) -> None:
+        self.before, flint.ctx.cap = flint.ctx.cap, self.length
+
+    def __exit__(self, *_: object) -> None:
+        flint.ctx.cap = self.before

@@ -1,0 +1,155 @@
+"""The operations of a tape on power series, coefficient by coefficient, in balls or in series of h.
+
+Every rule is the textbook's: with u(t) = Σ u_k t^k, k·v_k of v = f(u) follows from v' = f'(u) u'
+(Moore, Interval Analysis, 1966). The coefficients are flint's balls, or power series of balls in
+another variable.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.reference.check.tape import PAIRS, Tape
+
+Number = Any  # flint.arb or flint.arb_series
+Work = tuple[int, str, Any, Any]  # node, kind, and two operands: nodes or a factor
+
+
+def number(x: Fraction) -> Any:
+    """A rational as flint's."""
+    return flint.fmpq(x.numerator, x.denominator)
+
+
+class Expansion:
+    """The coefficients of some nodes along p(t) and q(t), as far as those have been given.
+
+    `constant`: nodes that do not depend on p and q; they have a first coefficient and no others.
+    """
+
+    def __init__(self, tape: Tape, roots: Sequence[int]) -> None:
+        self.constant: set[int] = set()
+        self._work: list[Work] = []
+        self._fixed: dict[int, Number] = {}  # constants, in the precision that was in force
+        self._bits = 0
+        self.count = 0  # of coefficients that are known
+        self.c: dict[int, list[Number]] = {}
+        for x in tape.needed(*roots):
+            kind, *args = tape.nodes[x]
+            inner = [a for a in args if not isinstance(a, Fraction)]
+            if kind not in ("p", "q") and all(a in self.constant for a in inner):
+                self.constant.add(x)
+            if kind in PAIRS:
+                args.append(tape.node(PAIRS[kind], args[0]))
+            self._work.append((x, kind, *[*args, None, None][:2]))
+
+    def begin(self, p: Number, q: Number) -> None:
+        """The first coefficients: the nodes' values at (p, q), in flint's present precision."""
+        if self._bits != flint.ctx.prec:
+            self._fixed, self._bits = {}, flint.ctx.prec
+        c: dict[int, list[Number]] = {}
+        for x, kind, a, b in self._work:
+            value = self._fixed.get(x)
+            if value is None:
+                value = _first(kind, a, b, c, p, q)
+                if x in self.constant:
+                    self._fixed[x] = value
+            c[x] = [value]
+        self.c, self.count = c, 1
+
+    def more(self, p: Number, q: Number) -> None:
+        """The next coefficient of every node, p and q being those of p(t) and q(t)."""
+        c, k, constant = self.c, self.count, self.constant
+        for x, kind, a, b in self._work:
+            if kind == "p":
+                c[x].append(p)
+            elif kind == "q":
+                c[x].append(q)
+            elif x in constant:
+                continue
+            elif kind == "scale":
+                c[x].append(c[b][k] * number(a))
+            elif kind in ("add", "mul"):
+                c[x].append(_of_two(kind, a, b, c, k, constant))
+            else:
+                c[x].append(_of_function(kind, a, b, c, c[x], k))
+        self.count += 1
+
+    def value(self, x: int) -> Number:
+        return self.c[x][0]
+
+    def coefficient(self, x: int, k: int) -> Number:
+        """The k-th coefficient of a node, None for a 0 that every constant has."""
+        return self.c[x][k] if k == 0 or x not in self.constant else None
+
+
+def _first(kind: str, a: Any, b: Any, c: dict[int, list[Number]], p: Number, q: Number) -> Number:
+    if kind in ("p", "q"):
+        return p if kind == "p" else q
+    if kind == "const":
+        return flint.arb(number(a))
+    if kind == "pi":
+        return flint.arb.pi()
+    if kind == "scale":
+        return c[b][0] * number(a)
+    if kind == "power":
+        return _power(c[b][0], a)
+    u = c[a][0]
+    if kind == "add":
+        return u + c[b][0]
+    if kind == "mul":
+        return u * c[b][0]
+    if kind in ("sinh", "cosh") and not hasattr(u, kind):  # flint has it of no series
+        up, down = u.exp(), (-u).exp()
+        return (up - down if kind == "sinh" else up + down) / 2
+    return getattr(u, kind)()
+
+
+def _power(u: Number, exponent: Fraction) -> Number:
+    if exponent.denominator == 1:
+        inverse, result = 1 / u, 1 / u  # a tape's other whole powers are products
+        for _ in range(int(-exponent) - 1):
+            result = result * inverse
+        return result
+    if not isinstance(u, flint.arb):
+        return (u.log() * number(exponent)).exp()
+    root = u.root(exponent.denominator)
+    result = flint.arb(1)
+    for _ in range(abs(exponent.numerator)):
+        result = result * root
+    return result if exponent > 0 else 1 / result
+
+
+def _of_two(
+    kind: str, x: int, y: int, c: dict[int, list[Number]], k: int, constant: set[int]
+) -> Number:
+    if x in constant:
+        x, y = y, x
+    u, v = c[x], c[y]
+    if kind == "add":
+        return u[k] if y in constant else u[k] + v[k]
+    if y in constant:
+        return u[k] * v[0]
+    if x == y:
+        total = 2 * sum((u[j] * u[k - j] for j in range(1, (k + 1) // 2)), u[0] * u[k])
+        return total if k % 2 else total + u[k // 2] * u[k // 2]
+    return sum((u[j] * v[k - j] for j in range(1, k + 1)), u[0] * v[k])
+
+
+def _of_function(
+    kind: str, a: Any, b: Any, c: dict[int, list[Number]], own: list[Number], k: int
+) -> Number:
+    if kind == "power":  # u v' = r v u'
+        r, u = number(a), c[b]
+        first = r * k * (u[k] * own[0])
+        total = sum(((r * j - (k - j)) * (u[j] * own[k - j]) for j in range(1, k)), first)
+        return total / (k * u[0])
+    u = c[a]
+    if kind in ("log", "atan"):  # w v' = u', w being u or 1 + u²
+        w = u if kind == "log" else c[b]
+        total = sum((j * (own[j] * w[k - j]) for j in range(1, k)), 0 * u[k])
+        return (k * u[k] - total) / (k * w[0])
+    other = own if kind == "exp" else c[b]  # v' = ± w u'
+    total = sum((j * (u[j] * other[k - j]) for j in range(1, k)), k * (u[k] * other[0])) / k
+    return -total if kind == "cos" else total

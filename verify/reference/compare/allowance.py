@@ -1,0 +1,107 @@
+"""What rounding may do to each number of a run, for programs that work with a given unit roundoff.
+
+A few roundings of p and q in each step are there in any case. What comes from earlier steps is
+followed where a difference is larger (`verify.reference.compare.scatter`). A program that finds ΔJ as
+a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import flint
+
+from verify.algebra.enclosure import enclose_all
+from verify.arithmetic.balls import around, in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.kernels.computation import step_map_of
+from verify.reference.compare.findings import DOUBLE, SINGLE
+from verify.reference.compare.scatter import Scatters
+from verify.reference.compare.setting import Case, Known
+
+USUAL, WORST = 8, 16  # times what the copies show, since operations differ
+_FEW = 4  # roundings of p and q in a step
+_PRODUCTS = 8  # roundings of a determinant
+_BITS = 200
+_UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
+    (SINGLE, Fraction(1, 2**126)),
+    (DOUBLE, Fraction(1, 2**1022)),
+)
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """How far a number may be off: as it usually is, and at worst."""
+
+    usual: Fraction
+    worst: Fraction
+
+
+class Allowance:
+    """Of one case, for one unit roundoff."""
+
+    def __init__(self, case: Case, unit: Fraction, scatters: Scatters) -> None:
+        self.case, self.unit, self._scatters = case, unit, scatters
+        self._entries: dict[int, Fraction] = {}
+        self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
+
+    def at_once(self, name: str, step: int, known: dict[str, Known]) -> Fraction:
+        """What may be in any case; `known` are the run's numbers after the step, p and q among
+        them where `name` is one of them."""
+        many = Fraction(1 + math.isqrt(step))
+        if name in ("p", "q"):
+            size = max(abs(known[n][0]) for n in ("p", "q"))
+            return (_FEW * self.unit * size + self._smallest) * many
+        size, one = abs(known[name][0]), self._one(step, known)
+        if name == "lambda":
+            return one * (1 + size) * many
+        if name == "delta_j":
+            return one * (1 + size)
+        return 2 * one * (_root(size) + one)
+
+    def of(self, name: str, step: int, known: dict[str, Known]) -> Allowed | None:
+        """What may be with all that earlier steps have left; None where that may be everything."""
+        least = self.at_once(name, step, known)
+        spreads = self._scatters.at(self.case, step)
+        if spreads is None:
+            return None
+        found = spreads.get(name)
+        usual, worst = (found.usual, found.worst) if found else (0.0, 0.0)
+        long = least * (1 + math.isqrt(step)) if name == "lambda" else least
+        return Allowed(
+            least + USUAL * Fraction(usual) * self.unit, long + WORST * Fraction(worst) * self.unit
+        )
+
+    def _one(self, step: int, known: dict[str, Known]) -> Fraction:
+        """The rounding of one determinant, at the largest entries that were met so far."""
+        if step not in self._entries and "p" in known and "q" in known:
+            self._entries[step] = products(self.case, known["p"], known["q"])
+        most = max((x for n, x in self._entries.items() if n <= step), default=Fraction(1))
+        return _PRODUCTS * self.unit * most
+
+
+def products(case: Case, p: Known, q: Known) -> Fraction:
+    """A bound of |a d| + |b c| over the step's substeps, at least 1: what det J is the rest of."""
+    step_map = step_map_of(case.hamiltonian, case.scheme)
+    if step_map.solved:
+        return Fraction(1)
+    with working_precision(_BITS):
+        box = {"p": around(*p), "q": around(*q), "h": rational_ball(case.step_size)}
+        whole = [flint.arb(x) for x in (1, 0, 0, 1)]  # the entries' sizes, of all substeps so far
+        for step in step_map.substeps:
+            own = enclose_all(step.ring, [*step.jacobian, step.p_next, step.q_next], box)
+            if own is None:
+                return Fraction(1)
+            a, b, c, d, box["p"], box["q"] = own
+            a, b, c, d = (abs(x) for x in (a, b, c, d))
+            e, f, g, h = whole
+            whole = [a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h]
+        total = whole[0] * whole[3] + whole[1] * whole[2]
+        if not in_reach(total):
+            return Fraction(1)
+        return max(Fraction(1), sum(middle_and_radius(total), Fraction(0)))
+
+
+def _root(x: Fraction) -> Fraction:
+    """√x to some digits."""
+    return Fraction(math.isqrt(x.numerator * x.denominator << 80), x.denominator << 40)

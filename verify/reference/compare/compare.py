@@ -1,0 +1,209 @@
+"""A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
+
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from verify.errors import InputError
+from verify.reference.compare.agreement import Printing, printing
+from verify.reference.compare.diagnosis import Diagnosis
+from verify.reference.compare.findings import Judged, Named, Verdict
+from verify.reference.compare.judge import Judge
+from verify.reference.compare.mistakes import of_states
+from verify.reference.compare.published import OurRun, Ours
+from verify.reference.compare.scatter import Scatters
+from verify.reference.compare.setting import Case, Points, Setting
+from verify.reference.compare.submitted import Theirs
+from verify.scenes.results.core import SeparationResult
+from verify.studies.separation.separate import separate
+
+_MOST_SEARCHES = 3  # in vain: a mistake that they all had would have been found
+_MOST_SEPARATED = 100_000  # steps
+_SEPARATED_DIGITS = 3
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of all runs together; in its `rows`, but for those where a run is lost, `digits`
+    agree at least, in `run` at `step`. In `parts_run` a run first differs by more than rounding."""
+
+    name: str
+    verdict: Verdict
+    rows: int
+    digits: float
+    run: str
+    step: int
+    parts_run: str | None
+    parts_at: int | None
+
+
+@dataclass(frozen=True)
+class Explained:
+    """What fits in so many runs: one mistake, or several that the table does not tell apart."""
+
+    mistakes: tuple[Named, ...]
+    runs: int
+
+
+@dataclass(frozen=True)
+class Separated:
+    """The Λ that is off most by what rounding may do, and that run's separation in float64."""
+
+    run: str
+    step: int
+    apart: Fraction
+    result: SeparationResult
+
+
+@dataclass
+class Compared:
+    """`runs` were compared in so many `rows`. `unexplained`: runs that differ by more than rounding
+    and no mistake fits. `lost`: steps from which rounding may have taken every digit, by run;
+    `overflows`: the first ones with a number that is not finite where doubles may overflow."""
+
+    rows: int = 0
+    runs: int = 0
+    columns: list[Column] = field(default_factory=list)
+    diagnoses: list[Explained] = field(default_factory=list)
+    unexplained: list[str] = field(default_factory=list)
+    lost: dict[str, int] = field(default_factory=dict)
+    overflows: dict[str, int] = field(default_factory=dict)
+    separated: Separated | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether nothing is there that rounding cannot explain."""
+        return not self.diagnoses and all(x.verdict is not Verdict.MORE for x in self.columns)
+
+
+def compare(
+    ours: Ours, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
+) -> Compared:
+    """Everything of the table that the reference data have; `done` hears of runs, of how many."""
+    if not theirs.runs:
+        steps = f"{theirs.other_steps} rows of other steps" if theirs.other_steps else "no rows"
+        raise InputError("table", theirs.first_outside or steps, "has no row of these data")
+    how = _printings(theirs)
+    found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
+    judged: list[Judged] = []
+    off: list[_Off] = []  # Λ, by no more than rounding may do
+    search = _Search()
+    asked = {step for _, rows in theirs.runs.values() for step in rows}
+    marks = {max(0, step + late) for step in asked for late in (-1, 0, 1)}
+    scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(marks))
+    points = Points({own.case: (own.run.digits, own.rows) for own in ours.runs()})
+    for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
+        judge = Judge(run, rows, how, scatters, points)
+        if judge.cells:
+            each = judge.judged()
+            if search.explain(judge, each):
+                rest = [run for run, _ in list(theirs.runs.values())[count:]]
+                scatters.expect(_cases(rest, points, search.known))
+            judged.append(each)
+            off += _off_by_rounding(judge, each)
+        done(count, len(theirs.runs))
+    if not judged:
+        raise InputError("table", "all cells", "are empty where the data have a number")
+    names = [n for n in theirs.columns if any(n in x.columns for x in judged)]
+    found.columns = [_column(name, judged) for name in names]
+    found.diagnoses = _diagnoses(judged)
+    found.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
+    found.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
+    found.overflows = {x.label: x.overflow_from for x in judged if x.overflow_from is not None}
+    found.separated = _separated(off)
+    return found
+
+
+_Off = tuple[bool, Fraction, int, OurRun]  # whether its run is never lost; how far, when, where
+
+
+def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[_Off]:
+    of = judged.columns.get("lambda")
+    if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
+        return
+    last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
+    for (step, name), cell in judge.cells.items():
+        if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
+            continue
+        if cell.apart:
+            yield judged.lost_from is None, cell.apart, step, judge.ours
+
+
+def _separated(off: list[_Off]) -> Separated | None:
+    """Of runs that are lost only where there is no other: their separation takes long."""
+    if not off:
+        return None
+    _, apart, step, run = max(off, key=lambda x: x[:2])
+    case = run.case
+    result = separate(
+        case.hamiltonian, case.scheme, q=case.q, p=case.p,
+        step_size=case.step_size, steps=step, digits=_SEPARATED_DIGITS,
+    )  # fmt: skip
+    return Separated(run.label, step, apart, result) if result.plain else None
+
+
+def _printings(theirs: Theirs) -> dict[str, Printing]:
+    cells: Mapping[str, list[str]] = {name: [] for name in theirs.columns}
+    for _, rows in theirs.runs.values():
+        for row in rows.values():
+            for name, text in row.cells.items():
+                cells[name].append(text)
+    return {name: printing(texts) for name, texts in cells.items()}
+
+
+class _Search:
+    """Looks for mistakes: in the first runs among all, in the others among those found before, and
+    single precision, which costs nothing to see."""
+
+    def __init__(self) -> None:
+        self.known: set[str] = set()
+        self.in_vain = 0
+
+    def explain(self, judge: Judge, judged: Judged) -> bool:
+        """Whether it has found one that was not known."""
+        judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
+        if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
+            judged.mistakes = Diagnosis(judge, judged).mistakes()
+            self.in_vain += judged.verdict is Verdict.MORE and not judged.mistakes
+        before = len(self.known)
+        self.known |= {name for group in judged.mistakes for name, _ in group}
+        return len(self.known) > before
+
+
+def _cases(runs: Iterable[OurRun], points: Points, names: Container[str]) -> Iterator[Case]:
+    """What runs with one of these mistakes would be."""
+    for run in runs:
+        for mistake in of_states(Setting(run.case, points)):
+            if mistake.name in names:
+                yield mistake.setting.case
+
+
+def _column(name: str, judged: Iterable[Judged]) -> Column:
+    own = [(x.label, x.columns[name]) for x in judged if name in x.columns]
+    label, least = min(own, key=lambda x: x[1].digits)
+    parted = [(of.parts_at, label) for label, of in own if of.parts_at is not None]
+    parts_at, parts_run = min(parted, default=(None, None))
+    return Column(
+        name=name,
+        verdict=max(of.verdict for _, of in own),
+        rows=sum(of.rows for _, of in own),
+        digits=least.digits,
+        run=label,
+        step=least.step,
+        parts_run=parts_run,
+        parts_at=parts_at,
+    )
+
+
+def _diagnoses(judged: Iterable[Judged]) -> list[Explained]:
+    """Which mistakes fit in how many runs. Where several fit in one of them, and some of these in
+    all of another, the other rules out the rest."""
+    counts: dict[tuple[Named, ...], int] = {}
+    for each in judged:
+        for fitting in each.mistakes:
+            counts[tuple(fitting)] = counts.get(tuple(fitting), 0) + 1
+    for group in sorted(counts, key=len, reverse=True):
+        smaller = [x for x in counts if set(x) < set(group)]
+        if len(smaller) == 1:
+            counts[smaller[0]] += counts.pop(group)
+    return [Explained(group, count) for group, count in counts.items()]

@@ -1,0 +1,215 @@
+"""What may be wrong with somebody's run: each mistake makes another setting of the right one.
+
+Adding a mistake is adding a line. What may be wrong with an area error alone is in
+`verify.reference.compare.readings`.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+
+from verify import schemes
+from verify.algebra.formula import to_text
+from verify.arithmetic.exact import short
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.reference.compare.setting import Case, Setting
+from verify.schemes.splitting_conditions import Part, Splitting
+
+_MOST_INEXACT = 4  # inputs of which all subsets are tried
+_OF_SCHEME = "scheme "
+_OTHER = "your scheme is "
+_OTHER_EULER = "symplectic Euler of the other kind"
+_ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
+_SHARP = 40  # digits
+_ENDS_AND_MIDDLE = 3
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """`says`: in words, to whom it may concern."""
+
+    name: str
+    says: str
+    setting: Setting
+
+
+def of_inputs(right: Setting) -> Iterator[Mistake]:
+    """Inputs that are doubles; no program that works with doubles can be told by them."""
+    case = right.case
+    doubles = {
+        "h": case.step_size, "q0": case.q, "p0": case.p, **dict(case.hamiltonian.values),
+    }  # fmt: skip
+    inexact = [n for n, x in doubles.items() if _double(x) not in (x, None)]
+    subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
+    for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *_ones(inexact)]:
+        changed = {n: _double(doubles[n]) for n in names}
+        shown = " and ".join(f"{n} is the double nearest to {_text(doubles[n])}" for n in names)
+        says = f"your {shown}, and not exactly that"
+        name = f"double-{'-'.join(names)}"
+        yield Mistake(name, says, replace(right, case=_with(case, changed)))
+
+
+def of_states(right: Setting) -> Iterator[Mistake]:
+    """All that can be seen in doubles."""
+    yield from _of_columns(right)
+    yield from _of_scheme(right)
+    yield from _staggered(right)
+    yield from _of_step(right)
+
+
+def _of_columns(right: Setting) -> Iterator[Mistake]:
+    case = right.case
+    exchanged = replace(case, q=case.p, p=case.q)
+    yield Mistake("swapped-columns", "your columns p and q are swapped",
+                  replace(right, swapped=True))  # fmt: skip
+    yield Mistake("swapped-start", "your initial p and q are swapped",
+                  replace(right, case=exchanged))  # fmt: skip
+    yield Mistake("swapped-throughout", "p and q are swapped, in your columns and at the start",
+                  replace(right, case=exchanged, swapped=True))  # fmt: skip
+    yield Mistake("negated-p", "your p has the other sign", replace(right, negated=True))
+    yield Mistake("negated-start", "your initial p has the other sign",
+                  replace(right, case=replace(case, p=-case.p)))  # fmt: skip
+    backwards = Hamiltonian(-case.hamiltonian.expression, case.hamiltonian.values)
+    yield Mistake("backwards", "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p",
+                  replace(right, case=replace(case, hamiltonian=backwards)))  # fmt: skip
+    for late, says in ((1, "too low"), (-1, "too high")):
+        yield Mistake(f"late{late:+d}", f"your step index is {says} by one",
+                      replace(right, late=late))  # fmt: skip
+
+
+def _of_step(right: Setting) -> Iterator[Mistake]:
+    case, h = right.case, right.case.step_size
+    for name, factor, says in (("half", Fraction(1, 2), "half"), ("double", Fraction(2), "twice")):
+        yield Mistake(f"{name}-step", f"your h is {says} what it should be",
+                      replace(right, case=replace(case, step_size=factor * h)))  # fmt: skip
+    single = {"h": _single(h)}
+    if single["h"] not in (None, h):
+        yield Mistake("single-h", "your h is the single-precision number nearest to it",
+                      replace(right, case=_with(case, single)))  # fmt: skip
+    for name, value in case.hamiltonian.values:
+        for what, other in (("minus", -value), ("no", Fraction(0))):
+            if other != value:
+                yield Mistake(f"{what}-{name}", f"your {name} is {_text(other)}",
+                              replace(right, case=_with(case, {name: other})))  # fmt: skip
+
+
+def _of_scheme(right: Setting) -> Iterator[Mistake]:
+    """Its relatives by name, then all other schemes."""
+    mine = right.case.scheme
+    said = dict(_relatives(mine))
+    known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
+    for name in known:
+        said.setdefault(name, f"{_OTHER}{name}")
+    said.pop(mine, None)
+    for name, says in said.items():
+        yield Mistake(
+            f"{_OF_SCHEME}{name}", says, replace(right, case=replace(right.case, scheme=name))
+        )
+
+
+def _staggered(right: Setting) -> Iterator[Mistake]:
+    """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
+
+    That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
+    """
+    generic = schemes.get(right.case.scheme).generic
+    parts = generic.parts if isinstance(generic, Splitting) else ()
+    if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
+        return
+    (first, half), (second, whole), _ = parts
+    name = "p" if first == "kick" else "q"
+    both = ((first, 2 * half), (second, whole))
+    for sign, order, says in ((1, both[::-1], "ahead"), (-1, both, "behind")):
+        case = replace(right.case, scheme=_named(order))
+        start = _a_part_on(right, name, _named(both), sign)
+        if start is not None:
+            yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
+                          replace(right, case=_with(case, {f"{name}0": start})))  # fmt: skip
+
+
+def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
+    """The initial `name` after half of the scheme's first part, which changes it alone."""
+    start = getattr(right.case, name)
+    after = replace(right, case=replace(right.case, scheme=scheme)).state(1, _SHARP)
+    return start + sign * (after[name][0] - start) / 2 if after else None
+
+
+def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
+    """The mistakes but for those that are another name of an earlier one's scheme, for this H."""
+    found: dict[object, Mistake] = {}
+    for mistake in mistakes:
+        setting, (q, p, h) = mistake.setting, _ELSEWHERE
+        there = replace(setting.case, q=q, p=p, step_size=h)
+        state = None
+        if mistake.name.startswith(_OF_SCHEME):
+            known = replace(setting, case=there).state(1, _SHARP)
+            state = known and (known["p"][0], known["q"][0])
+        first = found.setdefault(state or mistake.name, mistake)
+        if first is not mistake and first.says.startswith(_OTHER):
+            also = mistake.name.removeprefix(_OF_SCHEME)
+            found[state] = replace(first, says=f"{first.says}, which {also} is for this H, too")
+    return list(found.values())
+
+
+def _relatives(name: str) -> Iterator[tuple[str, str]]:
+    if name.startswith("lie"):
+        eta = int(name[3:])
+        for other in (eta - 1, eta + 1):
+            if other > 0:
+                yield f"lie{other}", f"your η is {other}, and not {eta}"
+    generic = schemes.get(name).generic
+    if isinstance(generic, Splitting):
+        parts = generic.parts
+        kinds = {"kick": "drift", "drift": "kick"}
+        changes = (
+            ("its parts in the opposite order", parts[::-1]),
+            ("kicks for drifts and drifts for kicks", tuple((kinds[k], x) for k, x in parts)),
+        )
+        for says, changed in changes:
+            if changed != parts:
+                euler = name == "symplectic-euler"
+                own = _OTHER_EULER if euler else f"{name} with {says}"
+                yield _named(changed), f"your scheme is {own}"
+
+
+def _named(parts: tuple[Part, ...]) -> str:
+    """The name of the scheme of these parts; the parts themselves where it has none."""
+    for name in schemes.names():
+        generic = schemes.get(name).generic
+        if isinstance(generic, Splitting) and generic.parts == parts:
+            return name
+    return "; ".join(f"{kind} {to_text(size)}" for kind, size in parts)
+
+
+# -- numbers of other sizes -----------------------------------------------------------------------
+
+
+def _ones(names: list[str]) -> list[tuple[str, ...]]:
+    return [(name,) for name in names]
+
+
+def _with(case: Case, changed: dict[str, Fraction | None]) -> Case:
+    new = {n: x for n, x in changed.items() if x is not None}
+    h, q, p = new.pop("h", case.step_size), new.pop("q0", case.q), new.pop("p0", case.p)
+    values = {**dict(case.hamiltonian.values), **new}
+    hamiltonian = Hamiltonian(case.hamiltonian.expression).with_values(values)
+    return Case(hamiltonian, case.scheme, h, q, p)
+
+
+def _double(x: Fraction) -> Fraction | None:
+    try:
+        return Fraction(float(x))
+    except OverflowError:
+        return None
+
+
+def _single(x: Fraction) -> Fraction | None:
+    near = np.float32(float(x))
+    return Fraction(float(near)) if np.isfinite(near) and near else None
+
+
+def _text(x: Fraction) -> str:
+    return short(x)

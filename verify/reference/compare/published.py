@@ -1,0 +1,128 @@
+"""Reference data → what others' numbers are held against: each run by its scene and its inputs."""
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from verify.arithmetic.exact import rational
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.tangent_map import number as double
+from verify.reference.compare.reading import content_of, json_of
+from verify.reference.compare.setting import Case
+from verify.reference.make.models import Data, Run
+from verify.reference.make.writing import MANIFEST, SCHEMAS
+from verify.scenes.results.reference import OrbitPoint
+
+KEYS = ("scheme", "step_size", "q0", "p0")  # what a run of a scene is told by
+_EXPONENT_DIGITS = 6
+Inputs = tuple[str, float, float, float]  # scheme, h, q0, p0: the numbers to the nearest double
+
+
+@dataclass(frozen=True)
+class OurRun:
+    """One run of the reference data."""
+
+    scene: str
+    hamiltonian: Hamiltonian
+    run: Run
+
+    @property
+    def inputs(self) -> Inputs:
+        h, q, p = map(double, self.exact)
+        return self.run.scheme, h, q, p
+
+    @cached_property
+    def exact(self) -> tuple[Fraction, ...]:
+        """h, q and p at the start."""
+        return tuple(rational(x) for x in (self.run.step_size, self.run.q, self.run.p))
+
+    @property
+    def label(self) -> str:
+        run = self.run
+        return f"{self.scene}: {run.scheme}, h = {run.step_size}, (q, p) = ({run.q}, {run.p})"
+
+    @cached_property
+    def case(self) -> Case:
+        """What was run."""
+        h, q, p = self.exact
+        return Case(self.hamiltonian, self.run.scheme, h, q, p)
+
+    @cached_property
+    def rows(self) -> dict[int, OrbitPoint]:
+        return {row.step: row for row in self.run.rows}
+
+
+class Ours:
+    """The runs of some scenes, found by their inputs."""
+
+    def __init__(self, runs: Iterator[OurRun]) -> None:
+        self.by_scene: dict[str, list[OurRun]] = defaultdict(list)
+        self._by_inputs: dict[tuple[str, Inputs], list[OurRun]] = defaultdict(list)
+        for run in runs:
+            self.by_scene[run.scene].append(run)
+            self._by_inputs[run.scene, run.inputs].append(run)
+
+    def scene(self, name: str) -> list[OurRun]:
+        """Its runs; InputError for a scene that is not there."""
+        if name not in self.by_scene:
+            known = ", ".join(sorted(self.by_scene))
+            raise InputError("scene", name, f"is not in the reference data; they have: {known}")
+        return self.by_scene[name]
+
+    def run(self, scene: str, inputs: Inputs, exact: tuple[Fraction, ...]) -> OurRun | None:
+        """The scene's run of these inputs, or of the same doubles where these tell one."""
+        found = self._by_inputs.get((scene, inputs), [])
+        if len(found) == 1:
+            return found[0]
+        return next((x for x in found if x.exact == exact), None)
+
+    def runs(self) -> Iterator[OurRun]:
+        """All of them."""
+        for runs in self.by_scene.values():
+            yield from runs
+
+    def given(self, scene: str, key: str) -> list[str]:
+        """What the scene's runs have for one of `KEYS`, each once."""
+        name = {"q0": "q", "p0": "p"}.get(key, key)
+        return list(dict.fromkeys(getattr(x.run, name) for x in self.scene(scene)))
+
+
+def load(folder: Path, scene: str | None) -> Ours:
+    """The runs of a folder's scenes, or of one. InputError for a file that is not as it must be."""
+    if not folder.is_dir():
+        raise InputError("--data", str(folder), "is no folder")
+    names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
+    if scene is not None and f"{scene}.json" in names:
+        names = {f"{scene}.json"}
+    if not names:
+        raise InputError("--data", str(folder), "has no reference data")
+    return Ours(run for name in sorted(names) for run in _runs(folder, name))
+
+
+def _runs(folder: Path, name: str) -> Iterator[OurRun]:
+    try:
+        data = Data.model_validate(json_of(content_of(folder / name), name))
+    except ValidationError as error:
+        told = error.errors(include_url=False)[0]
+        where = ".".join(map(str, told["loc"]))
+        raise InputError("file", name, f"is no reference data: {where}: {told['msg']}") from None
+    hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
+    for run in data.runs:
+        _check_exponents(run, name)
+        yield OurRun(data.name, hamiltonian, run)
+
+
+def _check_exponents(run: Run, name: str) -> None:
+    """InputError for an exponent whose power of ten would fill the memory."""
+    for row in run.rows:
+        for known in (row.p, row.q, row.delta_j, row.mse, row.lam):
+            for text in (known.value, known.radius) if known else ():
+                exponent = text.partition("e")[2].lstrip("+-0")
+                if len(exponent) > _EXPONENT_DIGITS:
+                    raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")

@@ -1,0 +1,175 @@
+"""How far rounding scatters runs: many copies of each, pushed a little in every step.
+
+Each copy starts with h, the parameters and the initial value off by a relative ξ·ε, and after every
+step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1. What becomes of that, divided by ε, is what an
+arithmetic's unit roundoff is multiplied with: as long as errors are small they add up, and so ε is
+small: an angle of 10⁸ is pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as
+roundings behave; in the others it stays what it was at first, the worst that roundings do where
+they always fall to the same side. A program's operations are others than ours, but their results
+are of the size of p and q or smaller.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from verify.arithmetic.float_context import WIDE
+from verify.arithmetic.number_system import UnsupportedError
+from verify.flows.extrapolation_of_many import arrays
+from verify.kernels.kernel import kernel_for
+from verify.kernels.stepping import Job
+from verify.reference.compare.setting import Case
+
+_PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
+_COPIES = 16  # of each kind
+_ALL = 2 * _COPIES + 1  # and one in the middle that is not pushed
+_MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go on growing
+_LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is said
+_BLOCK = 64  # steps whose random numbers are drawn at once
+_TOGETHER = 64  # cases
+
+
+@dataclass(frozen=True)
+class Spread:
+    """What a unit of rounding becomes, at most of the copies: as it happens, and at worst."""
+
+    usual: float
+    worst: float
+
+
+Spreads = Mapping[str, Spread]
+
+
+class Scatter:
+    """The copies of some cases of one scheme and one H (whose parameters may differ), which step
+    on together as they are asked to; what is known at `marks` on the way is kept."""
+
+    def __init__(self, cases: Sequence[Case], marks: Sequence[int] = ()) -> None:
+        """Raises UnsupportedError for a scheme that solves equations."""
+        jobs = [job_of(case) for case in cases]
+        if jobs[0].solved:
+            raise UnsupportedError("equations are not solved for many points at once")
+        self._random = np.random.default_rng(0)
+        kernel = kernel_for(jobs[0].generic, cases[0].scheme, arrays(), jobs[0].observables, False)
+        self._names, self._function = kernel.carried, kernel.function
+        self._shape = len(cases), _ALL
+        inputs = [list(job.inputs(kernel, 0).values()) for job in jobs]
+        self._given = [self._off(column) for column in zip(*inputs, strict=True)]
+        self._state = {"p": self._off([c.p for c in cases]), "q": self._off([c.q for c in cases])}
+        rest = zip(self._names[2:], kernel.start, strict=True)
+        self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
+        self._biased = self._draw(())
+        self._ahead: list[Any] = []
+        self._done, self._marks = 0, frozenset(marks)
+        self._known: dict[int, list[Spreads | None]] = {}
+
+    def at(self, case: int, step: int) -> Spreads | None:
+        """Of a case, after so many steps; None where its copies leave every range, or are far apart
+        by then. ValueError for a step that was passed, and is no mark."""
+        if step not in self._known:
+            if self._done > min(step, _MOST_STEPS):
+                raise ValueError(step)
+            with np.errstate(all="ignore"):
+                self._go_to(step)
+        return self._known[step][case]
+
+    def _go_to(self, step: int) -> None:
+        while self._done < min(step, _MOST_STEPS):
+            if self._done in self._marks and self._done not in self._known:
+                self._known[self._done] = self._spreads(self._done)
+            self._advance()
+        self._known[step] = self._spreads(step)
+
+    def _advance(self) -> None:
+        if not self._ahead:
+            self._ahead = list(self._draw((_BLOCK,)))
+        push = self._ahead.pop()
+        push[..., _COPIES:] = self._biased[..., _COPIES:]
+        self._state = self._stepped(self._state)
+        for name, by in zip(("p", "q"), push, strict=True):
+            self._state[name] = self._state[name] * by
+        self._done += 1
+
+    def _stepped(self, state: Mapping[str, Any]) -> dict[str, Any]:
+        _, *after = self._function(1, *self._given, *(state[n] for n in self._names))
+        return dict(zip(self._names, after, strict=True))
+
+    def _draw(self, shape: tuple[int, ...]) -> Any:
+        """Factors for p and q of each copy; the one in the middle is not pushed."""
+        drawn = self._random.uniform(1 - _PUSH, 1 + _PUSH, (*shape, 2, *self._shape))
+        drawn[..., _COPIES] = 1
+        return drawn
+
+    def _off(self, column: Sequence[Fraction]) -> Any:
+        exact = np.array([WIDE.rational(x) for x in column])
+        return exact[:, None] * self._draw(())[0]
+
+    def _spreads(self, step: int) -> list[Spreads | None]:
+        zero = {n: np.zeros(self._shape) for n in ("lam", "mse") if n in self._state}
+        after = self._stepped(self._state | zero)
+        values = self._state | ({"delta_j": after["lam"]} if "lam" in after else {})
+        apart = {n: self._apart(x) for n, x in values.items()}
+        size = np.maximum(*(np.abs(self._state[n][:, _COPIES]) for n in ("p", "q")))
+        beyond = max(1.0, step / _MOST_STEPS)  # a phase that drifts: N√N, and N²
+        found: list[Spreads | None] = []
+        for k in range(self._shape[0]):
+            own = {
+                ("lambda" if n == "lam" else n): Spread(
+                    float(usual[k]) * beyond**1.5, float(worst[k]) * beyond**2
+                )
+                for n, (usual, worst) in apart.items()
+            }
+            finite = np.isfinite([y for x in own.values() for y in (x.usual, x.worst)]).all()
+            far = max(own[n].worst for n in ("p", "q")) * _PUSH > _LARGE * float(size[k])
+            found.append(own if finite and not far else None)
+        return found
+
+    def _apart(self, values: Any) -> tuple[Any, Any]:
+        values = np.broadcast_to(values, self._shape)
+        apart = np.abs(values - values[:, _COPIES : _COPIES + 1]) / _PUSH
+        return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
+
+
+def job_of(case: Case) -> Job:
+    """One step of the case, with MSE and Λ."""
+    start = {"p": case.p, "q": case.q, "h": case.step_size}
+    return Job(case.hamiltonian, case.scheme, start, 1, frozenset({"mse", "lambda"}), 0)
+
+
+class Scatters:
+    """The scatters of a table's cases, each made when it is first needed, with others of its kind;
+    other cases have one of their own."""
+
+    def __init__(self, cases: Iterable[Case] = (), marks: Sequence[int] = ()) -> None:
+        self._place: dict[Case, tuple[tuple[Case, ...], int]] = {}
+        self._marks = marks
+        self._made: dict[tuple[Case, ...], Scatter] = {}
+        self.expect(cases)
+
+    def expect(self, cases: Iterable[Case]) -> None:
+        """They may be asked for, too; so those of a kind that are new step together."""
+        kinds: dict[object, list[Case]] = {}
+        for case in dict.fromkeys(cases):
+            if case not in self._place:
+                kinds.setdefault((case.hamiltonian.expression, case.scheme), []).append(case)
+        for kind in kinds.values():
+            for first in range(0, len(kind), _TOGETHER):
+                together = tuple(kind[first : first + _TOGETHER])
+                self._place |= {case: (together, k) for k, case in enumerate(together)}
+
+    def at(self, case: Case, step: int) -> Spreads | None:
+        """As `Scatter.at`, in any order; of no number where the scheme solves equations."""
+        together, k = self._place.get(case, ((case,), 0))
+        try:
+            if together not in self._made:
+                self._made[together] = Scatter(together, self._marks)
+            return self._made[together].at(k, step)
+        except (UnsupportedError, OverflowError):  # OverflowError: of an input that is no double
+            return {}
+        except ValueError:  # it was passed
+            self._place[case] = (case,), 0
+            self._made[(case,)] = Scatter([case], self._marks)
+            return self._made[(case,)].at(0, step)

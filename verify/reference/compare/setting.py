@@ -1,0 +1,105 @@
+"""What numbers may be of: a run, and how its columns are read. Ours; and what others may have run.
+
+Each mistake of `verify.reference.compare.mistakes` makes another setting of the reference data's.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from verify.arithmetic.number_system import UnsupportedError
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.reference.make.orbit_points import orbit
+from verify.scenes.results.reference import OrbitPoint
+from verify.scenes.tasks import OrbitTask
+
+_MOST_KEPT = 4096
+_MOST_STEPS = 2_000_000  # run; what is farther is not known
+Known = tuple[Fraction, Fraction]  # a value and its radius
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scheme's run for an H whose parameters have values."""
+
+    hamiltonian: Hamiltonian
+    scheme: str
+    step_size: Fraction
+    q: Fraction
+    p: Fraction
+
+
+def known_of(point: OrbitPoint | None, name: str) -> Known | None:
+    """A number of a point, by its column's name; None where there is none."""
+    found = getattr(point, "lam" if name == "lambda" else name, None)
+    return None if found is None else (Fraction(found.value), Fraction(found.radius))
+
+
+class Points:
+    """Cases after some steps: from the reference data where they have them, else by a run."""
+
+    def __init__(self, known: Mapping[Case, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
+        """`known`: of a case its digits, and its points by step."""
+        self._known = known
+        self._run: dict[tuple[Case, int, int], OrbitPoint | None] = {}
+
+    def at(self, case: Case, step: int, digits: int) -> OrbitPoint | None:
+        """To so many digits and no fewer; None where there is no such state."""
+        have, rows = self._known.get(case, (0, {}))
+        if have >= digits and step in rows:
+            point = rows[step]
+            return point if point.status == "finished" else None
+        key = case, step, digits
+        if key not in self._run:
+            if len(self._run) > _MOST_KEPT:
+                self._run.clear()
+            self._run[key] = _run_at(*key)
+        return self._run[key]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A run; row N holds what it is after N + `late` steps, the columns perhaps `swapped`, and p
+    perhaps `negated`. `points` knows what it is."""
+
+    case: Case
+    points: Points = field(compare=False)
+    late: int = 0
+    swapped: bool = False
+    negated: bool = False
+
+    def state(self, step: int, digits: int) -> dict[str, Known] | None:
+        """p and q as row `step` of such a table has them; None where there is no such state."""
+        point = self.point(step, digits)
+        p, q = known_of(point, "p"), known_of(point, "q")
+        if p is None or q is None:
+            return None
+        if self.negated:
+            p = -p[0], p[1]
+        own = {"p": p, "q": q}
+        return {name: own[self.inner(name)] for name in own}
+
+    def inner(self, name: str) -> str:
+        """What stands in a column of that name."""
+        return {"p": "q", "q": "p"}.get(name, name) if self.swapped else name
+
+    def point(self, step: int, digits: int) -> OrbitPoint | None:
+        """What is known of the run where row `step` is of it."""
+        after = step + self.late
+        return None if after < 0 else self.points.at(self.case, after, digits)
+
+
+def _run_at(case: Case, step: int, digits: int) -> OrbitPoint | None:
+    if step > _MOST_STEPS:
+        return None
+    given = case.hamiltonian.written
+    try:
+        task = OrbitTask(
+            **given, scheme=case.scheme, q=case.q, p=case.p,
+            step_size=case.step_size, steps=(step,), digits=digits,
+        )  # fmt: skip
+        point = orbit(case.hamiltonian, task).points[0]
+    except (InputError, UnsupportedError, ArithmeticError):
+        return None
+    return point if point.status == "finished" else None

@@ -1,0 +1,159 @@
+"""Scenes → reference data: the plan's tasks, then one JSON file a scene, its tables, a manifest."""
+
+import re
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from verify.arithmetic.exact import text
+from verify.content import content
+from verify.errors import InputError
+from verify.execution.keeping import versions, write_atomically
+from verify.execution.perform import Result
+from verify.reference.compare.reading import MOST_BYTES
+from verify.reference.make.models import (
+    DATA_FORMAT,
+    MANIFEST_FORMAT,
+    Data,
+    Flow,
+    Manifest,
+    Proof,
+    Run,
+    SceneFile,
+)
+from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
+from verify.reference.make.writing import (
+    MANIFEST,
+    SCHEMAS,
+    csv_text,
+    digest,
+    json_text,
+    listed,
+    names_of,
+    schema_text,
+    tables,
+)
+from verify.scenes.results.core import ProofResult
+from verify.scenes.results.reference import OrbitResult, SolutionResult
+from verify.scenes.scene import Scene, load_scene
+from verify.scenes.tasks import key
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
+SCENES = content("reference", "scenes")
+PUBLISHED = content("reference", "data")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A scene and the text that it was read from."""
+
+    scene: Scene
+    toml: str
+
+
+def load(paths: Sequence[Path]) -> list[Asked]:
+    """The scenes in TOML files. InputError for one that asks for no reference data, a name that no
+    file can have, or two of one name, of which one would overwrite the other."""
+    found = [Asked(load_scene(path), path.read_bytes().decode()) for path in paths]
+    for path, asked in zip(paths, found, strict=True):
+        if not asked.scene.reference:
+            raise InputError("SCENE", str(path), "asks for no [[reference]]")
+        if (size := size_of(asked.scene)) > MOST_BYTES:
+            problem = f"makes a file of about {size} bytes; allowed: {MOST_BYTES}"
+            raise InputError("SCENE", str(path), problem)
+    names = [asked.scene.name for asked in found]
+    for name in names:
+        if not _NAME.fullmatch(name) or f"{name}.json" == MANIFEST:
+            problem = "cannot begin a file's name; allowed: letters, digits, - and _; not manifest"
+            raise InputError("name", name, problem)
+        if names.count(name) > 1:
+            raise InputError("SCENE", name, "two scenes have this name")
+    return found
+
+
+def committed_scenes() -> list[Path]:
+    """The scenes that the committed set is made from."""
+    return sorted(SCENES.glob("*.toml"))
+
+
+def data_of(scene: Scene, results: Mapping[str, Result]) -> Data:
+    """A scene's data from the results of its tasks."""
+    proofs, runs, flows = [], [], []
+    for proof in proof_tasks(scene):
+        known = results[key(proof)]
+        assert isinstance(known, ProofResult)  # noqa: S101 - the key is such a task's
+        proofs.append(Proof(**{name: getattr(known, name) for name in Proof.model_fields}))
+    for orbit in orbit_tasks(scene):
+        found = results[key(orbit)]
+        assert isinstance(found, OrbitResult)  # noqa: S101 - the key is such a task's
+        given = {"step_size": text(orbit.step_size), "q": text(orbit.q), "p": text(orbit.p)}
+        run = Run(**given, scheme=orbit.scheme, digits=orbit.digits, rows=found.points)
+        runs.append(run)
+    for solution in solution_tasks(scene):
+        solved = results[key(solution)]
+        assert isinstance(solved, SolutionResult)  # noqa: S101 - the key is such a task's
+        h, q, p = text(solution.step_size), text(solution.q), text(solution.p)
+        flows.append(Flow(step_size=h, q=q, p=p, digits=solution.digits, rows=solved.points))
+    return Data(
+        format=DATA_FORMAT,
+        name=scene.name,
+        **scene.exact_hamiltonian().written,
+        proofs=tuple(proofs),
+        runs=tuple(runs),
+        flow=tuple(flows),
+    )
+
+
+def alone(folder: Path, asked: Sequence[Asked], *, parquet: bool) -> None:
+    """InputError where the folder holds what is not made again, and would be extra in a check."""
+    made = {MANIFEST, *names_of((each.scene.name for each in asked), parquet=parquet)}
+    other = sorted({path.name for path in folder.iterdir()} - made)
+    if other:
+        problem = (
+            f"holds {other[0]!r}, which does not belong to these data; give a folder of its own"
+        )
+        raise InputError("--output", str(folder), problem)
+
+
+def files_of(data: Sequence[Data], *, parquet: bool = False) -> dict[str, bytes]:
+    """The content of all files but the manifest, by name."""
+    files = {name: schema_text(name).encode() for name in SCHEMAS}
+    for each in data:
+        files[f"{each.name}.json"] = json_text(each).encode()
+        for name, rows in tables(each).items():
+            files[f"{name}.csv"] = csv_text(rows).encode()
+            if parquet:
+                from verify.reference.make.parquet import parquet_bytes
+
+                files[f"{name}.parquet"] = parquet_bytes(rows)
+    return dict(sorted(files.items()))
+
+
+def manifest_of(asked: Sequence[Asked], files: Mapping[str, bytes], command: str) -> Manifest:
+    return Manifest(
+        format=MANIFEST_FORMAT,
+        command=command,
+        versions=versions(),
+        scenes=tuple(
+            SceneFile(name=x.scene.name, toml=x.toml, sha256=digest(x.toml.encode())) for x in asked
+        ),
+        files=tuple(listed(name, content) for name, content in files.items()),
+    )
+
+
+def command_of(scenes: Sequence[str], parquet: bool) -> str:
+    """What makes the same files again; without scenes, the committed set's are meant."""
+    names = [shlex.quote(Path(name).name) for name in scenes]
+    return " ".join(["verify reference make", *names, *(["--parquet"] if parquet else [])])
+
+
+def write(folder: Path, files: Mapping[str, bytes], manifest: Manifest) -> None:
+    """Writes the files, each atomically, and the manifest last.
+
+    An old manifest goes first: an interruption leaves no manifest of other files behind.
+    """
+    (folder / MANIFEST).unlink(missing_ok=True)
+    for name, content in files.items():
+        write_atomically(folder / name, content)
+    write_atomically(folder / MANIFEST, json_text(manifest))

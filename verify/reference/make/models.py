@@ -1,0 +1,122 @@
+"""What the files of reference data hold. The published JSON Schemas are made from these models."""
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from verify.scenes.results.core import Frozen
+from verify.scenes.results.reference import FlowPoint, OrbitPoint
+from verify.verdict import Verdict
+
+DataFormat = Literal["areaproof reference data 1"]
+ManifestFormat = Literal["areaproof reference manifest 1"]
+DATA_FORMAT: DataFormat = "areaproof reference data 1"
+MANIFEST_FORMAT: ManifestFormat = "areaproof reference manifest 1"
+_SHA256 = r"^[0-9a-f]{64}$"
+_EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
+Exact = Annotated[str, Field(pattern=_EXACT)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
+Digest = Annotated[str, Field(pattern=_SHA256)]
+
+_H = "the step size h exactly: a decimal or a quotient"
+_Q0, _P0 = "the initial displacement q exactly", "the initial momentum p exactly"
+_DIGITS = "significant digits of each number"
+_SCHEME = "the scheme, by the name that `verify run --scheme` takes"
+
+
+class Proof(Frozen):
+    """What is proved of one scheme for this H, by exact algebra."""
+
+    scheme: Annotated[str, Field(description=_SCHEME)]
+    verdict: Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
+    area_preserving: Annotated[
+        bool | None, Field(description="whether ΔJ is 0 for all p, q and h; null: not decided")
+    ]
+    order: Annotated[
+        int | None, Field(ge=1, description="ΔJ = leading·h^order + …; null where ΔJ is 0 for all")
+    ]
+    leading: Annotated[
+        str, Field(description="the leading coefficient of ΔJ, a formula in p and q; 0 if ΔJ is 0")
+    ]
+    convergence_order: Annotated[
+        int | None,
+        Field(ge=0, description="one step agrees with the exact flow up to h to this power; null "
+              "where all coefficients that were looked at agree"),
+    ]  # fmt: skip
+
+
+class Run(Frozen):
+    """One scheme's orbit from one initial value with one step size."""
+
+    scheme: Annotated[str, Field(description=_SCHEME)]
+    step_size: Annotated[Exact, Field(description=_H)]
+    q: Annotated[Exact, Field(description=_Q0)]
+    p: Annotated[Exact, Field(description=_P0)]
+    digits: Annotated[int, Field(ge=1, description=_DIGITS)]
+    rows: Annotated[tuple[OrbitPoint, ...], Field(description="one a chosen step, ascending")]
+
+
+class Flow(Frozen):
+    """The exact solution of p' = −H_q, q' = H_p from one initial value, at the times N·h."""
+
+    step_size: Annotated[Exact, Field(description=_H)]
+    q: Annotated[Exact, Field(description=_Q0)]
+    p: Annotated[Exact, Field(description=_P0)]
+    digits: Annotated[int, Field(ge=1, description=_DIGITS)]
+    rows: Annotated[tuple[FlowPoint, ...], Field(description="one a chosen step, ascending")]
+
+
+class Data(Frozen):
+    """Reference data of one scene: one Hamiltonian, its schemes, step sizes and initial values."""
+
+    model_config = ConfigDict(title="areaproof reference data")
+
+    format: Annotated[DataFormat, Field(description="this format")]
+    name: Annotated[Name, Field(description="the scene's name; the files begin with it")]
+    hamiltonian: Annotated[
+        str, Field(description="the formula of H(p, q) in p, q and the parameters; ** is a power")
+    ]
+    parameters: Annotated[
+        dict[str, Exact], Field(description="each parameter's exact value by its name")
+    ]
+    proofs: Annotated[tuple[Proof, ...], Field(description="one a scheme")]
+    runs: Annotated[tuple[Run, ...], Field(description="one a scheme, initial value and step size")]
+    flow: Annotated[tuple[Flow, ...], Field(description="one an initial value and step size")]
+
+    @property
+    def count(self) -> int:
+        """The rows of all tables."""
+        rows = [len(run.rows) for run in self.runs] + [len(flow.rows) for flow in self.flow]
+        return len(self.proofs) + sum(rows)
+
+
+class SceneFile(Frozen):
+    """A scene that data were made from."""
+
+    name: Annotated[Name, Field(description="the scene's name")]
+    toml: Annotated[str, Field(description="the scene as it was written, a TOML text")]
+    sha256: Annotated[Digest, Field(description="SHA-256 of that text in UTF-8")]
+
+
+class ListedFile(Frozen):
+    """A file beside the manifest."""
+
+    name: Annotated[Name, Field(description="its name in the manifest's folder")]
+    bytes: Annotated[int, Field(ge=0, description="its size")]
+    sha256: Annotated[Digest, Field(description="SHA-256 of its content")]
+
+
+class Manifest(Frozen):
+    """What made a folder of reference data, and each file that belongs to it."""
+
+    model_config = ConfigDict(title="areaproof reference manifest")
+
+    format: Annotated[ManifestFormat, Field(description="this format")]
+    command: Annotated[str, Field(description="the command that made the files")]
+    versions: Annotated[
+        dict[str, str], Field(description="versions of Python and of the libraries that did")
+    ]
+    scenes: Annotated[tuple[SceneFile, ...], Field(description="what was asked for")]
+    files: Annotated[
+        tuple[ListedFile, ...], Field(description="all files but the manifest itself, by name")
+    ]

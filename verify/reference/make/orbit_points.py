@@ -1,0 +1,165 @@
+"""One orbit at chosen steps, and the exact flow at their times, every number correctly rounded.
+
+Each step that is chosen is a run of its own, so that what is known of it is what `verify.runs.run`
+reports, with a rigorous bound wherever one can be had. ΔJ at the state is enclosed by balls over
+all states within that bound. More digits are asked for until all numbers round to one decimal.
+"""
+
+from contextlib import suppress
+from fractions import Fraction
+from typing import Literal
+
+import flint
+
+from verify.algebra.enclosure import enclose_all
+from verify.arithmetic.balls import around, in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.exact import text
+from verify.arithmetic.flint_precision import working_precision
+from verify.errors import InputError
+from verify.flows.extrapolation import NoFlowError
+from verify.flows.solution import Solution, exact_solution, leaves_by_algebra
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.computation import step_map_of
+from verify.reference.make.correct_rounding import correctly_rounded, near_zero
+from verify.runs.run import AUTO, run
+from verify.scenes.results.core import RunResult
+from verify.scenes.results.reference import (
+    FlowPoint,
+    Kind,
+    OrbitPoint,
+    OrbitResult,
+    Rounded,
+    SolutionResult,
+)
+from verify.scenes.tasks import OrbitTask, SolutionTask
+from verify.schemes.step_map import StepMap
+
+_GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
+_BITS = 64  # beyond the digits, for the roundings of one step
+_ZERO = Fraction(0), Fraction(0)
+_ENCLOSED: Kind = "enclosed"
+Known = tuple[Fraction, Fraction]  # a value and its bound
+
+
+def orbit(hamiltonian: Hamiltonian, task: OrbitTask) -> OrbitResult:
+    """The orbit after each of the task's steps."""
+    step_map = step_map_of(hamiltonian, task.scheme)
+    return OrbitResult(points=tuple(_point(hamiltonian, step_map, task, n) for n in task.steps))
+
+
+def _point(hamiltonian: Hamiltonian, step_map: StepMap, task: OrbitTask, step: int) -> OrbitPoint:
+    for guard in _GUARDS:
+        known, kind = _start(task), _ENCLOSED
+        if step > 0:
+            found = _run(hamiltonian, task, step, task.digits + guard)
+            if found.status == "left range":
+                return _without(step, "left range", found.failed_step)
+            if found.status == "unresolved":
+                break
+            kind = found.error_kind
+            known = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in found.values.items()}
+        at = known["p"], known["q"]
+        change = delta_j_at(step_map, *at, task.step_size, task.digits + guard)
+        if change is not None:
+            known["delta_j"] = change
+        last = guard == _GUARDS[-1]
+        values = {n: _rounded(x, task.digits, last, _size(task, n)) for n, x in known.items()}
+        if all(values.values()):
+            names = {n: values.get(n) for n in ("p", "q", "delta_j", "mse", "lambda")}
+            return OrbitPoint(step=step, status="finished", failed_step=None, kind=kind, **names)
+    return _without(step, "unresolved", None)
+
+
+def _start(task: OrbitTask) -> dict[str, Known]:
+    return {"p": (task.p, Fraction(0)), "q": (task.q, Fraction(0)), "lambda": _ZERO}
+
+
+def _run(hamiltonian: Hamiltonian, task: OrbitTask, steps: int, digits: int) -> RunResult:
+    return run(
+        hamiltonian,
+        task.scheme,
+        q=task.q,
+        p=task.p,
+        step_size=task.step_size,
+        steps=steps,
+        arithmetic=AUTO,
+        digits=digits,
+        observables=("mse", "lambda"),
+    )
+
+
+def _rounded(known: Known, digits: int, last: bool, size: Fraction) -> Rounded | None:
+    rounded = correctly_rounded(*known, digits)
+    return rounded or (near_zero(*known, digits, size) if last else None)
+
+
+def _size(task: OrbitTask | SolutionTask, name: str) -> Fraction:
+    """What a number of that name is small against: p and q against the initial value."""
+    return max(abs(task.p), abs(task.q)) if name in ("p", "q") else Fraction(1)
+
+
+def _without(step: int, status: str, failed_step: int | None) -> OrbitPoint:
+    nothing = dict.fromkeys(("p", "q", "delta_j", "mse", "lambda"))
+    return OrbitPoint.model_validate(
+        {"step": step, "status": status, "failed_step": failed_step, "kind": None, **nothing}
+    )
+
+
+def delta_j_at(step_map: StepMap, p: Known, q: Known, h: Fraction, digits: int) -> Known | None:
+    """ΔJ of the step from any state within the bounds of p and q: its middle and radius.
+
+    Rigorous. None where a step is given by equations and does not preserve area by proof, and where
+    it may not be defined there.
+    """
+    if step_map.preserves_area:
+        return _ZERO
+    if step_map.solved:
+        return None
+    with working_precision(4 * digits + _BITS):
+        box = {"p": around(*p), "q": around(*q), "h": rational_ball(h)}
+        total = flint.arb(0)
+        for step in step_map.substeps:
+            own = enclose_all(step.ring, [step.delta_j, step.p_next, step.q_next], box)
+            if own is None:
+                return None
+            change, box["p"], box["q"] = own
+            total = total + change + total * change
+        return middle_and_radius(total) if in_reach(total) else None
+
+
+# -- the exact flow ----------------------------------------------------------------------------
+
+
+def solution(hamiltonian: Hamiltonian, task: SolutionTask) -> SolutionResult:
+    """The exact flow at the times N·h of the task's steps."""
+    return SolutionResult(points=tuple(_flow_point(hamiltonian, task, n) for n in task.steps))
+
+
+def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> FlowPoint:
+    time, start = step * task.step_size, {"p": task.p, "q": task.q}
+    try:
+        for guard in _GUARDS:
+            digits = task.digits + guard
+            if step == 0:  # the initial value itself, also where H is not defined
+                at = Solution(task.p, task.q, Fraction(0), "the initial value itself")
+            else:
+                at = exact_solution(hamiltonian, **start, time=time, digits=digits)
+            last = guard == _GUARDS[-1]
+            size = _size(task, "p")
+            p, q = (_rounded((x, at.bound), task.digits, last, size) for x in (at.p, at.q))
+            if p and q:
+                kind: Kind = "estimated" if at.bound else "enclosed"
+                return FlowPoint(step=step, time=text(time), status="finished", kind=kind, p=p, q=q)
+    except InputError as error:
+        if error.name != "digits":
+            raise
+    except NoFlowError:
+        with suppress(NoFlowError):  # H may not even be defined at the initial value
+            told = leaves_by_algebra(hamiltonian, **start, time=time)
+            if told is not None and told.startswith("it blows up"):
+                return _nothing(step, time, "blows up")
+    return _nothing(step, time, "not followed")
+
+
+def _nothing(step: int, time: Fraction, status: Literal["blows up", "not followed"]) -> FlowPoint:
+    return FlowPoint(step=step, time=text(time), status=status, kind=None, p=None, q=None)

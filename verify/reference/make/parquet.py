@@ -1,0 +1,72 @@
+"""The tables as Parquet, where pyarrow is installed: every column a text, as in CSV."""
+
+import io
+from importlib.util import find_spec
+
+from verify.errors import InputError
+from verify.reference.compare.reading import MOST_BYTES, MOST_CELLS
+from verify.reference.make.writing import Row
+
+
+def installed() -> bool:
+    return find_spec("pyarrow") is not None
+
+
+def require() -> None:
+    """InputError where pyarrow is not installed."""
+    if not installed():
+        raise InputError("--parquet", "", "pyarrow is not installed; the extra `parquet` has it")
+
+
+def parquet_bytes(rows: list[Row]) -> bytes:
+    import pyarrow
+    from pyarrow import parquet
+
+    names, *content = rows
+    columns = list(zip(*content, strict=True)) or [()] * len(names)
+    arrays = [pyarrow.array(column, pyarrow.string()) for column in columns]
+    out = io.BytesIO()
+    parquet.write_table(pyarrow.table(arrays, names=list(names)), out, compression="zstd")
+    return out.getvalue()
+
+
+def parquet_rows(content: bytes, name: str) -> list[Row]:
+    """The table again. InputError where that is no such file, or would be very large."""
+    import pyarrow
+
+    try:
+        names, columns = _read(content)
+    except (pyarrow.ArrowException, OSError, ValueError, MemoryError) as error:
+        raise InputError("file", name, f"is not Parquet as it should be: {error}") from None
+    return [tuple(names), *zip(*columns, strict=True)]
+
+
+def _read(content: bytes) -> tuple[list[str], list[list[str]]]:
+    """Names and cells of its columns. ValueError where they are no texts, or too long ones.
+
+    A few bytes may stand for very many cells, or for one long text in all of them: so columns are
+    read as dictionaries, and it is looked how large they will be before they are.
+    """
+    import pyarrow.compute
+    from pyarrow import parquet
+
+    told = parquet.read_metadata(io.BytesIO(content))
+    kinds = [told.schema.column(k) for k in range(told.num_columns)]
+    if any(x.physical_type != "BYTE_ARRAY" or x.max_repetition_level for x in kinds):
+        raise ValueError("a column is no text")
+    groups = [told.row_group(k).total_byte_size for k in range(told.num_row_groups)]
+    if sum(groups) > MOST_BYTES or told.num_rows * told.num_columns > MOST_CELLS:
+        raise ValueError("too many cells")
+    names = [x.name for x in kinds]
+    if len(set(names)) < len(names):
+        raise ValueError("a column stands twice")
+    table = parquet.ParquetFile(io.BytesIO(content), read_dictionary=names).read()
+    for chunk in (chunk for column in table.columns for chunk in column.chunks):
+        longest = pyarrow.compute.max(pyarrow.compute.binary_length(chunk.dictionary)).as_py()
+        if (longest or 0) * told.num_rows > MOST_BYTES:
+            raise ValueError("too long cells")
+    return names, [[_text(x) for x in column.to_pylist()] for column in table.columns]
+
+
+def _text(x: object) -> str:
+    return x if isinstance(x, str) else repr(x)

@@ -1,0 +1,70 @@
+"""A scene's reference sections → the tasks that they need."""
+
+from collections.abc import Iterator, Sequence
+
+from verify.scenes.plan import Plan
+from verify.scenes.reference_sections import Reference
+from verify.scenes.scene import Scene
+from verify.scenes.tasks import OrbitTask, ProofTask, SolutionTask
+from verify.studies.plan import proof_task
+
+
+def plan_references(scenes: Sequence[Scene]) -> Plan:
+    """What the scenes ask for of reference data, and nothing else of them."""
+    plan = Plan()
+    for scene in scenes:
+        name = scene.name or scene.title or "scene"
+        for proof in proof_tasks(scene):
+            plan.need(proof, f"{name}: orders and leading coefficients")
+        for orbit in orbit_tasks(scene):
+            plan.need(orbit, f"{name}: state, ΔJ, MSE and Λ at chosen steps")
+        for solution in solution_tasks(scene):
+            plan.need(solution, f"{name}: the exact flow at their times")
+    return plan
+
+
+def size_of(scene: Scene) -> int:
+    """About how many bytes the file of its data will have, without listing what it asks for."""
+    size = 0
+    for section in scene.reference:
+        rows = len(section.initial_values) * len(section.step_sizes) * len(section.steps)
+        size += rows * len(schemes_of(scene, section)) * (5 * section.digits + 300)
+        size += rows * section.flow * (2 * section.digits + 200)
+    return size
+
+
+def schemes_of(scene: Scene, section: Reference) -> tuple[str, ...]:
+    return section.schemes or scene.schemes
+
+
+def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
+    """One a scheme that a section runs."""
+    named = (name for section in scene.reference for name in schemes_of(scene, section))
+    for name in dict.fromkeys(named):
+        yield proof_task(scene, name, formulas=False)
+
+
+def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
+    """Section by section: scheme, initial value, step size."""
+    given = scene.given() if scene.reference else {}
+    for section in scene.reference:
+        for scheme in schemes_of(scene, section):
+            for at in section.initial_values:
+                for h in section.step_sizes:
+                    yield OrbitTask(
+                        **given, scheme=scheme, q=at.q, p=at.p,
+                        step_size=h, steps=section.steps, digits=section.digits,
+                    )  # fmt: skip
+
+
+def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
+    """Section by section, where the flow is asked for: initial value, step size."""
+    given = scene.given() if scene.reference else {}
+    for section in scene.reference:
+        if section.flow:
+            for at in section.initial_values:
+                for h in section.step_sizes:
+                    yield SolutionTask(
+                        **given, q=at.q, p=at.p,
+                        step_size=h, steps=section.steps, digits=section.digits,
+                    )  # fmt: skip

@@ -1,0 +1,152 @@
+"""Digits on demand: which arithmetic, how precise, and a rigorous bound where one can be had.
+
+A run that carries the tangent map is certified (`verify.runs.a_posteriori`); where digits are missing it
+is done again at the precision that gives them. How many will be missing is foreseen at the first of
+its checkpoints, so that little is run in vain: where the tangent map grows linearly, the bound
+grows like N³, and that of Λ like N⁴. Where there is no certificate the bound is estimated
+(`verify.runs.estimated`).
+"""
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.kernels.chunked_loop import Progress
+from verify.kernels.stepping import Job, Outcome
+from verify.runs.a_posteriori import METHOD, certify, certify_at
+from verify.runs.enclosed import enclosed
+from verify.runs.estimated import Bounds, missing_digits, resolved, working_digits
+
+_ATTEMPTS = 5
+WORTH_COMPILING = (
+    60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
+)
+_SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
+_MORE = 20  # digits that cost such a run nothing, and are there for an observable that is small
+_WIDEST = 1000  # digits beyond which mpfr's products are the faster ones
+_COMPILED, _INTERPRETED = "fixed", "mpfr"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Values with bounds, and the run that they are from."""
+
+    bounds: Bounds
+    arithmetic: str
+    outcome: Outcome
+    fallback: str = ""  # why another arithmetic was taken than the one that was asked for
+
+
+def choose(job: Job, digits: int) -> str:
+    """The fastest arithmetic with rigorous bounds for so many digits, steps and these functions.
+
+    float64 is not among them: it is what is under test, and its bounds are estimates.
+    """
+    if job.steps < WORTH_COMPILING or digits > _WIDEST:
+        return _INTERPRETED
+    return _COMPILED if _fits(job, digits) else _INTERPRETED
+
+
+def _fits(job: Job, digits: int) -> bool:
+    """Whether fixed has the functions, and a step from the start stays within its range."""
+    try:
+        return job.fits(number_systems.get(_COMPILED, digits))
+    except UnsupportedError:
+        return False
+
+
+def measure(job: Job, name: str, digits: int, progress: Progress | None = None) -> Measured:
+    """The job's values to so many digits in the arithmetic of that name, or in its fallback.
+
+    A fixed-point run that leaves its range, and where a function is missing, or equations cannot be
+    solved, goes to mpfr.
+    """
+    try:
+        if number_systems.get(name, digits).radius is not None:
+            own = number_systems.get(name, working_digits(digits, job.steps))
+            bounds, run = enclosed(job, own, digits, progress)
+            return Measured(bounds, name, run)
+        found = certified(job, name, digits, progress)
+        if isinstance(found, Measured):
+            return found
+        found = _estimated(job, found, digits, progress)
+        if name != _COMPILED or found.bounds.status == "finished":
+            return found
+        reason = found.outcome.reason or found.bounds.method
+    except UnsupportedError as error:
+        reason = str(error)
+    return replace(measure(job, _INTERPRETED, digits, progress), fallback=reason)
+
+
+def certified(
+    job: Job, name: str, digits: int, progress: Progress | None = None
+) -> Measured | Arithmetic:
+    """The job's values to so many digits with rigorous bounds; where there are none, the arithmetic
+    at the precision that was reached. Raises UnsupportedError."""
+    own = number_systems.get(name, _first_digits(name, digits, job))
+    if job.solved:
+        return own
+    for _ in range(_ATTEMPTS):
+        foreseen = _Foresight(job, own, digits) if job.steps > _SHORT else None
+        outcome = job.go(own, tangent=True, progress=progress, enough=foreseen)
+        if foreseen and foreseen.missing > 0:
+            own = _finer(own, foreseen.missing)
+            continue
+        errors = certify(job, own, outcome) if outcome.done == job.steps else None
+        if errors is None or len(errors) < len(outcome.values):
+            break
+        values = {n: (x, errors[n]) for n, x in outcome.values.items()}
+        missing = max(missing_digits(*pair, digits) for pair in values.values())
+        if missing <= 0:
+            return Measured(Bounds(values, METHOD, rigorous=True), name, outcome)
+        own = _finer(own, missing)
+    return own
+
+
+def _estimated(job: Job, own: Arithmetic, digits: int, progress: Progress | None) -> Measured:
+    first = job.go(own, progress=progress)
+    if own.absolute and first.done < job.steps:
+        bounds = Bounds({}, "", "left range", first.done + 1)
+    else:
+        bounds = resolved(job, own, first, digits)
+    return Measured(bounds, own.name, first)
+
+
+def _first_digits(name: str, digits: int, job: Job) -> int:
+    if name != _COMPILED:
+        return working_digits(digits, job.steps) + (_MORE if job.steps <= _SHORT else 0)
+    # Formats come in steps of 19 digits, and foresight costs a sixteenth of the run.
+    time = job.steps * job.start["h"]
+    return digits + 3 + len(str(job.steps)) + len(str(int(time)))
+
+
+def _finer(own: Arithmetic, missing: int) -> Arithmetic:
+    return number_systems.get(own.name, own.bits * 30103 // 100000 + missing + 2)
+
+
+class _Foresight:
+    """Asked at a run's first checkpoint whether its digits will do; `missing` says how many."""
+
+    def __init__(self, job: Job, own: Arithmetic, digits: int) -> None:
+        self.job, self.own, self.digits, self.missing = job, own, digits, 0
+
+    def __call__(self, outcome: Outcome) -> bool:
+        errors = certify_at(self.job, self.own, outcome, 0)
+        if errors is None:  # let it run: what follows is for estimates
+            return True
+        growth = Fraction(self.job.steps, int(outcome.tangents[0]["done"]))
+        note, seen = outcome.trail[0], outcome.tangents[0]
+        sizes = {n: abs(x) for n, x in note.items()}
+        sizes["p"] = sizes["q"] = max(sizes["p"], sizes["q"])
+        if "lambda" in sizes:
+            sizes["lambda"] = max(abs(seen["least"]), abs(seen["most"]))
+        short = [
+            missing_digits(
+                sizes[n], error * growth ** (4 if n in ("lambda", "lambda_max") else 3), self.digits
+            )
+            for n, error in errors.items()
+            if sizes.get(n)
+        ]
+        self.missing = max(0, *short) if short else 0
+        return self.missing == 0

@@ -1,0 +1,188 @@
+"""One run: N steps from (q, p) in one arithmetic, each value with its error bound.
+
+How the bounds are got is told in `verify.runs.a_posteriori`, where they are rigorous, and otherwise in
+`verify.runs.estimated`; for float64, which is under test, in `verify.runs.float64`.
+
+What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exactly 0; where ΔJ does not
+depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from verify import arithmetic as number_systems
+from verify.algebra.enclosure import enclose
+from verify.arithmetic.balls import in_reach, middle_and_radius
+from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
+from verify.arithmetic.flint_precision import working_precision
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.chunked_loop import Progress
+from verify.kernels.computation import step_map_of
+from verify.kernels.stepping import Job
+from verify.runs.digits_on_demand import Measured, choose, measure
+from verify.runs.estimated import Bounded
+from verify.runs.float64 import bounded
+from verify.scenes.results.core import RunResult, Value
+from verify.schemes.step_map import StepMap
+
+MAX_STEPS = 10**12
+MAX_DIGITS = 10_000
+AUTO = "auto"
+CLOSED_FORM = ("delta_j_max", "mse", "lambda")
+ASKED = (*CLOSED_FORM, "lambda_plain")
+OBSERVABLES = (*ASKED, "lambda_max")  # the last: the greatest |Λ| after any of the steps
+
+
+def run(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    *,
+    q: Exact,
+    p: Exact,
+    step_size: Exact,
+    steps: int,
+    arithmetic: str = "float64",
+    digits: int = 17,
+    observables: Sequence[str] = CLOSED_FORM,
+    points: int = 0,
+    progress: Progress | None = None,
+    keeper: Keeper = NOTHING,
+) -> RunResult:
+    """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
+
+    `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest with rigorous
+    bounds. `digits`: significant digits wanted (float64 gives what it knows). `points`: at most so
+    many points of a thinned series are kept. `progress` is called with the number of steps done.
+    `keeper` keeps checkpoints, from which an interrupted run goes on. Raises InputError for h ≤ 0,
+    N < 1, a parameter without a value, unknown names.
+    """
+    start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
+    check(hamiltonian, steps, digits, observables)
+    if isinstance(points, bool) or not isinstance(points, int) or points < 0:
+        raise InputError("points", points, "must be a whole number, 0 or more")
+    step_map = step_map_of(hamiltonian, scheme)
+    known = proved(step_map, start["h"], steps, digits)
+    needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
+    job = Job(hamiltonian, scheme, start, steps, needed, points, keeper)
+    if arithmetic == AUTO:
+        arithmetic = choose(job, digits)
+    done = _run(job, arithmetic, digits, known, progress)
+    found = done.bounds
+    most = min(digits, 17) if done.arithmetic == "float64" else digits
+    values = {
+        n: _printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
+    }
+    if found.status == "finished":
+        values |= {n: _printed(*known[n], digits) for n in observables if n in known}
+    return RunResult(
+        **hamiltonian.written,
+        scheme=scheme,
+        arithmetic=done.arithmetic,
+        fallback=done.fallback,
+        digits=digits,
+        step_size=text(start["h"]),
+        steps=steps,
+        q=text(start["q"]),
+        p=text(start["p"]),
+        status=found.status,
+        failed_step=found.failed_step,
+        values=values,
+        error_kind="enclosed" if found.rigorous else "estimated",
+        error_method=found.method,
+        exact=tuple(o for o in observables if o in known),
+        series=done.outcome.series,
+        seconds=done.outcome.seconds,
+    )
+
+
+def known_run(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    *,
+    q: Fraction,
+    p: Fraction,
+    step_size: Fraction,
+    steps: int,
+    digits: int,
+    observables: Sequence[str],
+) -> RunResult | None:
+    """The observables without any step, and without p and q, where a proof gives all of them."""
+    check(hamiltonian, steps, digits, observables)
+    known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
+    if not set(observables) <= set(known):
+        return None
+    return RunResult(
+        **hamiltonian.written,
+        scheme=scheme,
+        arithmetic="ball",
+        digits=digits,
+        step_size=text(step_size),
+        steps=steps,
+        q=text(q),
+        p=text(p),
+        status="finished",
+        failed_step=None,
+        values={n: _printed(*known[n], digits) for n in observables},
+        error_kind="enclosed",
+        error_method="a proof, and no run",
+        exact=tuple(observables),
+        series=(),
+        seconds=0.0,
+    )
+
+
+def _run(
+    job: Job, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
+) -> Measured:
+    if arithmetic != "float64":
+        return measure(job, arithmetic, digits, progress)
+    first = job.go(number_systems.get(arithmetic, digits), progress=progress)
+    return Measured(bounded(job, first, known), arithmetic, first)
+
+
+def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:
+    if hamiltonian.symbols:
+        raise InputError("parameter", hamiltonian.symbols[0], "has no value; a run needs one")
+    for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+            raise InputError(name, value, f"must be a whole number, 1 … {most}")
+    for name in observables:
+        if name not in OBSERVABLES:
+            raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
+
+
+def _series_needs(known: dict[str, Any], points: int) -> frozenset[str]:
+    return frozenset({"extremes"}) if points and "lambda" not in known else frozenset()
+
+
+# -- what a proof gives ---------------------------------------------------------------------------
+
+
+def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
+    """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them."""
+    zero = Fraction(0), Fraction(0)
+    if step_map.preserves_area:
+        return dict.fromkeys((*CLOSED_FORM, "lambda_max"), zero)
+    if len(step_map.substeps) > 1:
+        return {}
+    step = step_map.substeps[0]
+    if any(step.ring.depends(step.delta_j, name) for name in ("p", "q")):
+        return {}
+    bits = int(4 * digits) + 64 + 2 * steps.bit_length()
+    delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)
+    if delta_j is None:
+        return {}
+    with working_precision(bits):
+        lam = (1 + delta_j) ** steps - 1
+        balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
+        if delta_j > -1:  # (1 + ΔJ)^k moves in one direction
+            balls["lambda_max"] = abs(lam)
+        return {name: middle_and_radius(ball) for name, ball in balls.items() if in_reach(ball)}
+
+
+def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:
+    shown, within = known_digits(value, bound, digits)
+    return Value(value=shown, bound=within)

@@ -1,0 +1,143 @@
+"""The section of a scene that carries a region by maps.
+
+[[flow]]                               # regions carried by maps, and their areas
+shape = "cat"                          # circle, square; or polygon, or path, as below
+polygon = [[0, 0], [1, 0], [0, 1]]     # (q, p) of each corner
+path = "M 0 0 C 10 20 30 20 40 0 Z"    # SVG path data, whose y points down: p = −y
+centre = { q = 1, p = 0 }              # where the shape's (0, 0) is put; (0, 0)
+scale = 0.5                            # by which it is made larger first; 1
+step_size = 0.01
+steps = [5000, 10000, 20000]           # of the map; or times = [1, 2, 3]
+schemes = ["lie2", "symplectic-euler"] # the scene's, where it is left out
+exact = true                           # the exact flow beside them, and the distance from it
+mean_lambda = true                     # the mean of Λ over the region, for schemes that change area
+digits = 17                            # more than 17: all points are carried with 33 or more
+source = "Figure 6"                    # what of a paper it repeats; may be left out
+"""
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import Annotated, Any, Self
+
+from mpmath.ctx_mp import MPContext
+from pydantic import Field, model_validator
+
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.runs.run import MAX_STEPS
+from verify.scenes.results.core import Frozen
+from verify.scenes.shapes import named as shapes
+from verify.scenes.shapes.outline import Shape
+from verify.scenes.values import Digits, InitialValue, Number, Steps, StepSize, Time
+
+MOST_DIGITS = 1000  # of points: a curve has thousands of them
+FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them are floats too
+Corner = tuple[Number, Number]
+
+
+class ShapeGiven(Frozen):
+    """A shape by its name, as a polygon or as an SVG path; then where it is put, and how large."""
+
+    shape: str | None = None
+    polygon: Annotated[tuple[Corner, ...], Field(max_length=10_000)] | None = None
+    path: Annotated[str, Field(max_length=100_000)] | None = None
+    centre: InitialValue = InitialValue(q=Fraction(0), p=Fraction(0))
+    scale: Number = Fraction(1)
+
+    @model_validator(mode="after")
+    def _check_shape(self) -> Self:
+        given = [n for n in ("shape", "polygon", "path") if getattr(self, n) is not None]
+        if len(given) != 1:
+            raise InputError("flow", ", ".join(given), "give one of shape, polygon and path")
+        if self.scale <= 0:
+            raise InputError("scale", text(self.scale), "must be greater than 0")
+        if _reach(*self._key()) > FARTHEST:
+            raise InputError("flow", "centre, scale", f"the shape reaches beyond ±{FARTHEST:g}")
+        return self
+
+    def made(self) -> Shape:
+        """The shape where it is put."""
+        return _made(*self._key())
+
+    def _key(self) -> "_Key":
+        at = self.centre
+        return self.shape, self.polygon, self.path, at.q, at.p, self.scale
+
+
+_Key = tuple[str | None, tuple[Corner, ...] | None, str | None, Fraction, Fraction, Fraction]
+
+
+# A plan asks for the same few shapes again for each map and number of steps.
+@lru_cache(maxsize=64)
+def _made(
+    name: str | None,
+    corners: tuple[Corner, ...] | None,
+    path: str | None,
+    q: Fraction,
+    p: Fraction,
+    scale: Fraction,
+) -> Shape:
+    if name is not None:
+        made = shapes.get(name)
+    elif corners is not None:
+        from verify.scenes.shapes.user_outline import polygon
+
+        made = polygon(corners)
+    else:
+        from verify.scenes.shapes.user_outline import svg_path
+
+        made = svg_path(path or "")
+    return made.placed(q, p, scale)
+
+
+@lru_cache(maxsize=64)
+def _reach(*key: Any) -> Any:
+    """The greatest coordinate of some points of each arc, in mpmath's numbers of any size."""
+    mp = MPContext()
+    arcs = (arc for outline in _made(*key).outlines for arc in outline.arcs)
+    points = (arc(mp, mp.mpf(k) / 2) for arc in arcs for k in (0, 1))
+    return max(abs(x) for point in points for x in point)
+
+
+class Flow(ShapeGiven):
+    """See the module's text for the keys."""
+
+    step_size: StepSize
+    steps: Annotated[tuple[Steps, ...], Field(max_length=100)] = ()
+    times: Annotated[tuple[Time, ...], Field(max_length=100)] = ()
+    schemes: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    exact: Annotated[bool, Field(strict=True)] = True
+    mean_lambda: Annotated[bool, Field(strict=True)] = True
+    digits: Digits = 17
+    source: Annotated[str, Field(max_length=80)] = ""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if bool(self.steps) == bool(self.times):
+            raise InputError("flow", "steps, times", "give one of the two")
+        if self.digits > MOST_DIGITS:
+            raise InputError("digits", self.digits, f"must be at most {MOST_DIGITS}")
+        counts = self.counts
+        if len(set(counts)) < len(counts):
+            raise InputError("steps", len(counts), "one of them stands twice")
+        if len(set(self.schemes)) < len(self.schemes):
+            raise InputError("schemes", len(self.schemes), "one of them stands twice")
+        return self
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """The numbers of steps, ascending. Raises InputError for a time that h does not divide."""
+        found = list(self.steps)
+        for time in self.times:
+            if (time / self.step_size).denominator != 1:
+                problem = f"must divide the time {text(time)}"
+                raise InputError("step_size", text(self.step_size), problem)
+            found.append(int(time / self.step_size))
+        for count in found:
+            if not 1 <= count <= MAX_STEPS:
+                raise InputError("steps", count, f"allowed: 1 … {MAX_STEPS}")
+        return tuple(sorted(found))
+
+    def shape_given(self) -> ShapeGiven:
+        """Where which shape is, without the rest."""
+        return ShapeGiven(**{n: getattr(self, n) for n in ShapeGiven.model_fields})

@@ -1,0 +1,110 @@
+"""What an exploration found, and its report."""
+
+from verify.scenes.results.core import Frozen, Real, SeparationResult
+
+
+class Failure(Frozen):
+    """The first scene, by its number, for which a property does not hold, and what was found."""
+
+    property: str
+    example: int
+    message: str
+
+
+class ExploreResult(Frozen):
+    """Of one stretch of drawn scenes: how many each property spoke of, and for how many not held.
+
+    `first`: one a property that failed.
+    """
+
+    looked_at: dict[str, int]
+    failed: dict[str, int]
+    first: tuple[Failure, ...]
+
+
+class ShrunkResult(Frozen):
+    """The simplest scene found for which the property fails, as TOML, and what is found there."""
+
+    property: str
+    example: int
+    message: str
+    scene: str
+
+
+class PropertySummary(Frozen):
+    """`looked_at`: examples that the property speaks of; `failures`: for how many it fails."""
+
+    name: str
+    sentence: str
+    looked_at: int
+    failures: int
+
+
+class FoundAgain(Frozen):
+    """A scene that an earlier exploration found, looked at again; `message` is empty if it holds
+    now."""
+
+    file: str
+    property: str
+    message: str
+
+
+class Worst(Frozen):
+    """A scene, as TOML, and lg of how bad it is."""
+
+    value: Real
+    scene: str
+
+
+class HuntResult(Frozen):
+    """The worst scenes of one island of a hunt, the worst first; `examples` were measured."""
+
+    worst: tuple[Worst, ...]
+    examples: int
+
+
+class GalleryScene(Frozen):
+    """One of the worst scenes, as TOML, with lg of its measure.
+
+    `orbit`: points (q, p) of the hunt's run, with 40 digits. `separation`: its Λ over a longer run;
+    where that did not finish it is `longer`, and `separation` that of the hunt's run.
+    `meaningless_after`: the first checkpoint, in steps, at which the greatest |rounding| so far is
+    as large as the greatest |truncation| so far in the plain way; `meaningful_from`: that from
+    which on it never is again.
+    """
+
+    value: Real
+    scene: str
+    orbit: tuple[tuple[str, str], ...]
+    separation: SeparationResult
+    longer: SeparationResult | None = None
+    meaningless_after: int | None
+    meaningful_from: int | None = None
+
+
+class Gallery(Frozen):
+    """The worst scenes of a hunt, the worst first; `examples` were measured.
+
+    Initial values are in `reach` of 0 in p and q, step sizes between the two of `step_sizes`, and
+    the search moves |coefficients| of H between the two of `coefficients`.
+    """
+
+    measure: str
+    sentence: str
+    seed: int
+    examples: int
+    steps: int
+    reach: str
+    step_sizes: tuple[str, str]
+    coefficients: tuple[str, str]
+    scenes: tuple[GalleryScene, ...]
+
+
+class ExploreReport(Frozen):
+    """`failures`: one a property that fails, shrunk; `again`: scenes found earlier."""
+
+    seed: int
+    examples: int
+    properties: tuple[PropertySummary, ...]
+    failures: tuple[ShrunkResult, ...]
+    again: tuple[FoundAgain, ...] = ()

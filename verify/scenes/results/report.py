@@ -1,0 +1,84 @@
+"""What was found for a scene, and a whole report: results of all kinds put together."""
+
+from verify.scenes.paper_figures import PaperFigure
+from verify.scenes.results.core import (
+    ClaimResult,
+    CriterionResult,
+    EveryResult,
+    Frozen,
+    GrowthLawResult,
+    ProofResult,
+    RunResult,
+    Seconds,
+    SeparationGrid,
+)
+from verify.scenes.results.exploration import Gallery
+from verify.scenes.results.regions import FlowResult
+from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
+from verify.scenes.results.work_precision import WorkPrecisionResult
+
+
+class SceneResult(Frozen):
+    """Everything found for one scene; `time` is the length of its runs where it has a grid.
+
+    `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
+    scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
+    `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
+    proved of its schemes for every H, `work_precision` error against run time,
+    `flows` what maps do to regions;
+    `stability`, `largest_steps` and `stability_maps` how stable they are.
+    """
+
+    name: str
+    title: str
+    hamiltonian: str
+    parameters: dict[str, str]
+    source: str
+    time: str | None
+    proofs: tuple[ProofResult, ...]
+    criteria: tuple[CriterionResult, ...]
+    runs: tuple[RunResult, ...]
+    series: tuple[RunResult, ...]
+    separations: tuple[SeparationGrid, ...] = ()
+    crossovers: tuple[SeparationGrid, ...] = ()
+    growth_laws: tuple[GrowthLawResult, ...] = ()
+    growth_explains: str = ""
+    every: tuple[EveryResult, ...] = ()
+    work_precision: WorkPrecisionResult | None = None
+    flows: tuple[FlowResult, ...] = ()
+    stability: tuple[StabilityResult, ...] = ()
+    largest_steps: tuple[LargestStepResult, ...] = ()
+    stability_maps: tuple[StabilityMapResult, ...] = ()
+
+
+class Provenance(Frozen):
+    """What made a report: the command, versions, machine, and time."""
+
+    command: str
+    versions: dict[str, str]
+    machine: str
+    seconds: Seconds
+    kept: int  # results taken from an earlier, interrupted or finished, call
+    computed: int
+
+
+class Report(Frozen):
+    """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
+
+    `gallery`: the worst scenes that a hunt found. `preface`: what is said before all else, such as
+    which libraries are installed.
+    """
+
+    title: str
+    claims: tuple[ClaimResult, ...]
+    scenes: tuple[SceneResult, ...]
+    figures: tuple[PaperFigure, ...] = ()
+    gallery: Gallery | None = None
+    left_out: tuple[tuple[str, str], ...]
+    preface: tuple[str, ...] = ()
+    provenance: Provenance
+
+    def _repr_html_(self) -> str:
+        from verify.notebook import report_html
+
+        return report_html(self)

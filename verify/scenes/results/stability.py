@@ -1,0 +1,103 @@
+"""What was found of a scheme's stability: frozen results."""
+
+from collections import Counter
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from verify.scenes.results.core import Frozen
+
+Kind = Literal[
+    "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",
+    "underflow", "undecided",
+]  # fmt: skip
+KINDS: tuple[Kind, ...] = Kind.__args__  # type: ignore[attr-defined]
+
+
+class StabilityResult(Frozen):
+    """One run's verdict, and who is to blame; `id` is the case's name in its scene.
+
+    `step`: where it leaves its bounds, parts from the same scheme in other arithmetic, or leaves
+    float64's range. `rate`: of a drift, the energy's change in a unit of time in parts of the
+    orbit's own energy scale. `energy_error`: the greatest |H − H(z0)| seen, in the same parts.
+    `h_omega`: the step size times the orbit's greatest frequency; `linear_limit`: up to where the
+    scheme is stable on the harmonic oscillator; None where either is not known.
+    """
+
+    id: str = ""
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    step_size: str
+    steps: int
+    q: str
+    p: str
+    kind: Kind
+    step: int | None = None
+    rate: str | None = None
+    energy_error: str | None = None
+    h_omega: str | None = None
+    linear_limit: str | None = None
+    exact_orbit: str
+    detail: str
+
+    @property
+    def verdict(self) -> str:
+        """In words, with the step or the rate that belongs to it."""
+        if self.kind == "overflow":
+            return f"overflow at step {self.step}"
+        if self.kind == "drifts":
+            return f"drifts ({self.rate} per unit time)"
+        return self.kind
+
+
+class LargestStepResult(Frozen):
+    """The largest step size with bounded motion, measured, against linear theory.
+
+    `bounded`: the motion stays bounded with it; `unbounded`: with this next one, a thousandth
+    greater, it does not; None where no step size looked at is of that kind. `linear`: the step size
+    that linear theory allows where the orbit is stiffest; "0" where it allows none.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    time: str
+    q: str
+    p: str
+    bounded: str | None
+    unbounded: str | None
+    linear: str | None
+    h_omega: str | None
+    exact_orbit: str
+    detail: str
+
+
+class MapCell(Frozen):
+    kind: Kind
+    step: int | None = None
+
+
+class StabilityMapResult(Frozen):
+    """Verdicts in the plane of step size and stiffness, of one scheme.
+
+    `cells[i][j]`: at the i-th value of the parameter and the j-th step size. `linear[i]`: the step
+    size that linear theory allows there; None where it does not say.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    parameter: str
+    values: Annotated[tuple[str, ...], Field(min_length=1)]
+    step_sizes: Annotated[tuple[str, ...], Field(min_length=1)]
+    steps: int
+    q: str
+    p: str
+    cells: tuple[tuple[MapCell, ...], ...]
+    linear: tuple[str | None, ...]
+
+    def counted(self) -> dict[Kind, int]:
+        """How many cells there are of each kind that occurs."""
+        seen = Counter(cell.kind for row in self.cells for cell in row)
+        return {kind: seen[kind] for kind in KINDS if seen[kind]}

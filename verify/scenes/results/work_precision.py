@@ -1,0 +1,163 @@
+"""What was found of error against run time: frozen results, exact decimal strings."""
+
+from typing import Literal
+
+from verify.scenes.results.core import Frozen, Seconds, Value
+
+LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
+
+
+class WorkPoint(Frozen):
+    """One run over [0, T]: of a scheme with `step_size`, or of a peer with `tolerance`.
+
+    `error`: |z_N − z(T)|, Euclidean in (p, q), of the float64 state from the exact flow.
+    `truncation`: the same of the scheme in exact arithmetic; `rounding`: how far the float64 state
+    is from that. `energy`: |H(z_N) − H(z_0)|. `lam`: Λ in float64 by the closed form of ΔJ, exactly
+    0 where that is proved; `lam_plain`: by the plain product of determinants. `limited_by` is of
+    `error`, `lambda_limited_by` of Λ; "tolerance" is a peer's, in which nothing tells truncation
+    from rounding, "undecided" has its reason in `reason`. A failed run has no values; `failed_step`
+    is the step at which it left its range. Seconds are those of the whole run, its compilation and
+    the call itself apart; None where that takes longer than the run. `evaluations`: of the vector
+    field in the whole run, where it is counted.
+    """
+
+    scheme: str
+    step_size: str | None
+    tolerance: str | None
+    steps: int | None
+    error: Value | None
+    truncation: Value | None
+    rounding: Value | None
+    energy: Value | None
+    lam: Value | None
+    lam_plain: Value | None
+    limited_by: LimitedBy
+    lambda_limited_by: LimitedBy | None
+    failed_step: int | None
+    reason: str
+    seconds_min: Seconds | None
+    seconds_median: Seconds | None
+    evaluations: int | None
+
+
+class SlopeResult(Frozen):
+    """The order over the points limited by truncation; None where there are fewer than three."""
+
+    value: str | None
+    standard_error: str | None
+    points: int
+    reason: str
+
+
+class CostResult(Frozen):
+    """What one step executes: operations of the compiled loop, the same subexpression once.
+
+    `functions`: calls by name. `gradient`: evaluations of H_p and H_q, where the scheme is made of
+    such (explicit Runge–Kutta, kicks and drifts); None where it is not. `turn`: what one turn of
+    Newton's method executes beside them, where equations are solved.
+    """
+
+    additions: int
+    multiplications: int
+    divisions: int
+    functions: dict[str, int]
+    gradient: dict[str, int] | None
+    turn: "CostResult | None" = None
+
+    @property
+    def text(self) -> str:
+        """Its operations, as "3 +, 2 ×, 1 sin"; those of Newton's method a turn."""
+        counts = {"+": self.additions, "×": self.multiplications, "÷": self.divisions}
+        shown = ", ".join(f"{n} {what}" for what, n in (counts | self.functions).items() if n)
+        return shown if self.turn is None else f"{shown}, and a turn of Newton {self.turn.text}"
+
+
+class WorkLine(Frozen):
+    """One scheme, or one peer, with its points in the order of falling step size or tolerance."""
+
+    name: str
+    peer: bool
+    order: int | None
+    area_preserving: bool
+    error_slope: SlopeResult
+    lambda_slope: SlopeResult
+    cost: CostResult | None
+    compile_seconds: Seconds
+    points: tuple[WorkPoint, ...]
+
+
+class SystemPoint(Frozen):
+    """A number system at so many digits: how many of the end state it certifies, and how fast.
+
+    `certified`: correct digits of the state, by a bound that is `error_kind`; None where the run
+    gave none, and `reason` says why.
+    """
+
+    arithmetic: str
+    digits: int
+    certified: str | None
+    error_kind: Literal["enclosed", "estimated"]
+    error_method: str
+    seconds_min: Seconds | None
+    seconds_median: Seconds | None
+    reason: str
+
+
+class RatioResult(Frozen):
+    """How many times smaller the one's quantity is than the other's at equal run time.
+
+    `at` one run time, the middle one of those that both cover, and `least` … `most` over all of
+    them. A ratio below 1 says that the other's is the smaller.
+    """
+
+    at: str
+    least: str
+    most: str
+
+
+class ComparisonResult(Frozen):
+    """Two schemes at equal run time `seconds`, over run times `first` … `last` that both cover.
+
+    `error` and `area` are None where there is nothing to compare, and `sentence` says it all.
+    """
+
+    one: str
+    other: str
+    seconds: str | None
+    first: str | None
+    last: str | None
+    error: RatioResult | None
+    area: RatioResult | None
+    sentence: str
+
+
+class WorkPrecisionResult(Frozen):
+    """Error against run time over [0, `time`] from (q, p); see `verify.studies.work_precision.measure`.
+
+    `scale`: the size of the orbit, the greater |z| of its ends.
+    `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
+    that may be a greater share of an error limits it. `reference_bound`: of p and of q. `machine`:
+    the one that the run times are of. `left_out`: peers with the reason. `systems` are of one
+    scheme at one step size.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    time: str
+    q: str
+    p: str
+    repeats: int
+    clock: str
+    overhead: Seconds
+    rounding_share: str
+    scale: str
+    reference: str
+    reference_bound: str
+    machine: str
+    lines: tuple[WorkLine, ...]
+    comparisons: tuple[ComparisonResult, ...]
+    systems: tuple[SystemPoint, ...]
+    systems_scheme: str
+    systems_step_size: str
+    left_out: tuple[tuple[str, str], ...]
+    seconds: Seconds

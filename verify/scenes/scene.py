@@ -1,0 +1,305 @@
+"""A scene: the declaration of what is to be verified, read from TOML. Unknown keys are refused.
+
+    title = "My oscillator"
+    hamiltonian = "p**2/2 + q**4/4"        # or: system = "duffing"
+    parameters = { delta = "7/3" }
+    schemes = ["lie2", "symplectic-euler"] # or "p_next = …; q_next = …"
+    criteria = [1, 2, 3, 4]
+    every_hamiltonian = true               # and what holds of the schemes for every H
+
+    [grid]                                 # runs: every step size with every initial value
+    time = 20000                           # or steps = 5000
+    step_sizes = [0.001, 0.01]
+    initial_values = [{ q = 1.5, p = 0 }]
+
+    separate = true                        # truncation and rounding in Λ of each of these runs
+    growth = true                          # Λ of each of these runs against its growth law
+    growth_explains = "Figure 1"           # what of a paper that explains; may be left out
+
+    [[separation]]                         # the same against h, for the crossover of the two
+    time = 20
+    step_sizes = [0.1, 0.01, 0.001]
+    initial_value = { q = 1.5, p = 0 }
+
+    [[series]]                             # thinned ΔJ(t) and Λ(t), for plots
+    step_size = 0.01
+    initial_value = { q = 1.5, p = 0 }
+    source = "Figure 2"                    # what it repeats, for its caption; may be left out
+
+    [work_precision]                       # error against run time; see verify.scenes.sections
+    time = 20
+    step_sizes = [0.1, 0.05, 0.025]
+    initial_value = { q = 1.5, p = 0 }
+
+    [[flow]]                               # a region carried by maps; see verify.scenes.region_sections
+    shape = "cat"
+    centre = { q = 1, p = 0 }
+    scale = 0.5
+    step_size = 0.01
+    steps = [5000, 20000]
+
+    [[reference]]                          # numbers to test against; see verify.scenes.reference_sections
+    step_sizes = [0.01]
+    initial_values = [{ q = 1.5, p = 0 }]
+    steps = [0, 1, 10, 100]
+
+Numbers are exact: `0.001` in the file is 1/1000.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import Field, ValidationError, model_validator
+
+from verify import schemes as scheme_catalogue
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.from_type import drawn_by
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.run import CLOSED_FORM, MAX_STEPS, OBSERVABLES
+from verify.scenes.reference_sections import Reference
+from verify.scenes.region_sections import Flow
+from verify.scenes.results.core import Frozen
+from verify.scenes.sections import WorkPrecision
+from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
+from verify.scenes.values import ArithmeticName, Digits, InitialValue, Number, Steps, StepSize, Time
+
+_MAX_DEPTH = 12
+
+
+class Grid(Frozen):
+    """Runs of every scheme for every step size and initial value, over `time` or `steps`."""
+
+    time: Time | None = None
+    steps: Steps | None = None
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
+    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
+    arithmetic: ArithmeticName = "float64"
+    digits: Digits = 17
+    observables: tuple[str, ...] = CLOSED_FORM
+    separate: bool = False
+    growth: bool = False
+    growth_explains: Annotated[str, Field(max_length=200)] = ""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("grid", "time, steps", "give one of the two")
+        for name in self.observables:
+            if name not in OBSERVABLES:
+                raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
+        if self.growth and "lambda" not in self.observables:
+            raise InputError("growth", self.growth, "wants lambda among the observables")
+        if len(set(self.step_sizes)) < len(self.step_sizes):
+            raise InputError("step_sizes", len(self.step_sizes), "one of them stands twice")
+        if len(set(self.initial_values)) < len(self.initial_values):
+            raise InputError("initial_values", len(self.initial_values), "one stands twice")
+        for h in self.step_sizes:
+            self.steps_for(h)
+        return self
+
+    def steps_for(self, h: Fraction) -> int:
+        """N: as given, or the whole steps of size h that fit into `time`."""
+        if self.steps is not None:
+            return self.steps
+        assert self.time is not None  # noqa: S101 - the validator above
+        count = self.time // h
+        if not 1 <= count <= MAX_STEPS:
+            raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {MAX_STEPS}")
+        return count
+
+
+class SeparationOver(Frozen):
+    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
+
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
+    initial_value: InitialValue
+    time: Time | None = None
+    steps: Steps | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        self.as_grid()
+        return self
+
+    def as_grid(self) -> Grid:
+        """The same as a grid, which checks it."""
+        return Grid(
+            time=self.time,
+            steps=self.steps,
+            step_sizes=self.step_sizes,
+            initial_values=(self.initial_value,),
+        )
+
+
+class Series(Frozen):
+    """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
+
+    `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
+    """
+
+    step_size: StepSize
+    initial_value: InitialValue
+    time: Time | None = None
+    steps: Steps | None = None
+    points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
+    arithmetic: ArithmeticName = "float64"
+    digits: Digits = 17
+    source: Annotated[str, Field(max_length=80)] = ""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("series", "time, steps", "give one of the two")
+        if not 1 <= self.count <= MAX_STEPS:
+            problem = f"makes {self.count} steps; allowed: 1 … {MAX_STEPS}"
+            raise InputError("step_size", text(self.step_size), problem)
+        return self
+
+    @property
+    def count(self) -> int:
+        if self.steps is not None:
+            return self.steps
+        assert self.time is not None  # noqa: S101 - the validator above
+        return self.time // self.step_size
+
+
+_IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "schemes")
+
+
+@drawn_by("scenes")
+class Scene(Frozen):
+    """See the module's text for the keys."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", max_length=80)] = ""
+    title: str = ""
+    system: str | None = None
+    hamiltonian: str | None = None
+    parameters: dict[str, Number] = Field(default_factory=dict)
+    schemes: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+    every_hamiltonian: bool = False
+    criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
+    grid: Grid | None = None
+    separation: tuple[SeparationOver, ...] = ()
+    series: tuple[Series, ...] = ()
+    work_precision: WorkPrecision | None = None
+    flow: tuple[Flow, ...] = ()
+    stability: tuple[Stability, ...] = ()
+    largest_step: tuple[LargestStepOver, ...] = ()
+    stability_map: tuple[StabilityMap, ...] = ()
+    reference: tuple[Reference, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.system is None) == (self.hamiltonian is None):
+            raise InputError("scene", "system, hamiltonian", "give one of the two")
+        exact = self.exact_hamiltonian()
+        of_stability = *self.stability, *self.largest_step, *self.stability_map
+        also = [name for section in of_stability for name in section.schemes]
+        also += self.work_precision.schemes if self.work_precision else ()
+        also += [name for section in self.flow for name in section.schemes]
+        also += [name for section in self.reference for name in section.schemes]
+        for name in dict.fromkeys((*self.schemes, *also)):
+            scheme_catalogue.get(name).step_map(exact)
+        runs = (self.grid, self.series, self.separation, self.work_precision, self.flow,
+                self.reference)  # fmt: skip
+        free = set(exact.symbols)
+        if not any((*runs, self.stability, self.largest_step)):
+            free -= {over.parameter for over in self.stability_map}
+        if any((*runs, *of_stability)) and free:
+            raise InputError("parameter", min(free), "has no value; a run needs one")
+        for over in self.stability_map:
+            if over.parameter not in exact.parameters:
+                known = ", ".join(exact.parameters) or "none"
+                raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
+        return self
+
+    def with_only(self, **sections: Any) -> "Scene":
+        """The same H and schemes with these sections, and no others."""
+        empty = {name: field.default for name, field in Scene.model_fields.items()
+                 if name not in _IDENTITY}  # fmt: skip
+        return self.model_copy(update=empty | sections)
+
+    def given(self) -> dict[str, Any]:
+        """H as a task has it: its formula, and its parameter values exactly."""
+        exact = self.exact_hamiltonian()
+        return {"hamiltonian": exact.formula, "parameters": dict(exact.values)}
+
+    def exact_hamiltonian(self) -> Hamiltonian:
+        """The Hamiltonian with the scene's parameter values."""
+        if self.system is not None:
+            return systems.get(self.system).hamiltonian(self.parameters)
+        return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
+
+
+def load_scene(path: Path) -> Scene:
+    """The scene in a TOML file; InputError names the file, the key, its value and the problem."""
+    return scene_from(read_toml(path), path.name, default_name=path.stem)
+
+
+def scene_from_toml(content: str, name: str) -> Scene:
+    """The scene in a TOML text, which a file of that name held."""
+    return scene_from(_from_toml(content, name), name, default_name=name)
+
+
+def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
+    """The scene from a mapping, as TOML gives it."""
+    if not _shallow(data):
+        raise InputError("scene", source, f"is nested deeper than {_MAX_DEPTH}")
+    try:
+        scene = Scene.model_validate(dict(data))
+    except ValidationError as error:
+        raise one_line(error, source) from None
+    return scene if scene.name else scene.model_copy(update={"name": default_name})
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The file's content with its decimals kept as text, so that they stay exact."""
+    try:
+        content = path.read_bytes().decode()
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+    except UnicodeDecodeError:
+        raise InputError("file", str(path), "is not UTF-8 text") from None
+    return _from_toml(content, str(path))
+
+
+def _from_toml(content: str, source: str) -> dict[str, Any]:
+    try:
+        data = tomllib.loads(content, parse_float=str)
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
+        raise InputError("file", source, f"is not TOML: {error}") from None
+    if not _shallow(data):
+        raise InputError("file", source, f"is nested deeper than {_MAX_DEPTH}")
+    return data
+
+
+def _shallow(data: Any) -> bool:
+    level = [data]
+    for _ in range(_MAX_DEPTH):
+        level = [x for v in level if isinstance(v, dict) for x in v.values()] + [
+            x for v in level if isinstance(v, list) for x in v
+        ]
+    return not level
+
+
+def one_line(error: ValidationError, source: str) -> InputError:
+    errors = error.errors(include_url=False)
+    # A mistyped key is also a missing one: name what was typed.
+    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
+    cause = first.get("ctx", {}).get("error")
+    where = ".".join(str(part) for part in first["loc"])
+    if isinstance(cause, InputError):
+        prefix = f"{source}: {where}: " if where else f"{source}: "
+        return InputError(prefix + cause.name, cause.value, cause.problem)
+    if first["type"] == "extra_forbidden":
+        missing = [str(e["loc"][-1]) for e in errors if e["type"] == "missing"]
+        meant = f"; is one of these meant: {', '.join(missing)}?" if missing else ""
+        return InputError(f"{source}: {where}", first.get("input"), f"unknown key{meant}")
+    if first["type"] == "missing":
+        return InputError(f"{source}: {where}", "", "is missing")
+    return InputError(f"{source}: {where}", first.get("input"), first["msg"])

@@ -1,0 +1,70 @@
+"""Sections of a scene that ask for a table or a figure of their own, next to its proofs and runs.
+
+[work_precision]                       # error against run time
+time = 20                              # a whole number of each of the steps
+step_sizes = [0.1, 0.05, 0.025]
+initial_value = { q = 1.5, p = 0 }
+schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
+repeats = 5                            # timings of each point
+number_systems = ["fixed", "mpfr"]     # certified digits against run time, of one scheme
+digits = [33, 53]
+number_systems_scheme = "lie2"         # the first of the schemes, where it is left out
+number_systems_step_size = 0.05        # the middle one, where it is left out
+peers = false                          # true: they must be installed; else drawn where they are
+"""
+
+from fractions import Fraction
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from verify import schemes as scheme_catalogue
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.runs.run import AUTO
+from verify.scenes.results.core import Frozen
+from verify.scenes.values import ArithmeticName, Digits, InitialValue, StepSize, Time
+
+MOST_STEPS = 10**8  # of a run that is repeated
+
+
+class WorkPrecision(Frozen):
+    """See the module's text for the keys."""
+
+    time: Time
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=100)]
+    initial_value: InitialValue
+    schemes: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    repeats: Annotated[int, Field(ge=1, le=1000, strict=True)] = 5
+    number_systems: tuple[ArithmeticName, ...] = ()
+    digits: Annotated[tuple[Digits, ...], Field(max_length=100)] = ()
+    number_systems_scheme: str | None = None
+    number_systems_step_size: StepSize | None = None
+    peers: bool | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name in ("step_sizes", "schemes", "number_systems", "digits"):
+            given = getattr(self, name)
+            if len(set(given)) < len(given):
+                raise InputError(name, len(given), "one of them stands twice")
+        own = self.number_systems_step_size
+        for h in (*self.step_sizes, *(() if own is None else (own,))):
+            self.steps_for(h)
+        if bool(self.number_systems) != bool(self.digits):
+            raise InputError("number_systems, digits", "", "give both or neither")
+        if AUTO in self.number_systems:
+            raise InputError("number_systems", AUTO, "name the number systems themselves")
+        if self.number_systems_scheme is not None:
+            scheme_catalogue.get(self.number_systems_scheme)
+        return self
+
+    def steps_for(self, h: Fraction) -> int:
+        """N = T/h, which must be a whole number, so that all runs end at T."""
+        count = self.time / h
+        if count.denominator != 1:
+            problem = f"does not divide the time {text(self.time)}; T/h must be a whole number"
+            raise InputError("step_size", text(h), problem)
+        if count > MOST_STEPS:
+            raise InputError("step_size", text(h), f"makes {count} steps; allowed: {MOST_STEPS}")
+        return int(count)

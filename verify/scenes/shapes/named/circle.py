@@ -1,0 +1,12 @@
+"""The unit circle."""
+
+from verify.hamiltonians.motion import Context, Number
+from verify.scenes.shapes.outline import Outline, Shape, angle
+
+
+def _circle(mp: Context, s: Number) -> tuple[Number, Number]:
+    turn = angle(mp, s)
+    return mp.cos(turn), mp.sin(turn)
+
+
+SHAPE = Shape("circle", (Outline("circle", (_circle,)),))

@@ -1,0 +1,137 @@
+"""Sections of a scene that ask how stable its schemes are.
+
+[[stability]]                          # each run judged: stable, drifts, unstable and whose fault
+name = "near the top"                  # part of the cases' names; may be left out
+step_sizes = [0.1, 0.01]
+time = 100                             # or steps = 5000
+initial_values = [{ q = 3.1, p = 0 }]
+schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
+
+[[largest_step]]                       # the largest step with bounded motion, by bisection
+time = 100
+initial_value = { q = 1, p = 0 }
+
+[[stability_map]]                      # verdicts over step size and stiffness, a picture a scheme
+parameter = "delta"
+values = { from = 0.01, to = 1e12, count = 15 }  # as many, evenly on a logarithmic scale; or a list
+step_sizes = { from = 1e-7, to = 10, count = 25 }
+steps = 1000
+initial_value = { q = 1, p = 0 }
+"""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Annotated, Any, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from verify import schemes as scheme_catalogue
+from verify.arithmetic.exact import decimal, positive, text
+from verify.arithmetic.systems import mpfr
+from verify.errors import InputError
+from verify.scenes.results.core import Frozen
+from verify.scenes.values import InitialValue, Number, Steps, StepSize, Time
+
+_MOST_STEPS = 10**9  # of a run that is judged: minutes
+_MOST_MAP_STEPS = 100_000
+_MOST_CELLS = 10_000
+_SHOWN = 3  # digits of a value in a range
+
+
+def _spread(given: Any) -> Any:
+    """A table with from, to and count as the list that it stands for."""
+    if not isinstance(given, dict):
+        return given
+    if set(given) != {"from", "to", "count"}:
+        raise InputError("range", ", ".join(map(str, given)), "allowed: from, to, count")
+    low, high, count = positive(given["from"], "from"), positive(given["to"], "to"), given["count"]
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 200:
+        raise InputError("count", count, "must be a whole number, 2 … 200")
+    if low >= high:
+        raise InputError("from, to", given["from"], "from must be less than to")
+    return tuple(_evenly(low, high, count))
+
+
+def _evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
+    """Values evenly on a logarithmic scale, to three digits."""
+    arithmetic = mpfr.make(20)
+    log, exp = (arithmetic.functions[name] for name in ("log", "exp"))
+    with arithmetic.context():
+        first, last = (log(arithmetic.number(x)) for x in (low, high))
+        sizes = [exp(first + (last - first) * k / (count - 1)) for k in range(count)]
+    for size in sizes:
+        yield Fraction(decimal(arithmetic.exact(size), _SHOWN))
+
+
+Values = Annotated[
+    tuple[Number, ...], BeforeValidator(_spread), Field(min_length=1, max_length=200)
+]
+StepSizes = Annotated[
+    tuple[StepSize, ...], BeforeValidator(_spread), Field(min_length=1, max_length=200)
+]
+Schemes = Annotated[tuple[str, ...], Field(max_length=100)]
+
+
+class OfSchemes(Frozen):
+    """A section that may name schemes of its own."""
+
+    schemes: Schemes = ()
+
+    @model_validator(mode="after")
+    def _known(self) -> Self:
+        for name in self.schemes:
+            scheme_catalogue.get(name)
+        if len(set(self.schemes)) < len(self.schemes):
+            raise InputError("schemes", len(self.schemes), "one of them stands twice")
+        return self
+
+
+class Stability(OfSchemes):
+    """See the module's text for the keys."""
+
+    name: Annotated[str, Field(max_length=80)] = ""
+    time: Time | None = None
+    steps: Steps | None = None
+    step_sizes: StepSizes
+    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("stability", "time, steps", "give one of the two")
+        for h in self.step_sizes:
+            if not 1 <= self.steps_for(h) <= _MOST_STEPS:
+                problem = f"makes {self.steps_for(h)} steps; allowed: 1 … {_MOST_STEPS}"
+                raise InputError("step_size", text(h), problem)
+        return self
+
+    def steps_for(self, h: Fraction) -> int:
+        """N: as given, or the whole steps of size h that fit into `time`."""
+        if self.steps is not None:
+            return self.steps
+        assert self.time is not None  # noqa: S101 - the validator above
+        return self.time // h
+
+
+class LargestStepOver(OfSchemes):
+    """See the module's text for the keys."""
+
+    time: Time
+    initial_value: InitialValue
+
+
+class StabilityMap(OfSchemes):
+    """See the module's text for the keys."""
+
+    parameter: str
+    values: Values
+    step_sizes: StepSizes
+    steps: Annotated[int, Field(ge=1, le=_MOST_MAP_STEPS, strict=True)]
+    initial_value: InitialValue
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        cells = len(self.values) * len(self.step_sizes)
+        if cells > _MOST_CELLS:
+            raise InputError("values, step_sizes", cells, f"cells; allowed: {_MOST_CELLS}")
+        return self

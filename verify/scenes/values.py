@@ -1,0 +1,39 @@
+"""The values that a scene's keys take: exact numbers, counts, initial values."""
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.exact import positive, rational, text
+from verify.errors import InputError
+from verify.from_type import drawn_by
+from verify.runs.run import AUTO, MAX_DIGITS, MAX_STEPS
+from verify.scenes.results.core import Frozen
+
+Number = Annotated[
+    Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
+]
+StepSize = Annotated[
+    Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
+]
+Time = Annotated[Fraction, BeforeValidator(lambda x: positive(x, "time")), PlainSerializer(text)]
+Digits = Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)]
+Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
+
+
+def _known(name: str) -> str:
+    if name != AUTO and name not in number_systems.names():
+        allowed = ", ".join((AUTO, *number_systems.names()))
+        raise InputError("arithmetic", name, f"unknown; allowed: {allowed}")
+    return name
+
+
+ArithmeticName = Annotated[str, AfterValidator(_known)]
+
+
+@drawn_by("initial_values")
+class InitialValue(Frozen):
+    q: Number
+    p: Number

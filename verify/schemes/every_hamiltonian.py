@@ -1,0 +1,174 @@
+"""A scheme as it is for every H: what gives its step map where H is not known.
+
+`taylor(jets, most)`: the coefficients of h⁰ … h^most of p' and q', as series over the jets.
+`StageEquations` have more: their equations, which give det J without solving them.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Protocol, runtime_checkable
+
+import flint
+import sympy
+
+from verify.algebra.conditions import Condition
+from verify.algebra.jets import Jets, Poly, Series
+
+Matrix = tuple[tuple[Poly, Poly], tuple[Poly, Poly]]
+
+
+@runtime_checkable
+class BySeries(Protocol):
+    """A scheme for every H (`separable`: every H = T(p) + V(q)) that has a Taylor series.
+
+    Not to be named Generic: `typing` passes over a protocol of that name, and all would be one.
+    """
+
+    @property
+    def separable(self) -> bool: ...
+
+    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]: ...
+
+
+@dataclass(frozen=True)
+class TaylorSeries:
+    """The exact flow's series, cut off after h^eta (Eq. 2)."""
+
+    eta: int
+    separable: bool = False
+
+    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+        kept = min(self.eta, most)
+
+        def cut(name: str) -> Series:
+            terms = [x / math.factorial(n) for n, x in enumerate(jets.along(name, kept))]
+            return terms + [jets.zero] * (most - kept)
+
+        return cut("p"), cut("q")
+
+
+@dataclass(frozen=True)
+class RungeKutta:
+    """An explicit Runge–Kutta method: the rows of its strictly lower triangular matrix, weights."""
+
+    rows: tuple[tuple[Fraction, ...], ...]
+    weights: tuple[Fraction, ...]
+    separable: bool = False
+
+    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+        slopes: list[tuple[Series, Series]] = []
+        for row in self.rows:
+            at = _moved(jets, slopes, row, most)
+            force = [-x for x in jets.shifted(0, 1, *at)]
+            slopes.append((force, jets.shifted(1, 0, *at)))
+        dp, dq = _moved(jets, slopes, self.weights, most)
+        return [jets.p + dp[0], *dp[1:]], [jets.q + dq[0], *dq[1:]]
+
+
+def _moved(
+    jets: Jets, slopes: Sequence[tuple[Series, Series]], row: Sequence[Fraction], most: int
+) -> tuple[Series, Series]:
+    """h Σ a_j k_j, as series in h."""
+    result = []
+    for part in (0, 1):
+        total = [jets.zero] * (most + 1)
+        for a, slope in zip(row, slopes, strict=False):
+            for n in range(most):
+                total[n + 1] += slope[part][n] * flint.fmpq(a.numerator, a.denominator)
+        result.append(total)
+    return result[0], result[1]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """p' = p − h·kick·H_q(P, Q), q' = q + h·drift·H_p(P, Q), where P = p + at_p·(p' − p) and
+    Q = q + at_q·(q' − q)."""
+
+    kick: Fraction
+    drift: Fraction
+    at_p: Fraction = Fraction(0)
+    at_q: Fraction = Fraction(0)
+
+
+@dataclass(frozen=True)
+class StageEquations:
+    """One stage after the other."""
+
+    stages: tuple[Stage, ...]
+    separable: bool = False
+
+    @classmethod
+    def of_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> "StageEquations":
+        """Kicks and drifts of so many step sizes, for H = T(p) + V(q)."""
+        stages = []
+        for kind, size in parts:
+            length, none = Fraction(int(size.p), int(size.q)), Fraction(0)
+            stages.append(Stage(length, none) if kind == "kick" else Stage(none, length))
+        return cls(tuple(stages), separable=True)
+
+    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+        """By iteration: each one makes one power of h more right."""
+        dp, dq = ([jets.zero] * (most + 1) for _ in range(2))
+        for stage in self.stages:
+            p, q = dp, dq
+            for _ in range(most):
+                at = _between(p, dp, stage.at_p), _between(q, dq, stage.at_q)
+                dp, dq = (
+                    _added(p, jets.shifted(0, 1, *at), -stage.kick),
+                    _added(q, jets.shifted(1, 0, *at), stage.drift),
+                )
+        return [jets.p + dp[0], *dp[1:]], [jets.q + dq[0], *dq[1:]]
+
+    def conditions(self) -> tuple[Condition, ...]:
+        """det A = det B of each stage, which together suffice for det J ≡ 1."""
+        return tuple(
+            Condition(f"A J = B with det A = det B = {b}", 0, str(a - b), bool(a == b and a != 0))
+            for a, b in self.determinants()
+        )
+
+    def determinants(self) -> list[tuple[Poly, Poly]]:
+        """(det A, det B) of each stage, where A J = B by implicit differentiation.
+
+        Over Q[h, a, b, c] with a, b, c = H_pp, H_pq, H_qq at the stage's own point (P, Q), which
+        are free. Where both are the same polynomial det J = 1, wherever the stage has a solution
+        that depends smoothly on (p, q), which is where det A ≠ 0.
+        """
+        names = ("h", "a", "b", "c")
+        h, a, b, c = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex).gens()
+        if self.separable:
+            b = b * 0
+        found = []
+        for stage in self.stages:
+            at_p, at_q, kick, drift = (
+                flint.fmpq(x.numerator, x.denominator)
+                for x in (stage.at_p, stage.at_q, stage.kick, stage.drift)
+            )
+            # dp' = dp − h kick (b dP + c dQ), dq' = dq + h drift (a dP + b dQ)
+            force, speed = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
+            left = [
+                [1 - force[0] * at_p, -force[1] * at_q],
+                [-speed[0] * at_p, 1 - speed[1] * at_q],
+            ]
+            right = [
+                [1 + force[0] * (1 - at_p), force[1] * (1 - at_q)],
+                [speed[0] * (1 - at_p), 1 + speed[1] * (1 - at_q)],
+            ]
+            found.append((_det(left), _det(right)))
+        return found
+
+
+def _det(m: Sequence[Sequence[Any]]) -> Poly:
+    return m[0][0] * m[1][1] - m[0][1] * m[1][0]
+
+
+def _between(start: Series, end: Series, share: Fraction) -> Series:
+    part = flint.fmpq(share.numerator, share.denominator)
+    return [x + part * (y - x) for x, y in zip(start, end, strict=True)]
+
+
+def _added(start: Series, slope: Series, weight: Fraction) -> Series:
+    """start + h·weight·slope."""
+    part = flint.fmpq(weight.numerator, weight.denominator)
+    return [start[0], *(x + part * y for x, y in zip(start[1:], slope, strict=False))]

@@ -1,0 +1,127 @@
+"""Implicit Runge–Kutta methods by their coefficients.
+
+k_i = f(z + h Σ a_ij k_j), i = 1 … s, and z' = z + h Σ b_i k_i. Coefficients are algebraic numbers,
+exact. What is asked of them is decided in the ring of `verify.algebra.generators.embed`, by exact algebra,
+and what is not zero there is enclosed by Arb; no coefficient is ever rounded for it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import sympy
+
+from verify.algebra.conditions import Condition
+from verify.algebra.enclosure import enclose
+from verify.algebra.generators import embed
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.exact import known_digits
+
+_SHOWN = 5  # digits of a residue
+_PRECISIONS = (64, 256, 1024, 4096)
+
+
+@dataclass(frozen=True)
+class ImplicitTableau:
+    """`rows[i][j]`: a_ij; `weights`: b_i. ValueError where they do not fit together, or are no
+    constants."""
+
+    rows: tuple[tuple[sympy.Expr, ...], ...]
+    weights: tuple[sympy.Expr, ...]
+
+    def __post_init__(self) -> None:
+        count = len(self.weights)
+        if count == 0 or [len(row) for row in self.rows] != [count] * count:
+            raise ValueError("a tableau has as many rows, and entries in each, as weights")
+        numbers = [x for row in (*self.rows, self.weights) for x in row]
+        if any(sympy.sympify(x).free_symbols for x in numbers):
+            raise ValueError("coefficients are numbers")
+
+    @classmethod
+    def of(
+        cls, rows: Sequence[Sequence[sympy.Expr | int]], weights: Sequence[sympy.Expr | int]
+    ) -> "ImplicitTableau":
+        """From numbers as sympy takes them."""
+        exact = [[sympy.sympify(x) for x in row] for row in (*rows, weights)]
+        return cls(tuple(map(tuple, exact[:-1])), tuple(exact[-1]))
+
+    @property
+    def stages(self) -> int:
+        return len(self.weights)
+
+    @cached_property
+    def numbers(self) -> "Numbers":
+        """The coefficients in one ring."""
+        return Numbers.of(self)
+
+    def area_conditions(self) -> tuple[Condition, ...]:
+        """b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j.
+
+        They suffice for det J ≡ 1, for every H (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric
+        Numerical Integration, theorem VI.4.3).
+        """
+        return _area_conditions(self)
+
+    def symmetry_conditions(self) -> tuple[Condition, ...]:
+        """a_(s+1−i, s+1−j) + a_ij = b_j: then the step of −h undoes that of h.
+
+        They suffice, for every H (Hairer, Lubich, Wanner, theorem V.2.3).
+        """
+        a, b, last = self.numbers.a, self.numbers.b, self.stages - 1
+        return tuple(
+            self.numbers.condition(
+                f"a_{i + 1}{j + 1} + a_{last - i + 1}{last - j + 1} = b_{j + 1}",
+                0,
+                a[i][j] + a[last - i][last - j] - b[j],
+            )
+            for i in range(self.stages)
+            for j in range(self.stages)
+        )
+
+
+@lru_cache(maxsize=64)
+def _area_conditions(tableau: ImplicitTableau) -> tuple[Condition, ...]:
+    numbers = tableau.numbers
+    a, b = numbers.a, numbers.b
+    return tuple(
+        numbers.condition(
+            f"b_{i + 1} a_{i + 1}{j + 1} + b_{j + 1} a_{j + 1}{i + 1} = b_{i + 1} b_{j + 1}",
+            0,
+            b[i] * a[i][j] + b[j] * a[j][i] - b[i] * b[j],
+        )
+        for i in range(tableau.stages)
+        for j in range(i, tableau.stages)
+    )
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """a_ij and b_i as elements of a ring without variables."""
+
+    ring: Ring
+    a: tuple[tuple[Poly, ...], ...]
+    b: tuple[Poly, ...]
+
+    @classmethod
+    def of(cls, tableau: ImplicitTableau) -> "Numbers":
+        count = tableau.stages
+        ring, found = embed([*tableau.weights, *(x for row in tableau.rows for x in row)], ())
+        rows = [tuple(found[count * (i + 1) : count * (i + 2)]) for i in range(count)]
+        return cls(ring, tuple(rows), tuple(found[:count]))
+
+    def condition(self, name: str, order: int, gap: Poly) -> Condition:
+        """The condition that `gap`, left side − right side, is 0."""
+        holds = self.ring.decide(gap).zero
+        residue = "0" if holds else self._decimal(gap)
+        return Condition(name, order, residue, holds)
+
+    def _decimal(self, x: Poly) -> str:
+        shown = "0"
+        for precision in _PRECISIONS:
+            ball = enclose(self.ring, x, {}, precision)
+            if ball is not None:
+                shown, _ = known_digits(*middle_and_radius(ball), _SHOWN)
+            if shown != "0":
+                break
+        return shown

@@ -1,0 +1,34 @@
+"""Gauss's collocation method of three stages, order 6; its nodes are 1/2 ∓ √15/10 and 1/2."""
+
+import sympy
+
+from verify.schemes.implicit_runge_kutta import implicit_map
+from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.scheme import Scheme
+from verify.schemes.tree_conditions import TreeConditions
+
+EXAMPLES = ("gauss6",)
+_OUTER, _INNER, _ROOT = sympy.Rational(5, 36), sympy.Rational(2, 9), sympy.sqrt(15)
+TABLEAU = ImplicitTableau.of(
+    rows=(
+        (_OUTER, _INNER - _ROOT / 15, _OUTER - _ROOT / 30),
+        (_OUTER + _ROOT / 24, _INNER, _OUTER - _ROOT / 24),
+        (_OUTER + _ROOT / 30, _INNER + _ROOT / 15, _OUTER),
+    ),
+    weights=(2 * _OUTER, 2 * _INNER, 2 * _OUTER),
+)
+
+
+def make(name: str) -> Scheme | None:
+    if name not in EXAMPLES:
+        return None
+    return Scheme(
+        name=name,
+        order=6,
+        area_preserving=True,
+        explicit=False,
+        symmetric=True,
+        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
+        build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
+        generic=TreeConditions(TABLEAU),
+    )

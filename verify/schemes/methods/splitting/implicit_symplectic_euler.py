@@ -1,0 +1,92 @@
+"""Symplectic Euler for any H: p' = p − h H_q(p', q), q' = q + h H_p(p', q).
+
+Where H_q is linear in p, as for H = T(p) + p b(q) + V(q), the first equation gives
+p' = p − h H_q(p, q)/(1 + h H_pq(q)). For H = T(p) + V(q) it is `symplectic-euler`. Elsewhere the
+equation is solved for the change of p.
+"""
+
+from fractions import Fraction
+from functools import lru_cache
+
+from verify.algebra.implicit_unknowns import define, unknowns
+from verify.algebra.power_series import Series, at_point, partials
+from verify.algebra.ring import Poly
+from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.methods.splitting.symplectic_euler import PARTS
+from verify.schemes.scheme import Scheme
+from verify.schemes.splitting import shears
+from verify.schemes.stages import Stages
+from verify.schemes.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
+
+_ONE = Fraction(1)
+_NAMES = 20
+EXAMPLES = ("implicit-symplectic-euler",)
+_EQUATIONS = StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE),))
+
+
+def make(name: str) -> Scheme | None:
+    if name not in EXAMPLES:
+        return None
+    return Scheme(
+        name=name,
+        order=1,
+        area_preserving=True,
+        explicit=False,
+        symmetric=False,
+        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.3",
+        build=implicit_euler_map,
+        generic=_EQUATIONS,
+    )
+
+
+@lru_cache(maxsize=64)
+def implicit_euler_map(hamiltonian: Hamiltonian) -> StepMap:
+    """The map: in closed form where H_q is linear in p, else by its equations."""
+    field, _ = hamiltonian.field()
+    ring = field.ring
+    if field.separable():
+        return shears(hamiltonian, EXAMPLES[0], PARTS)
+    mixed = ring.diff(field.h_q, "p")
+    if ring.decide(ring.diff(mixed, "p")).zero is not True:
+        return _by_equations(hamiltonian, field)
+    h_p, h_q, h_pq = map(ring.expression, (field.h_p, field.h_q, mixed))
+    p_next = P - H_STEP * h_q / (1 + H_STEP * h_pq)
+    q_next = Q + H_STEP * h_p.subs(P, p_next)
+    return StepMap.from_expressions(hamiltonian, p_next, q_next)
+
+
+def _by_equations(hamiltonian: Hamiltonian, field: VectorField) -> StepMap:
+    stages = Stages(field, 1, _NAMES)
+    ring, (p, q) = stages.ring, stages.start
+    h = ring.variable("h")
+    change = unknowns(ring, 1)
+    at = stages.at(stages.named((p + change[0], q)))
+
+    def there(x: Poly) -> Poly:
+        return ring.named(at(x))
+
+    h_p, h_q = there(field.h_p), there(field.h_q)
+    h_pq, h_qq = (there(field.ring.diff(field.h_q, name)) for name in ("p", "q"))
+    define(
+        ring,
+        change,
+        residuals=[change[0] + h * h_q],
+        matrix=[[1 + h * h_pq]],
+        partials={"p": lambda: [h * h_pq], "q": lambda: [h * h_qq], "h": lambda: [h_q]},
+        starts=[-h * stages.field.h_q],
+        added_to=[p],
+    )
+    step = Substep(stages.field, p - h * h_q, q + h * h_p, _EQUATIONS.conditions())
+    return StepMap(hamiltonian, (step,), lambda most: _taylor(field, most))
+
+
+def _taylor(field: VectorField, most: int) -> Expanded:
+    """p' and q' up to h^most, by iteration: each makes one power of h more right."""
+    ring = field.ring
+    own = {name: Series.of(ring, [ring.variable(name)], most) for name in ("p", "q")}
+    force, speed = partials(ring, -field.h_q), partials(ring, field.h_p)
+    still = moved = Series.of(ring, [], most)
+    for _ in range(most):
+        moved = at_point(force, moved, still).shifted(1)
+    return field, own["p"] + moved, own["q"] + at_point(speed, moved, still).shifted(1)

@@ -1,0 +1,25 @@
+"""Symplectic Euler (Eq. 24, 32): p' = p − h V'(q), q' = q + h T'(p'), for H = T(p) + V(q).
+
+Each of its two substeps is a shear, so det J ≡ 1. For an H that is not separable the scheme is
+implicit; this file holds the explicit one and says so.
+"""
+
+import sympy
+
+from verify.schemes.scheme import Scheme
+from verify.schemes.splitting import alternating, splitting
+
+EXAMPLES = ("symplectic-euler",)
+PARTS = alternating("kick", (sympy.S.One, sympy.S.One))
+
+
+def make(name: str) -> Scheme | None:
+    if name not in EXAMPLES:
+        return None
+    return splitting(
+        name,
+        PARTS,
+        order=1,
+        symmetric=False,
+        source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+    )

@@ -1,0 +1,53 @@
+"""The Lie-derivative scheme `lieη`: p' = Σ hⁿ/n! Xⁿp, q' = Σ hⁿ/n! Xⁿq, n = 0 … η (Eq. 2).
+
+How the paper's notation maps to it. Eq. 5 has L_{H_p}(y) = H_p ∂y/∂q and L_{−H_q}(y) =
+−H_q ∂y/∂p, two first-order operators whose sum is the Lie derivative X = H_p ∂_q − H_q ∂_p.
+Eq. 4 recurs by both of them, L^n = L_{H_p}(L^{n−1}) + L_{−H_q}(L^{n−1}) = X L^{n−1}; Eq. 3 starts
+it with L_{−H_q} p = −H_q = X p and L_{H_p} q = H_p = X q (where the paper writes L_{H_p}(p_k), its
+∂q/∂p must be read as ∂q/∂q). So L^n_{−H_q} = X^n p and L^n_{H_p} = X^n q, and Eq. 2 is the Taylor
+series of the flow, cut off after h^η.
+"""
+
+import re
+
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap, Substep
+
+EXAMPLES = ("lie1", "lie2", "lie3", "lie4", "lie5", "lie6")
+MAX_ETA = 100
+
+
+def make(name: str) -> Scheme | None:
+    """The scheme for a name such as `lie2`; InputError for η outside 1 … 100."""
+    eta = eta_of(name)
+    if eta is None:
+        return None
+    return Scheme(
+        name=f"lie{eta}",
+        order=eta,
+        area_preserving=False,
+        explicit=True,
+        symmetric=False,
+        source="Eq. 2–5",
+        build=lambda hamiltonian: lie_map(hamiltonian, eta),
+        generic=TaylorSeries(eta),
+    )
+
+
+def eta_of(name: str) -> int | None:
+    """The η of `lieη`; None for another name, InputError for η outside 1 … 100."""
+    match = re.fullmatch(r"lie(\d+)", name, re.ASCII)
+    if match is None:
+        return None
+    if len(match[1]) > 3 or not 1 <= int(match[1]) <= MAX_ETA:
+        raise InputError("scheme", name, f"η must be 1 … {MAX_ETA}")
+    return int(match[1])
+
+
+def lie_map(hamiltonian: Hamiltonian, eta: int) -> StepMap:
+    """The step map of lieη, exact, for any H."""
+    field, _ = hamiltonian.field()
+    return StepMap(hamiltonian, (Substep(field, *field.truncated(eta)),))

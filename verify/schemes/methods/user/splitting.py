@@ -1,0 +1,53 @@
+"""A user's own splitting, by its coefficients: `kick 1/2; drift 1; kick 1/2; order 2`.
+
+Coefficients are exact: decimals and quotients, and what they are made of by `sqrt` and powers, as
+`drift 1/(2 - 2**(1/3))`. `order` is what is claimed of it; without it that is 1.
+"""
+
+from verify.algebra.formula import parse
+from verify.errors import InputError
+from verify.schemes.scheme import Scheme
+from verify.schemes.splitting import splitting
+from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part
+
+EXAMPLES = ()  # its names are the users' own
+_MOST_PARTS = 200
+_FORM = "write it as 'kick 1/2; drift 1; kick 1/2; order 2'"
+
+
+def make(name: str) -> Scheme | None:
+    """The scheme for a text that begins with kick or drift; InputError for a bad one."""
+    words = [part.split(maxsplit=1) for part in name.split(";") if part.strip()]
+    if not words or words[0][0] not in LETTERS:
+        return None
+    if any(len(part) < 2 for part in words) or len(words) > _MOST_PARTS:
+        raise InputError("scheme", name, _FORM)
+    order = _order(name, words.pop()[1]) if words[-1][0] == "order" else 1
+    parts = tuple(_part(name, *part) for part in words)
+    return splitting(
+        "; ".join(" ".join(part.split()) for part in name.split(";") if part.strip()),
+        parts,
+        order=order,
+        symmetric=_palindrome(parts),
+        source="the user's coefficients",
+    )
+
+
+def _order(name: str, text: str) -> int:
+    if not (text.strip().isascii() and text.strip().isdigit()):
+        raise InputError("scheme", name, f"order {text.strip()}: is not a whole number")
+    order = int(text)
+    if not 1 <= order <= MOST_ORDER:
+        raise InputError("scheme", name, f"order {order}: must be 1 … {MOST_ORDER}")
+    return order
+
+
+def _part(name: str, kind: str, size: str) -> Part:
+    if kind not in LETTERS:
+        raise InputError("scheme", name, f"{kind}: unknown; {_FORM}")
+    return kind, parse(size, (), source=kind)
+
+
+def _palindrome(parts: tuple[Part, ...]) -> bool:
+    """Whether it is one as it is written; a table that is one only in value does not claim it."""
+    return parts == parts[::-1]

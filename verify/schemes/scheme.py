@@ -1,0 +1,48 @@
+"""What an integration scheme is: a name, its claims as data, and how it makes a step map."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+from verify.algebra.conditions import ByConditions
+from verify.from_type import drawn_by
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.every_hamiltonian import BySeries
+from verify.schemes.step_map import StepMap
+
+
+@drawn_by("schemes")
+@dataclass(frozen=True)
+class Scheme:
+    """A one-step scheme; tests hold its claims against proofs.
+
+    `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
+    that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
+    −h undoes that of h. `source`: where it is defined.
+    `build` raises InputError for an H that the scheme does not take. `generic`: the scheme as it is
+    for every H; None where it is known for one H at a time.
+    """
+
+    name: str
+    order: int
+    area_preserving: bool
+    explicit: bool
+    symmetric: bool
+    source: str
+    build: Callable[[Hamiltonian], StepMap]
+    generic: BySeries | ByConditions | None = None
+
+    @property
+    def needs_separable(self) -> bool:
+        """Whether it is known to be for H = T(p) + V(q) only."""
+        return bool(getattr(self.generic, "separable", False))
+
+    def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
+        return _made(self.build, hamiltonian)
+
+
+# A scene asks for the same map when it is read, when it is proved and when it is run, and what is
+# made of a map is found again by the map. Few, since a map keeps what was derived of it.
+@lru_cache(maxsize=32)
+def _made(build: Callable[[Hamiltonian], StepMap], hamiltonian: Hamiltonian) -> StepMap:
+    return build(hamiltonian)

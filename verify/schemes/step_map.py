@@ -1,0 +1,221 @@
+"""The exact one-step map (p, q, h) → (p', q'), its Jacobian J (Eq. 12) and ΔJ = det J − 1 (Eq. 14).
+
+A map is a composition of substeps, each with its own exact closed form: one for the Lie-derivative
+scheme, two shears for symplectic Euler; or one in stages (see `verify.schemes.stages`), for a Runge–Kutta
+scheme; see `verify.schemes.substep`. 1 + ΔJ of the composition is the product along it.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import sympy
+
+from verify.algebra.conditions import Condition
+from verify.algebra.formula import parse, symbol, to_text
+from verify.algebra.power_series import Series
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.schemes.composition import composed_polynomials, polynomial, written_out
+from verify.schemes.stages import chained
+from verify.schemes.substep import Substep as Substep
+from verify.schemes.substep import h_inside as h_inside
+
+Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
+P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
+# Terms of the largest composition that is written in closed form: those in its parts, its own, and
+# those of its ΔJ.
+_MOST_IN_PARTS = 150
+_MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
+_NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
+_MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
+_MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
+
+
+@dataclass(frozen=True)
+class StepMap:
+    """A one-step map of one Hamiltonian, as the composition of its substeps, first one first.
+
+    `expansion(most)` is `taylor` of a map whose substeps have stages, which it does not look into.
+    `known_order()`: up to which power of h it agrees with the exact flow and no further, where that
+    is known without the series; else None.
+    """
+
+    hamiltonian: Hamiltonian
+    substeps: tuple[Substep, ...]
+    expansion: Callable[[int], Expanded] | None = field(default=None, compare=False, repr=False)
+    known_order: Callable[[], int | None] = field(default=lambda: None, compare=False, repr=False)
+
+    @cached_property
+    def solved(self) -> bool:
+        """Whether it is given by equations, and has no closed form."""
+        return any(step.solved for step in self.substeps)
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What is known exactly of coefficients, and shows ΔJ ≡ 0 where all of it holds."""
+        return tuple(c for step in self.substeps for c in step.conditions)
+
+    @property
+    def of_parts(self) -> bool:
+        """Whether its closed form has to be composed, and may be large."""
+        return self.expansion is not None or len(self.substeps) > 1
+
+    def taylor(self, most: int) -> Expanded | None:
+        """The Taylor series of p' and q' up to h^most, and the vector field in their ring.
+
+        None where the closed form is to be looked at instead.
+        """
+        if self.expansion is not None:
+            return self.expansion(most)
+        whole = self.substeps[0].field
+        ring = whole.ring
+        if any(step.field is not whole for step in self.substeps):
+            return None
+        p, q = (Series.of(ring, [ring.variable(name)], most) for name in ("p", "q"))
+        for step in self.substeps:
+            moved = step.taylor(p, q)
+            if moved is None:
+                return None
+            p, q = moved
+        return whole, p, q
+
+    @classmethod
+    def from_expressions(
+        cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
+    ) -> "StepMap":
+        whole, (p1, q1) = hamiltonian.field(p_next, q_next)
+        return cls(hamiltonian, (Substep(whole, p1, q1),))
+
+    @classmethod
+    def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
+        """A user's own map, from formulas in p, q, h and the parameters of H.
+
+        `q_next` may also use p_next, and then stands for the composition. Raises InputError.
+        """
+        names = ("p", "q", "h", *hamiltonian.parameters)
+        if "p_next" in names:
+            raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
+        p1 = parse(p_next, names, source="p_next")
+        q1 = parse(q_next, (*names, "p_next"), source="q_next").subs(symbol("p_next"), p1)
+        return cls.from_expressions(hamiltonian, hamiltonian.put_in(p1), hamiltonian.put_in(q1))
+
+    @cached_property
+    def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
+        if self.solved:
+            raise InputError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
+        p1, q1 = P, Q
+        for step in self.substeps:
+            put = {P: p1, Q: q1}
+            p1, q1 = (step.ring.expression(x).xreplace(put) for x in (step.p_next, step.q_next))
+        return p1, q1
+
+    @property
+    def p_next(self) -> sympy.Expr:
+        return self.composed[0]
+
+    @property
+    def q_next(self) -> sympy.Expr:
+        return self.composed[1]
+
+    @cached_property
+    def closed(self) -> Substep | None:
+        """The whole map as one substep in closed form; None where a composition is too large."""
+        if self.solved:
+            return None
+        if not self.of_parts:
+            return self.substeps[0]
+        if sum(step.length for step in self.substeps) > _MOST_IN_PARTS:
+            return None
+        parts = [(step.p_next, step.q_next) for step in self.substeps]
+        whole = self.substeps[0].field
+        if polynomial(whole.ring, parts) and all(step.field is whole for step in self.substeps):
+            found = composed_polynomials(whole.ring, parts, _MOST_COMPOSED)
+        elif written_out(whole.ring, parts) > _MOST_WRITTEN:
+            return None
+        else:
+            try:
+                whole, found = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
+            except InputError:
+                return None
+        step = Substep(whole, *found) if found else None
+        return step if step and step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
+
+    @cached_property
+    def whole(self) -> Substep:
+        """The whole map as one substep: in closed form, or where that is too large in stages."""
+        if self.closed is not None:
+            return self.closed
+        if len(self.substeps) == 1:
+            return self.substeps[0]
+        first = self.substeps[0].field
+        return Substep(*chained(first, [(step.p_next, step.q_next) for step in self.substeps]))
+
+    @property
+    def flat(self) -> Substep:
+        """The whole map as one substep in closed form; InputError where that is too large."""
+        if self.closed is None:
+            shown = str(self.hamiltonian.expression)
+            large = "its closed form, all substeps composed, is too large"
+            raise InputError("map", shown, _NOT_WRITTEN if self.solved else large)
+        return self.closed
+
+    @property
+    def written(self) -> bool:
+        """Whether ΔJ has a closed form that is short enough to be written out."""
+        return self.preserves_area or self.closed is not None
+
+    @cached_property
+    def preserves_area(self) -> bool:
+        """True where every substep's ΔJ, and so the composition's, is shown to vanish."""
+        return all(step.preserves_area for step in self.substeps)
+
+    @property
+    def jacobian(self) -> sympy.Matrix:
+        """J = ∂(p', q')/∂(p, q) (Eq. 12), 2 × 2."""
+        step = self.flat
+        return sympy.Matrix(2, 2, [grouped(step.ring, entry) for entry in step.jacobian])
+
+    @cached_property
+    def delta_j(self) -> sympy.Expr:
+        """ΔJ = det J − 1 (Eq. 14) in closed form; InputError where that is too large."""
+        if self.preserves_area:
+            return sympy.S.Zero
+        step = self.flat
+        if step.degree is None:
+            return step.ring.factored(step.delta_j)
+        return _by_powers(step.ring, self._coefficients)
+
+    @cached_property
+    def _coefficients(self) -> dict[int, Poly]:
+        return {n: self.flat.coefficient(n) for n in range((self.flat.degree or 0) + 1)}
+
+    @cached_property
+    def delta_j_text(self) -> str | None:
+        """ΔJ as a formula; None where its closed form is too large."""
+        if not self.written:
+            return None
+        if not self.preserves_area and self.flat.degree is not None:
+            coefficients = self._coefficients
+            if sum(map(len, coefficients.values())) > _MOST_FACTORED:
+                return _long_text(self.flat.ring, coefficients)
+        return to_text(self.delta_j)
+
+
+def _long_text(ring: Ring, coefficients: Mapping[int, Poly]) -> str:
+    """Σ hⁿ cₙ as it stands, for coefficients that are too long to be factored."""
+    parts = (f"h**{n}*({ring.text(c)})" for n, c in sorted(coefficients.items()) if c != 0)
+    return " + ".join(parts)
+
+
+def grouped(ring: Ring, x: Poly) -> sympy.Expr:
+    """x as an expression: by powers of h, each coefficient factored, where h stands outside."""
+    if h_inside(ring, x):
+        return ring.factored(x)
+    return _by_powers(ring, ring.powers(x, "h"))
+
+
+def _by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Expr:
+    """Σ hⁿ cₙ, each coefficient factored."""
+    return sympy.Add(*(H_STEP**n * ring.factored(c) for n, c in sorted(coefficients.items())))

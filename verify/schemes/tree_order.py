@@ -1,0 +1,73 @@
+"""The order of a Runge–Kutta method for one H, without the Taylor series of its map.
+
+Up to the order that the conditions on its coefficients give, the map agrees with the exact flow for
+every H. What they differ by at the next power of h is Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t), over the trees
+of as many vertices; where ball arithmetic encloses it away from 0 at some point, that is the order
+for this H. The derivatives of H are all that is needed, at that point: no series is multiplied out,
+which for an involved H takes minutes.
+"""
+
+from itertools import islice
+from typing import Any
+
+import flint
+
+from verify.algebra.enclosure import enclose, points
+from verify.algebra.power_series import partials
+from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians.hamiltonian import VectorField
+from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.tree_conditions import MOST_ORDER, Differentials, gaps_of, symmetry
+
+_POINTS = 8
+_PRECISION = 192
+
+
+def order_of(tableau: ImplicitTableau, field: VectorField) -> int | None:
+    """The order for this H; None where no point shows what it is."""
+    for order in range(1, MOST_ORDER + 1):
+        gaps = gaps_of(tableau, order)
+        decided = [tableau.numbers.ring.decide(x).zero for x in gaps.values()]
+        if None in decided:
+            return None
+        if False in decided:
+            return order - 1 if _differ(tableau, field, order) else None
+    return None
+
+
+def _differ(tableau: ImplicitTableau, field: VectorField, order: int) -> bool:
+    """Whether map and flow differ at h^order in some point, shown by balls."""
+    ring = tableau.numbers.ring
+    names = [n for n in field.ring.variables if n != "h"]
+    with working_precision(_PRECISION):
+        shares = {
+            tree: enclose(ring, gap, {}, _PRECISION) / symmetry(tree)
+            for tree, gap in gaps_of(tableau, order).items()
+        }
+        for point in islice(points(names), _POINTS):
+            at = _AtPoint(field, point)
+            differentials = Differentials(at)
+            total = [flint.arb(0)] * 2
+            for tree, share in shares.items():
+                total = [x + share * y for x, y in zip(total, differentials.of(tree), strict=True)]
+            if at.defined and any(x.is_finite() and not x.contains(0) for x in total):
+                return True
+    return False
+
+
+class _AtPoint:
+    """The derivatives of H at a point, as balls, in the jets' place."""
+
+    def __init__(self, field: VectorField, point: dict[str, Any]) -> None:
+        self.field, self.point, self.defined = field, point, True
+        self.zero = flint.arb(0)
+        self._of_p, self._of_q = (partials(field.ring, x) for x in (field.h_p, field.h_q))
+        self._known: dict[tuple[int, int], Any] = {}
+
+    def h(self, i: int, j: int) -> Any:
+        if (i, j) not in self._known:
+            x = self._of_p(i - 1, j) if i else self._of_q(0, j - 1)
+            value = enclose(self.field.ring, x, self.point, _PRECISION)
+            self.defined = self.defined and value is not None
+            self._known[i, j] = flint.arb.nan() if value is None else value
+        return self._known[i, j]

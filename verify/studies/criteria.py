@@ -1,0 +1,121 @@
+"""The paper's four criteria for a scheme in a scene, each with its evidence.
+
+1. det J ≡ 1 ("exactly preserves the area"). 2. |ΔJ| = o(h). 3. MSE = o(h). 4. Λ = o(1), h → 0.
+
+A map that agrees with the exact flow up to h^m has det J = 1 + O(h^(m+1)), for the flow has det 1;
+so ΔJ = O(h^r) with r = m + 1 at least, and r ≥ 2 for a consistent map. On any fixed [0, T] on which
+the exact solution exists its points stay in a compact set K for small h, |ΔJ| ≤ C h^r on K, so
+MSE ≤ C² h^2r, and |Λ| ≤ exp(N C h^r) − 1 = O(h^(r−1)) with N = T/h. These are upper bounds: Λ may
+be smaller. Where consistency itself is not decided, the slope over the grid of step sizes decides
+criteria 3 and 4, from the points above the rounding plateau; where that cannot, the answer is
+UNDECIDED.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import log10
+
+from verify.arithmetic.balls import ball, precision, slope
+from verify.proof.expansion import MOST_ORDERS
+from verify.scenes.results.core import CriterionResult, ProofResult, RunResult
+from verify.verdict import Verdict
+
+NAMES = {
+    1: "det J ≡ 1",
+    2: "|ΔJ| is of higher order than h",
+    3: "the MSE is of higher order than h",
+    4: "Λ vanishes with h",
+}
+_MIN_POINTS = 4
+_MARGIN = 0.1  # a slope that passes lies clear of the one that just fails
+_NOISE = 1e-6  # of a slope fitted in floats
+_PLATEAU = Fraction(1, 100)  # a point is above it where its error bound is below 1 %
+
+
+def judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> CriterionResult:
+    """The verdict on one criterion; `runs`: the grid's runs of this scheme, if there are any."""
+    verdict, evidence = _judge(number, proof, runs)
+    return CriterionResult(number=number, scheme=proof.scheme, verdict=verdict, evidence=evidence)
+
+
+def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
+    agreement = proof.convergence_order
+    if agreement is not None and agreement < 1:
+        if proof.verdict is Verdict.REFUTED:
+            return Verdict.REFUTED, proof.reason
+        if number <= 2 or proof.area_preserving:  # det J ≡ 1 alone makes no scheme
+            return Verdict.UNDECIDED, proof.reason
+        return _measured(number, runs)
+    if proof.area_preserving:
+        return Verdict.PROVED, "ΔJ ≡ 0 is proved, so ΔJ, MSE and Λ are exactly 0"
+    if proof.order is not None:
+        at = ", ".join(f"{name} = {value}" for name, value in proof.witness.items())
+        where = f"; at {at} its coefficient is {proof.enclosure}" if at else ""
+        if number == 1:
+            return Verdict.REFUTED, f"ΔJ has order exactly h^{proof.order}{where}"
+        return _from_order(number, proof.order, f", exactly of that order{where}", runs)
+    if number == 1:
+        open_ = proof.area_preserving is None
+        return Verdict.UNDECIDED if open_ else Verdict.REFUTED, proof.reason
+    least = (MOST_ORDERS if agreement is None else agreement) + 1
+    return _from_order(number, least, ", as the map agrees with the exact flow so far", runs)
+
+
+def _from_order(number: int, r: int, how: str, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
+    """Criteria 2–4 from ΔJ = O(h^r) with r ≥ 2, which every consistent map has."""
+    if number == 2:
+        return Verdict.PROVED, f"ΔJ = O(h^{r}){how}"
+    name, order = ("mse", 2 * r) if number == 3 else ("lambda", r - 1)
+    bound = f"{'MSE' if number == 3 else 'Λ'} = O(h^{order}), an upper bound"
+    left = [run for run in runs if run.status == "left range"]
+    if left:
+        return Verdict.UNDECIDED, (
+            f"{bound} on every [0, T] on which the exact solution exists; whether it does on the "
+            f"scene's is open, as {len(left)} of {len(runs)} runs leave the range"
+        )
+    where = "on every fixed [0, T] on which the exact solution exists"
+    return Verdict.PROVED, f"{bound} {where}{_seen(name, runs)}"
+
+
+def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
+    """By the slopes: criterion 3 asks for more than 1, criterion 4 for more than 0."""
+    name, least = ("mse", 1) if number == 3 else ("lambda", 0)
+    slopes = measured_slopes(name, runs)
+    if not slopes:
+        return Verdict.UNDECIDED, (
+            f"no proof, and fewer than {_MIN_POINTS} step sizes above the rounding plateau"
+        )
+    text = f"measured slope {_range(slopes)} over the step sizes"
+    if all(s - 2 * e > least + _MARGIN for s, e in slopes):
+        return Verdict.MEASURED, text
+    if any(s + 2 * e <= least + _NOISE for s, e in slopes):
+        return Verdict.REFUTED, f"{text}, where more than {least} is asked for"
+    return Verdict.UNDECIDED, f"{text}, too close to {least} to tell"
+
+
+def _seen(name: str, runs: Sequence[RunResult]) -> str:
+    slopes = measured_slopes(name, runs)
+    return f"; measured slope {_range(slopes)} over the grid" if slopes else ""
+
+
+def _range(slopes: Sequence[tuple[float, float]]) -> str:
+    low, high = min(slopes), max(slopes)
+    if len(slopes) == 1:
+        return f"{low[0]:.2f} ± {low[1]:.2f}"
+    return f"{low[0]:.2f} … {high[0]:.2f}"
+
+
+def measured_slopes(name: str, runs: Sequence[RunResult]) -> list[tuple[float, float]]:
+    """Slope and standard error of lg |value| over lg h, for each initial value that allows it."""
+    groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    with precision():
+        for run in runs:
+            value = run.values.get(name)
+            if value is None or Fraction(value.value) == 0:
+                continue
+            size = abs(ball(value))
+            if Fraction(value.bound) <= _PLATEAU * abs(Fraction(value.value)):
+                point = log10(Fraction(run.step_size)), float(size.log() / 2.302585092994046)
+                groups.setdefault((run.q, run.p), []).append(point)
+    usable = [g for g in groups.values() if len({x for x, _ in g}) >= _MIN_POINTS]
+    return [slope(points) for points in usable]

@@ -1,0 +1,304 @@
+"""The areas that a map gives to regions inside curves, measured far more finely than they change.
+
+A curve is cut into Gauss–Legendre panels (`verify.studies.regions.panels`). Each is measured whole and in halves;
+the difference is the error of the whole, and so a bound, and by far, for that of the halves, whose
+areas count. Where shear has stretched the curve so that the difference matters, the halves are cut
+again. Rounding is measured too: the halves' points are carried once more in finer arithmetic, and
+the panels' differences count without their signs. All curves are carried together.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, Protocol
+
+import numpy as np
+
+from verify.scenes.shapes.outline import Outline
+from verify.studies.regions.panels import NODES, Rule, rule
+
+FIRST_PANELS = 8  # of an outline, at least
+MOST_NODES = 120_000
+_MOST_ROUNDS = 24
+_STUCK = 2  # a difference that halving does not make smaller by this factor is rounding's
+
+
+class NoAreaError(Exception):
+    """A curve bounds an area that is not told from 0, so that its change has no meaning."""
+
+
+class Plane(Protocol):
+    """Points in one number system, and a map of them."""
+
+    bits: int  # about so many are right after the point
+    grid: int  # 2^grid is what `whole` multiplies by
+    sampled: int  # panels that are carried in finer arithmetic
+    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+        """Sequences of x and y of an arc's points."""
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Their images."""
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Their images in finer arithmetic."""
+
+    def whole(self, x: Any) -> np.ndarray:
+        """2^grid x, rounded to whole numbers; an array of int."""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """How small the quadrature's error is to be: `change` of the change of area, or `area` of it.
+
+    The greater of the two is enough, so that a change of nothing is not followed into rounding.
+    """
+
+    change: Fraction
+    area: Fraction
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A part of an arc of an outline with its points, and the points' images."""
+
+    outline: int
+    arc: int
+    left: Fraction
+    right: Fraction
+    start: tuple[Any, Any]
+    image: tuple[Any, Any]
+    before: int  # area swept, in units of the plane's grid and of the rule
+    after: int
+
+    @property
+    def change(self) -> int:
+        return self.after - self.before
+
+    @property
+    def halves(self) -> list["_Part"]:
+        middle = (self.left + self.right) / 2
+        where = self.outline, self.arc
+        return [(*where, self.left, middle), (*where, middle, self.right)]
+
+
+_Part = tuple[int, int, Fraction, Fraction]  # outline, arc, and from where to where on it
+
+
+@dataclass(frozen=True)
+class Family:
+    """A panel in halves, with how much they differ from the whole: both areas, or the own alone."""
+
+    halves: tuple[Panel, Panel]
+    difference: int
+    unsure: int
+    stuck: bool = False
+
+    @property
+    def change(self) -> int:
+        return self.halves[0].change + self.halves[1].change
+
+    @property
+    def before(self) -> int:
+        return self.halves[0].before + self.halves[1].before
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The area inside a curve and its relative change by a map, with a bound of the change's error.
+
+    `truncated` and `rounded` are the parts of `error`: the quadrature's and the arithmetic's.
+    `panels` are the halves in their order along the curve. `exhausted`: the goals were not reached
+    with as many nodes as there may be.
+    """
+
+    area: Fraction
+    change: Fraction
+    truncated: Fraction
+    rounded: Fraction
+    panels: tuple[Panel, ...]
+    exhausted: bool
+
+    @property
+    def error(self) -> Fraction:
+        return self.truncated + self.rounded
+
+    @property
+    def nodes(self) -> int:
+        return NODES * len(self.panels)
+
+
+class Probe:
+    """Measures outlines in one plane, each to its goal."""
+
+    def __init__(self, outlines: Sequence[Outline], plane: Plane, goals: Sequence[Goal]) -> None:
+        self.outlines, self.plane, self.goals = outlines, plane, goals
+        self.rule: Rule = rule(plane.bits + 24)
+        self.unit = Fraction(1, 2 ** (2 * plane.grid + self.rule.bits))
+
+    def measure(self) -> list[Measured]:
+        """Cuts until the errors are as small as they are to be, or no cut makes them smaller.
+
+        Raises NoAreaError, and what the plane's maps raise.
+        """
+        parts: list[_Part] = []
+        for index, outline in enumerate(self.outlines):
+            count = -(-FIRST_PANELS // len(outline.arcs))
+            ends = [Fraction(k, count) for k in range(count + 1)]
+            for arc in range(len(outline.arcs)):
+                parts += [(index, arc, a, b) for a, b in pairwise(ends)]
+        families = self._families(self._panels(parts))
+        for index in range(len(self.outlines)):
+            own = self._of(families, index)
+            if sum(family.unsure for family in own) <= self._nothing(own):
+                self._must_bound(own)  # before a goal that is a part of 0 is sought for long
+        cut = self._to_cut(families)
+        for _ in range(_MOST_ROUNDS):
+            if not cut or NODES * 2 * (len(families) + len(cut)) > MOST_NODES:
+                break
+            families = self._cut(families, cut)
+            cut = self._to_cut(families)
+        rounding = self._roundings(families)
+        return [
+            self._measured(self._of(families, i), rounding[i], bool(cut))
+            for i in range(len(self.outlines))
+        ]
+
+    # -- panels -------------------------------------------------------------------------------
+
+    def _panels(self, parts: Sequence[_Part]) -> list[Panel]:
+        starts = [
+            self.plane.points(self.outlines[i], arc, [a + (b - a) * s for s in self.rule.nodes])
+            for i, arc, a, b in parts
+        ]
+        images = self._images(starts, self.plane.carried)
+        areas = self._areas(starts), self._areas(images)
+        return [
+            Panel(*part, start, image, before, after)
+            for part, start, image, before, after in zip(parts, starts, images, *areas, strict=True)
+        ]
+
+    def _images(
+        self, starts: Sequence[tuple[Any, Any]], carry: Callable[[Any, Any], tuple[Any, Any]]
+    ) -> list[tuple[Any, Any]]:
+        """All points in one call."""
+        x, y = carry(*(np.concatenate([start[i] for start in starts]) for i in (0, 1)))
+        cut = [slice(i, i + NODES) for i in range(0, len(x), NODES)]
+        return [(x[part], y[part]) for part in cut]
+
+    def _areas(self, points: Sequence[tuple[Any, Any]]) -> list[int]:
+        x, y = (
+            self.plane.whole(np.concatenate([each[i] for each in points])).reshape(-1, NODES)
+            for i in (0, 1)
+        )
+        return list(self.rule.areas(x, y))
+
+    def _families(self, panels: Sequence[Panel]) -> list[Family]:
+        halves = self._panels([half for panel in panels for half in panel.halves])
+        pairs = zip(halves[::2], halves[1::2], strict=True)
+        found = []
+        for panel, both in zip(panels, pairs, strict=True):
+            unsure = _apart("before", panel, both)
+            found.append(Family(both, unsure + _apart("after", panel, both), unsure))
+        return found
+
+    # -- where to cut -------------------------------------------------------------------------
+
+    @staticmethod
+    def _of(families: Sequence[Family], index: int) -> list[Family]:
+        return [family for family in families if family.halves[0].outline == index]
+
+    def _to_cut(self, families: Sequence[Family]) -> set[int]:
+        """The ids of families whose difference is more than their share of what is allowed."""
+        found: list[Family] = []
+        for index, goal in enumerate(self.goals):
+            own = self._of(families, index)
+            change = abs(sum(family.change for family in own))
+            allowed = max(goal.change * change, goal.area * self._size(own))
+            share = allowed / (2 * len(own))
+            found += [f for f in own if f.difference > share and not f.stuck]
+        return set(map(id, found))
+
+    @staticmethod
+    def _size(families: Sequence[Family]) -> int:
+        return abs(sum(family.before for family in families))
+
+    def _cut(self, families: Sequence[Family], cut: set[int]) -> list[Family]:
+        parents = [half for family in families if id(family) in cut for half in family.halves]
+        made = iter(self._families(parents))
+        sizes = [self._size(self._of(families, i)) for i in range(len(self.outlines))]
+        result: list[Family] = []
+        for family in families:
+            if id(family) not in cut:
+                result.append(family)
+                continue
+            two = [next(made), next(made)]
+            halved = _STUCK * sum(f.difference for f in two) <= family.difference
+            noise = sizes[family.halves[0].outline] >> (self.plane.bits // 2)
+            if not halved and family.difference < noise:
+                two = [replace(f, stuck=True) for f in two]
+            result += two
+        return result
+
+    # -- the result ---------------------------------------------------------------------------
+
+    def _measured(self, families: Sequence[Family], rounding: int, exhausted: bool) -> Measured:
+        panels = tuple(half for family in families for half in family.halves)
+        area, size = sum(panel.before for panel in panels), self._size(families)
+        self._must_bound(families)
+        return Measured(
+            area=area * self.unit,
+            change=Fraction(sum(panel.change for panel in panels), area),
+            truncated=Fraction(sum(family.difference for family in families), size),
+            rounded=Fraction(rounding + self._floor(panels), size),
+            panels=panels,
+            exhausted=exhausted,
+        )
+
+    def _nothing(self, families: Sequence[Family]) -> int:
+        """An area that is 0 beside those that the parts of the curve sweep."""
+        swept = sum(abs(panel.before) for family in families for panel in family.halves)
+        return swept >> (self.plane.bits // 2)
+
+    def _must_bound(self, families: Sequence[Family]) -> None:
+        """Raises NoAreaError for a curve that goes round nothing, as a figure of eight may: its
+        parts take each other away."""
+        if self._size(families) <= self._nothing(families):
+            name = self.outlines[families[0].halves[0].outline].name
+            raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
+
+    def _roundings(self, families: Sequence[Family]) -> list[int]:
+        """Differences of the panels' areas from those in finer arithmetic, without their signs.
+
+        Where the images' error is known, that times the length of the image.
+        """
+        own = [[h for f in self._of(families, i) for h in f.halves] for i in range(len(self.goals))]
+        if self.plane.radius is not None:
+            return [round(self.plane.radius * self._length(x) / self.unit) for x in own]
+        some = [panels[:: max(1, len(panels) // self.plane.sampled)] for panels in own]
+        flat = [panel for panels in some for panel in panels]
+        areas = iter(self._areas(self._images([p.start for p in flat], self.plane.finer)))
+        apart = [sum(abs(next(areas) - panel.after) for panel in panels) for panels in some]
+        return [
+            2 * -(-x * len(panels) // len(few))
+            for x, panels, few in zip(apart, own, some, strict=True)
+        ]
+
+    def _length(self, panels: Sequence[Panel]) -> Fraction:
+        """The sum of |dx| + |dy| along the image, by its nodes, and a quarter more."""
+        axes = [np.concatenate([self.plane.whole(p.image[i]) for p in panels]) for i in (0, 1)]
+        steps = sum(int(abs(np.diff(axis)).sum()) for axis in axes)
+        return Fraction(steps * 5 // 4, 2**self.plane.grid)
+
+    def _floor(self, panels: Sequence[Panel]) -> int:
+        """The rounding of the rule's numbers."""
+        largest = max(int(abs(self.plane.whole(x)).max()) for p in panels for x in p.image)
+        return len(panels) * NODES**2 * largest**2
+
+
+def _apart(area: str, whole: Panel, halves: tuple[Panel, Panel]) -> int:
+    """How much the area of the whole differs from that of its halves."""
+    own, first, second = (int(getattr(panel, area)) for panel in (whole, *halves))
+    return abs(own - first - second)

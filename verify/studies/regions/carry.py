@@ -1,0 +1,271 @@
+"""A shape carried by a scheme's steps or by the exact flow: its areas, the mean of Λ, distances.
+
+The relative change of the region's area is measured twice, by the area inside its image
+(`verify.studies.regions.area`) and as the mean of Λ over it (`verify.studies.regions.mean_lambda`), which by the change of
+variables are the same number. A probe whose own error is not far below the change is no result:
+float64 then gives way to more digits, and where these do not do either, the image says so.
+"""
+
+import contextlib
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from verify.arithmetic.exact import decimal, known_digits, text, upper
+from verify.arithmetic.number_system import UnsupportedError
+from verify.flows.extrapolation import NoFlowError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.many_points import LeftError
+from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage
+from verify.scenes.shapes.outline import Outline, Shape
+from verify.scenes.tasks import FlowTask
+from verify.schemes import get
+from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
+from verify.studies.regions.hausdorff import FARTHEST, hausdorff
+from verify.studies.regions.mean_lambda import Mean, RegionMean
+from verify.studies.regions.point_systems import (
+    WIDE,
+    ExactPlane,
+    FloatPlane,
+    SchemePlane,
+    WidePlane,
+    smaller_than_one,
+)
+from verify.studies.regions.polyline import DRAWN, dense, thinned
+from verify.studies.regions.polyline import text as points_text
+
+BELOW = 100  # how many times the probe's error is to be below the change of area
+_MORE_DIGITS = 33
+_FLOAT_DIGITS = 17
+_DRAWN_POINTS = 20_000  # of a curve before it is thinned
+_SHOWN = 12  # significant digits at most
+_LOST = 7  # digits
+_SAFETY = 1.01  # for what lies between the points of dense curves
+# Of the region where the map changes area, and where it does not, and of the outlines inside it.
+_PART = Fraction(1, 10**4)  # of the change
+_CHANGED = Goal(_PART, Fraction(1, 10**14))
+_UNCHANGED = Goal(change=Fraction(0), area=Fraction(1, 10**9))
+_DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
+
+
+@dataclass(frozen=True)
+class _Carried:
+    """One outline under the map, in float64: its panels' nodes before and after."""
+
+    outline: Outline
+    measured: Measured
+    before: list[tuple[np.ndarray, np.ndarray]]
+    after: list[tuple[np.ndarray, np.ndarray]]
+
+
+def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
+    """The image of the task's shape; `problem` says why where there is none."""
+    begun = time.perf_counter()
+    span = task.step_size * task.steps
+    exact = task.map == EXACT_FLOW
+    preserves = True if exact else get(task.map).step_map(hamiltonian).preserves_area
+    found: dict[str, Any] = {}
+    try:
+        with np.errstate(all="ignore"):  # what is not finite is looked for
+            carried, plane = _measured(hamiltonian, task, preserves)
+            found = _areas(carried, plane, preserves)
+            if task.mean_lambda and not preserves and not found["problem"]:
+                found |= _mean(hamiltonian, task, carried[0])
+            if task.distance:
+                with contextlib.suppress(NoFlowError):  # the area is known all the same
+                    found |= _distance(hamiltonian, span, carried)
+    except (LeftError, NoFlowError, NoAreaError) as error:
+        found = {"problem": str(error)}
+    return FlowImage(
+        map=task.map,
+        steps=task.steps,
+        time=text(span),
+        area_preserving=preserves,
+        seconds=time.perf_counter() - begun,
+        **found,
+    )
+
+
+# -- areas ----------------------------------------------------------------------------------------
+
+
+def _measured(
+    hamiltonian: Hamiltonian, task: FlowTask, preserves: bool
+) -> tuple[list[_Carried], SchemePlane | ExactPlane]:
+    """All outlines, in the arithmetic that tells the region's change from the probe's error."""
+    shape = task.shape.made()
+    smaller = smaller_than_one(shape.outlines[0])
+    if task.map == EXACT_FLOW:
+        exact = ExactPlane(hamiltonian, task.step_size * task.steps, smaller)
+        return _all(shape, exact, _UNCHANGED), exact
+    given = hamiltonian, task.map, task.step_size, task.steps
+    if task.digits <= _FLOAT_DIGITS:
+        with contextlib.suppress(NoAreaError):  # its points may all be one in float64
+            floats = FloatPlane(*given, smaller)
+            carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
+            measured = carried[0].measured
+            if preserves or _is_sharp(measured) or _is_unresolved(measured):
+                return carried, floats
+    digits = max(task.digits, _MORE_DIGITS)
+    goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
+    for name in WIDE[:-1]:
+        with contextlib.suppress(UnsupportedError, LeftError):
+            wide = WidePlane(*given, name, digits, smaller)
+            return _all(shape, wide, goal), wide
+    wide = WidePlane(*given, WIDE[-1], digits, smaller)
+    return _all(shape, wide, goal), wide
+
+
+def _unchanged(digits: int) -> Goal:
+    """As fine as the arithmetic can tell, with some digits for what shear does to rounding."""
+    return Goal(Fraction(0), Fraction(1, 10 ** (digits - _LOST)))
+
+
+def _all(shape: Shape, plane: SchemePlane | ExactPlane, goal: Goal) -> list[_Carried]:
+    goals = [goal, *[_DETAIL] * (len(shape.outlines) - 1)]
+    found = []
+    for outline, measured in zip(
+        shape.outlines, Probe(shape.outlines, plane, goals).measure(), strict=True
+    ):
+        before = [plane.floats(panel.start) for panel in measured.panels]
+        after = [plane.floats(panel.image) for panel in measured.panels]
+        found.append(_Carried(outline, measured, before, after))
+    return found
+
+
+def _is_sharp(measured: Measured) -> bool:
+    return BELOW * measured.error <= abs(measured.change)
+
+
+def _is_unresolved(measured: Measured) -> bool:
+    """Whether the curve is too long for the nodes there may be, which no digits mend."""
+    return measured.exhausted and measured.truncated > BELOW * measured.rounded
+
+
+def _areas(
+    carried: Sequence[_Carried], plane: SchemePlane | ExactPlane, preserves: bool
+) -> dict[str, Any]:
+    region = carried[0].measured
+    problem = _problem(region, preserves)
+    curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
+    change, error = _shown(region.change, region.error)
+    return {
+        "problem": problem,
+        "area_change": None if problem else change,
+        "probe_error": decimal(region.error, 2) if problem else error,
+        "arithmetic": plane.name,
+        "digits": plane.digits,
+        "method": plane.method,
+        "outlines": tuple(_outlines(carried, curves)),
+    }
+
+
+def _problem(region: Measured, preserves: bool) -> str:
+    """Why what was measured tells nothing; empty where it does."""
+    if not preserves and not _is_sharp(region):
+        return (
+            f"the probe's error {decimal(region.error, 2)} is not {BELOW} times below the change "
+            f"of area {decimal(region.change, 2)}"
+        )
+    if BELOW * region.error > max(Fraction(1), abs(region.change)):
+        return f"the image is not resolved: its area is known but for {decimal(region.error, 2)}"
+    return ""
+
+
+def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list[CarriedOutline]:
+    fine = _extent(curves) / DRAWN
+    return [_outline(each, curve, fine) for each, curve in zip(carried, curves, strict=True)]
+
+
+def _outline(carried: _Carried, curve: np.ndarray, fine: float) -> CarriedOutline:
+    measured = carried.measured
+    area = abs(measured.area)  # of a curve that runs clockwise it has a sign
+    change, error = _shown(measured.change, measured.error)
+    return CarriedOutline(
+        name=carried.outline.name,
+        area=_shown(area, area * measured.error)[0],
+        area_change=change,
+        probe_error=error,
+        nodes=measured.nodes,
+        points=points_text(thinned(curve, fine)),
+    )
+
+
+def _extent(curves: Sequence[np.ndarray]) -> float:
+    return float(np.ptp(np.concatenate(curves), axis=0).max())
+
+
+def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
+    """The value with one digit more than is known, and its error with that of the text."""
+    shown = known_digits(value, error / 10, _SHOWN)[0]
+    return shown, upper(error + abs(value - Fraction(shown)))
+
+
+# -- beside the areas -----------------------------------------------------------------------------
+
+
+def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, Any]:
+    """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
+    # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
+    x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
+    made = RegionMean(hamiltonian, task.map, task.step_size, task.steps)
+    try:
+        found: Mean = made.of(region.outline, (float(x), float(y)))
+    except LeftError:
+        return {}
+    if not (isfinite(found.value) and isfinite(found.error)):  # areas below float64's range
+        return {}
+    value, error = Fraction(found.value), Fraction(found.error)
+    agree = abs(value - region.measured.change) <= error + region.measured.error
+    shown, bound = _shown(value, error)
+    return {"mean_lambda": shown, "mean_lambda_error": bound, "agree": agree}
+
+
+def _distance(
+    hamiltonian: Hamiltonian, span: Fraction, carried: Sequence[_Carried]
+) -> dict[str, Any]:
+    """The greatest Hausdorff distance of an outline from its image by the exact flow.
+
+    Nothing where an image is too far away for it, or where too few points of the region's are known
+    to tell even its area. Raises NoFlowError.
+    """
+    region = carried[0].measured
+    if region.truncated > max(Fraction(1), abs(region.change)):
+        return {}
+    if any(np.abs(z).max() > FARTHEST for each in carried for z in each.after):
+        return {}
+    plane = ExactPlane(hamiltonian, span)
+    panels = [z for each in carried for z in each.before]
+    q, p = plane.carried(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
+    images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
+    apart = [_apart(each.after, [next(images) for _ in each.before]) for each in carried]
+    greatest, bound = _greatest(apart)
+    error = Fraction(bound) + (plane.radius or 0)
+    shown, told = _shown(Fraction(greatest), error)
+    return {"distance": shown, "distance_error": told}
+
+
+def _greatest(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """The greatest of values with errors, with its error: a smaller one may be less well known."""
+    greatest = max(value for value, _ in values)
+    most, least = (max(value + sign * error for value, error in values) for sign in (1, -1))
+    return greatest, max(most - greatest, greatest - least)
+
+
+_Nodes = Sequence[tuple[np.ndarray, np.ndarray]]
+
+
+def _apart(own: _Nodes, exact: _Nodes) -> tuple[float, float]:
+    """The Hausdorff distance of two curves with its error, from the nodes of their panels.
+
+    It is at most the greatest distance of points that come from one and the same point.
+    """
+    (one, sagitta), (other, other_sagitta) = dense(own), dense(exact)
+    found = hausdorff([one], [other], sagitta, other_sagitta)
+    most = float(np.hypot(*(one - other).T).max()) * _SAFETY
+    return min(found.value, most), min(found.bound, max(most - found.value, found.value))

@@ -1,0 +1,66 @@
+"""What was found of a scene's regions carried by maps, in the order the scene asks for them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from verify.arithmetic.exact import text
+from verify.execution.perform import Result
+from verify.scenes.region_sections import Flow
+from verify.scenes.results.regions import DrawnOutline, FlowImage, FlowResult
+from verify.scenes.scene import Scene
+from verify.scenes.tasks import key
+from verify.studies.regions.plan import flow_tasks
+
+
+def flows_of(scene: Scene, results: Mapping[str, Result]) -> tuple[FlowResult, ...]:
+    """One a section of the scene that was computed."""
+    found = (_flow(scene, flow, results) for flow in scene.flow)
+    return tuple(each for each in found if each.images)
+
+
+def _flow(scene: Scene, flow: Flow, results: Mapping[str, Result]) -> FlowResult:
+    images = (results.get(key(task)) for task in flow_tasks(scene, flow))
+    return FlowResult(
+        shape=flow.shape or ("polygon" if flow.polygon else "path"),
+        centre=(text(flow.centre.q), text(flow.centre.p)),
+        scale=text(flow.scale),
+        step_size=text(flow.step_size),
+        before=_drawn(flow),
+        images=tuple(r for r in images if isinstance(r, FlowImage)),
+        source=flow.source,
+    )
+
+
+def _drawn(flow: Flow) -> tuple[DrawnOutline, ...]:
+    from verify.studies.regions.polyline import text as points_text
+    from verify.studies.regions.polyline import traced
+
+    shape = flow.shape_given().made()
+    return tuple(
+        DrawnOutline(name=outline.name, points=points_text(points))
+        for outline, points in zip(shape.outlines, traced(shape), strict=True)
+    )
+
+
+def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
+    """The scene's first scheme after the most steps, then all images.
+
+    Those keys are null where there is no such scheme; `images` have no points.
+    """
+    images = [
+        {"scene": name, "shape": flow.shape, "step_size": flow.step_size} | _without_points(image)
+        for name, flow in found
+        for image in flow.images
+    ]
+    first = next((i for i in images if not i["area_preserving"]), images[0])
+    same = [i for i in images if i["map"] == first["map"] and i["scene"] == first["scene"]]
+    top = max(same, key=lambda image: image["steps"])
+    keys = ("map", "steps", "area_change", "probe_error", "mean_lambda")
+    return {**{name: top[name] for name in keys}, "images": images}
+
+
+def _without_points(image: FlowImage) -> dict[str, Any]:
+    data = image.model_dump(mode="json")
+    for outline in data["outlines"]:
+        del outline["points"]
+    return data

@@ -1,0 +1,199 @@
+"""The Hausdorff distance of two sets of closed curves, each given by points close together on it.
+
+It is the greatest distance of a point of either set from the other set. The maximum over the points
+of a polyline's segments is enclosed, not only that over its vertices: along a part of a segment the
+distance from one segment of the other set is convex, so that it is bounded by its values at the
+ends of the part; where that bound is too wide, the part is divided. (Branch and bound, as in
+M. Tang, M. Lee, Y. J. Kim, Interactive Hausdorff distance computation for general polygonal models,
+ACM Trans. Graph. 28 (2009).)
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import isfinite, sqrt
+from typing import TYPE_CHECKING, Any
+
+from verify.errors import InputError
+from verify.studies.regions.segment_tree import (
+    boxes,
+    make_compilable,
+    nearest,
+    new_stack,
+    segments,
+    to_segment,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Curve = np.ndarray[Any, np.dtype[np.float64]]
+
+RELATIVE = 1e-6  # how closely the polylines' distance is enclosed
+_ROUNDING = 2.0**-48  # of the greatest coordinate: ours, not that of the points
+FARTHEST, _LEAST = 1e150, 1e-150  # so that no square overflows, nor is lost where it matters
+_DEEP = 60  # divisions of one segment
+_HALVINGS = 40
+
+
+@dataclass(frozen=True)
+class Distance:
+    """|`value` − the distance| ≤ `bound`."""
+
+    value: float
+    bound: float
+
+
+def hausdorff(
+    first: "Sequence[Curve]",
+    second: "Sequence[Curve]",
+    sagitta_first: float = 0.0,
+    sagitta_second: float = 0.0,
+) -> Distance:
+    """The Hausdorff distance of the unions of two sets of closed curves.
+
+    A curve is an array of shape (n, 2), its points in their order; the last is joined to the first.
+    `sagitta_…` bounds the Hausdorff distance of each polyline from its curve, and is a part of the
+    result's bound; 0 where the polyline itself is meant. Raises InputError where a set has no
+    point, a coordinate is beyond ±1e150, or a sagitta is negative or not finite.
+    """
+    sets = [_segments("first", first), _segments("second", second)]
+    for name, sagitta in (("sagitta_first", sagitta_first), ("sagitta_second", sagitta_second)):
+        if not (isfinite(sagitta) and sagitta >= 0):
+            raise InputError(name, sagitta, "must be finite and at least 0")
+    rounding = max(_LEAST, *(_ROUNDING * float(abs(rows).max()) for rows in sets))
+    low, high = _both(sets[0], sets[1], rounding)
+    return Distance(low, high - low + sagitta_first + sagitta_second + rounding)
+
+
+def _segments(name: str, curves: "Sequence[Curve]") -> Any:
+    import numpy as np
+
+    for curve in curves:
+        if curve.ndim != 2 or curve.shape[1] != 2 or not len(curve):
+            raise InputError(name, curve.shape, "not an array of points, of shape (n, 2), n ≥ 1")
+        if not (np.abs(curve) <= FARTHEST).all():
+            raise InputError(name, "curves", f"a coordinate is not finite, or beyond ±{FARTHEST}")
+    if not curves:
+        raise InputError(name, "curves", "there is none")
+    return segments([np.asarray(curve, dtype=np.float64) for curve in curves])
+
+
+def _both(first: Any, second: Any, rounding: float) -> tuple[float, float]:
+    """The least and the greatest that the polylines' distance can be, up to `rounding`."""
+    forth = _one_way(first, second, 0.0, rounding)
+    # What is nearer than the one direction's distance does not matter for the other's.
+    back = _one_way(second, first, forth[0], rounding)
+    return back[0], max(forth[1], back[1])
+
+
+def _one_way(rows: Any, others: Any, known: float, rounding: float) -> tuple[float, float]:
+    import numpy as np
+
+    near = np.empty((len(rows), 2), dtype=np.int64)
+    divided = np.empty((_DEEP + 2, 4)), np.empty((_DEEP + 2, 3), dtype=np.int64)
+    work = (new_stack(), *divided)
+    low, high = _compiled()(rows, others, boxes(others), near, work, known, rounding)
+    return float(low), float(high)
+
+
+@cache
+def _compiled() -> Callable[..., tuple[float, float]]:
+    import numba
+    from numba.extending import register_jitable
+
+    make_compilable()
+    for function in (_distance, _upper, _along):
+        register_jitable(function)
+    compiled: Callable[..., tuple[float, float]]
+    compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(_directed)
+    return compiled
+
+
+def _distance(x: float, y: float, row: Any) -> float:
+    return sqrt(to_segment(x, y, row))
+
+
+def _upper(part: Any, start: Any, end: Any, enough: float) -> tuple[float, float]:
+    """A bound on the distance along a part of a segment, and where to divide it (0 … 1).
+
+    `part` is x₀, y₀, x₁, y₁; up to some place on it the distance from the segment `start` bounds
+    it, beyond that the one from `end`, these being the nearest to its ends. The place is looked for
+    until the bound is `enough`.
+    """
+    x, y, along_x, along_y = part[0], part[1], part[2] - part[0], part[3] - part[1]
+    low, high = 0.0, 1.0
+    ends = max(_distance(x, y, start), _distance(part[2], part[3], end))
+    bound = max(ends, min(_distance(part[2], part[3], start), _distance(x, y, end)))
+    for _ in range(_HALVINGS):  # where the two are equal, or come as close as they do
+        if bound <= enough:
+            break
+        middle = (low + high) / 2
+        at_x, at_y = x + middle * along_x, y + middle * along_y
+        before, after = _distance(at_x, at_y, start), _distance(at_x, at_y, end)
+        bound = min(bound, max(ends, before, after))
+        if before <= after:
+            low = middle
+        else:
+            high = middle
+    return bound, min(max(low, 0.05), 0.95)
+
+
+def _along(
+    row: Any, near: Any, others: Any, tree: Any, work: Any, low: float, rounding: float
+) -> tuple[float, float]:
+    """The greatest distance of a point of one segment from `others`: at least, and at most.
+
+    The first is at least `low`. `near` has the indices of the segments nearest to its ends.
+    """
+    stack, parts, nears = work
+    high, count = 0.0, 1
+    for k in range(4):  # numba takes seconds over the assignment of a whole row
+        parts[0, k] = row[k]
+    nears[0, 0], nears[0, 1], nears[0, 2] = near[0], near[1], 0
+    while count > 0:
+        count -= 1
+        x0, y0, x1, y1 = parts[count]
+        start, end, depth = nears[count]
+        enough = low * (1.0 + RELATIVE) + rounding
+        ends = _distance(x0, y0, others[start]) + _distance(x1, y1, others[end])
+        # The distance changes at most as fast as the place.
+        bound, place = (ends + sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)) / 2, 0.5
+        if bound > enough:
+            closer, place = _upper(parts[count], others[start], others[end], enough)
+            bound = min(bound, closer)
+        if bound <= enough or depth == _DEEP:
+            high = max(high, bound)
+            continue
+        x, y = x0 + place * (x1 - x0), y0 + place * (y1 - y0)
+        square, middle = nearest(x, y, others, tree, start, stack)
+        low = max(low, sqrt(square))
+        for index, a, b in ((count, start, middle), (count + 1, middle, end)):
+            nears[index, 0], nears[index, 1], nears[index, 2] = a, b, depth + 1
+        parts[count, 0], parts[count, 1], parts[count, 2], parts[count, 3] = x0, y0, x, y
+        parts[count + 1, 0], parts[count + 1, 1] = x, y
+        parts[count + 1, 2], parts[count + 1, 3] = x1, y1
+        count += 2
+    return low, high
+
+
+def _directed(
+    rows: Any, others: Any, tree: Any, near: Any, work: Any, known: float, rounding: float
+) -> tuple[float, float]:
+    """The greatest distance of a point of `rows` from `others`: at least, and at most.
+
+    Both are at least `known`. `near`, one row for each segment, and `work` are to be written on.
+    """
+    low, hint = known, 0
+    for k in range(len(rows)):
+        square, hint = nearest(rows[k, 0], rows[k, 1], others, tree, hint, work[0])
+        low, near[k, 0] = max(low, sqrt(square)), hint
+    high = low
+    for k in range(len(rows)):
+        follows = (k + 1) % len(rows)
+        near[k, 1] = near[follows, 0]
+        if rows[k, 2] != rows[follows, 0] or rows[k, 3] != rows[follows, 1]:
+            near[k, 1] = nearest(rows[k, 2], rows[k, 3], others, tree, near[k, 0], work[0])[1]
+        low, bound = _along(rows[k], near[k], others, tree, work, low, rounding)
+        high = max(high, bound, low)
+    return low, high

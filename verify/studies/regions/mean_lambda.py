@@ -1,0 +1,150 @@
+"""The mean of Λ over the region inside a closed curve, which is its relative change of area.
+
+A region is swept by rays from a centre c to its curve γ: the integral of f over it is that of
+f(c + r (γ − c)) r (γ − c) × γ' over 0 ≤ r ≤ 1 and the curve, for every closed curve, as what is
+swept twice counts with its sign; only the map must be defined along the rays. Both integrals are by
+Gauss–Legendre panels. Each cell of these is compared with its four quarters, and the differences
+count without their signs: two sums may agree by chance where neither is right. Where a difference
+matters, the quarters are quartered again.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.float_context import FLOAT
+from verify.arithmetic.systems import float64
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.many_points import PointMap
+from verify.scenes.shapes.outline import Outline
+from verify.studies.regions.panels import NODES, rule
+
+_FIRST = 8  # cells along the curve, at least
+_MOST_POINTS = 60_000
+_AGREED = 3e-3  # of the mean: an error of the cells that is good enough; the quarters' is far less
+_ROUNDING = 1e-12  # of |Λ|, in float64 and ΔJ's closed form, whose errors mostly cancel in a mean
+_Cell = tuple[int, float, float, float, float]  # an arc, from where to where on it, and on the rays
+
+
+@dataclass(frozen=True)
+class Mean:
+    """The mean of Λ with its error, by how much cells and their quarters differ altogether."""
+
+    value: float
+    error: float
+    points: int
+
+
+class RegionMean:
+    """The mean of Λ after N steps of a scheme, over the region inside an outline, in float64."""
+
+    def __init__(
+        self, hamiltonian: Hamiltonian, scheme: str, step_size: Fraction, steps: int
+    ) -> None:
+        self._map = PointMap(
+            hamiltonian,
+            scheme,
+            step_size=step_size,
+            steps=steps,
+            arithmetic=number_systems.get(float64.NAME, 17),
+            observables=frozenset({"lambda"}),
+        )
+
+    def of(self, outline: Outline, centre: tuple[float, float]) -> Mean:
+        """The mean over the region, by rays from the centre (q, p). Raises LeftError."""
+        count = -(-_FIRST // len(outline.arcs))
+        first = [
+            (arc, k / count, (k + 1) / count, 0.0, 1.0)
+            for arc in range(len(outline.arcs))
+            for k in range(count)
+        ]
+        done = _Count()
+        found = self._families(
+            first, self._sums(outline, centre, first, done), outline, centre, done
+        )
+        while True:
+            area = sum(f.quarters[0].sum() for f in found)
+            mean = sum(f.quarters[1].sum() for f in found) / area
+            noise = _ROUNDING * sum(f.quarters[2].sum() for f in found) / abs(area)
+            error = sum(f.difference(mean) for f in found) / abs(area) + noise
+            share = _AGREED * abs(mean * area) / (2 * len(found))
+            cut = [f for f in found if f.difference(mean) > share]
+            more = 16 * NODES**2 * len(cut)
+            if error <= _AGREED * abs(mean) or not cut or done.points + more > _MOST_POINTS:
+                return Mean(float(mean), float(error), done.points)
+            kept = [f for f in found if f.difference(mean) <= share]
+            cells = [cell for f in cut for cell in _quarters(f.cell)]
+            sums = np.concatenate([f.quarters for f in cut], axis=1)
+            found = kept + self._families(cells, sums, outline, centre, done)
+
+    def _families(
+        self,
+        cells: list[_Cell],
+        sums: np.ndarray,
+        outline: Outline,
+        centre: tuple[float, float],
+        done: "_Count",
+    ) -> "list[_Family]":
+        parts = [part for cell in cells for part in _quarters(cell)]
+        quarters = self._sums(outline, centre, parts, done).reshape(3, len(cells), 4)
+        apart = quarters.sum(axis=2) - sums
+        return [_Family(cell, quarters[:, k], apart[:, k]) for k, cell in enumerate(cells)]
+
+    def _sums(
+        self, outline: Outline, centre: tuple[float, float], cells: list[_Cell], done: "_Count"
+    ) -> np.ndarray:
+        """Of each cell the area and the integrals of Λ and |Λ|: (3, cells)."""
+        x, y, weights = _cone(outline, centre, cells)
+        lam = self._map(p=y, q=x)["lam"]
+        done.points += len(x)
+        parts = np.array([weights, weights * lam, np.abs(weights * lam)])
+        summed: np.ndarray = parts.reshape(3, len(cells), -1).sum(axis=2)
+        return summed
+
+
+@dataclass
+class _Count:
+    """How many points were carried."""
+
+    points: int = 0
+
+
+@dataclass(frozen=True)
+class _Family:
+    """A cell, what its quarters sum to (3, 4), and by how much that differs from the cell's."""
+
+    cell: _Cell
+    quarters: np.ndarray
+    apart: np.ndarray
+
+    def difference(self, mean: float) -> float:
+        """Of the integral of Λ − mean: where Λ is constant no area's error matters."""
+        return abs(float(self.apart[1] - mean * self.apart[0]))
+
+
+def _quarters(cell: _Cell) -> list[_Cell]:
+    arc, a, b, r, t = cell
+    s, u = (a + b) / 2, (r + t) / 2
+    return [(arc, a, s, r, u), (arc, a, s, u, t), (arc, s, b, r, u), (arc, s, b, u, t)]
+
+
+def _cone(
+    outline: Outline, centre: tuple[float, float], cells: Sequence[_Cell]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points of the region and the area that each stands for, cell by cell."""
+    made = rule(53)
+    nodes, weights = (np.array([float(v) for v in x]) for x in (made.nodes, made.weights))
+    derivative = np.array([[float(v) for v in row] for row in made.derivative])
+    xs, ys, areas = [], [], []
+    for arc, a, b, inner, outer in cells:
+        s, radius = a + (b - a) * nodes, inner + (outer - inner) * nodes
+        at = outline.arcs[arc](FLOAT, s)
+        x, y = (np.broadcast_to(v, (NODES,)) - c for v, c in zip(at, centre, strict=True))
+        swept = (x * (derivative @ y) - y * (derivative @ x)) * weights
+        xs.append(np.outer(radius, x).ravel())
+        ys.append(np.outer(radius, y).ravel())
+        areas.append(np.outer((outer - inner) * weights * radius, swept).ravel())
+    return np.concatenate(xs) + centre[0], np.concatenate(ys) + centre[1], np.concatenate(areas)

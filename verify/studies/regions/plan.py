@@ -1,0 +1,55 @@
+"""A scene's regions carried by maps → the tasks that they need."""
+
+from collections.abc import Iterator, Sequence
+
+from verify.scenes.plan import Plan
+from verify.scenes.region_sections import Flow
+from verify.scenes.results.regions import EXACT_FLOW
+from verify.scenes.scene import Scene
+from verify.scenes.tasks import FlowTask
+from verify.schemes import get
+
+
+def plan_flows(scenes: Sequence[Scene]) -> Plan:
+    """What the scenes ask for of regions carried by maps, and nothing else of them."""
+    plan = Plan()
+    for scene in scenes:
+        need_flows(plan, scene)
+    return plan
+
+
+def need_flows(plan: Plan, scene: Scene) -> None:
+    """Adds what the scene asks for of regions carried by maps."""
+    name = scene.name or scene.title or "scene"
+    for flow in scene.flow:
+        for task in flow_tasks(scene, flow):
+            what = f"{name}: {flow.source or 'flow'}, {task.map} after {task.steps} steps"
+            plan.need(task, what)
+            if flow.mean_lambda and not task.mean_lambda and task.map != EXACT_FLOW:
+                why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
+                plan.leave_out(f"{name}: mean of Λ over the region for {task.map}", why)
+
+
+def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
+    """The exact flow, where it is asked for, then the schemes."""
+    schemes = flow.schemes or scene.schemes
+    return (EXACT_FLOW, *schemes) if flow.exact else schemes
+
+
+def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
+    """One a map and number of steps, in that order."""
+    exact, given, shape = scene.exact_hamiltonian(), scene.given(), flow.shape_given()
+    for name in maps_of(scene, flow):
+        by_scheme = name != EXACT_FLOW
+        preserves = not by_scheme or get(name).step_map(exact).preserves_area
+        for steps in flow.counts:
+            yield FlowTask(
+                **given,
+                map=name,
+                shape=shape,
+                step_size=flow.step_size,
+                steps=steps,
+                digits=flow.digits,
+                mean_lambda=flow.mean_lambda and not preserves,
+                distance=by_scheme and flow.exact,
+            )

@@ -1,0 +1,178 @@
+"""Points of outlines in one number system, and the maps that carry them.
+
+A scheme's map in float64 is held against the same steps with compensated sums, in wider number
+systems against a still wider one. The exact flow comes with its own bound.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from mpmath.ctx_mp import MPContext
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.exact import of_mpf
+from verify.arithmetic.float_context import FLOAT
+from verify.arithmetic.number_system import Arithmetic, bits_for
+from verify.arithmetic.systems import float64
+from verify.flows.points import exact_points
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.many_points import PointMap
+from verify.scenes.shapes.outline import Outline
+
+_FLOAT_GRID = 80  # bits after the point that are kept of a float64
+_PRECISE = 2000  # bits with which the size of an outline is found
+_WIDER = 19  # digits that the finer arithmetic has more: one limb
+WIDE = ("fixed", "mpfr")  # the faster first; the last has every range
+_SAMPLED = 8  # panels of an outline that are carried in the finer arithmetic
+
+
+def smaller_than_one(outline: Outline) -> int:
+    """Bits by which the outline's size is below 1: so many more after the point are looked at."""
+    mp = MPContext()
+    mp.prec = _PRECISE
+    points = [arc(mp, mp.mpf(k) / 7) for arc in outline.arcs for k in range(7)]
+    size = max(abs(z[i] - points[0][i]) for z in points for i in (0, 1))
+    return max(0, -int(mp.mag(size))) if size else 0
+
+
+class _Floats:
+    """Points in float64."""
+
+    bits, grid = 53, _FLOAT_GRID
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+        at = np.array([float(x) for x in s])
+        x, y = outline.arcs[arc](FLOAT, at)
+        return np.broadcast_to(x, at.shape).copy(), np.broadcast_to(y, at.shape).copy()
+
+    def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
+        return points
+
+    def whole(self, x: np.ndarray) -> np.ndarray:
+        with np.errstate(over="ignore"):
+            scaled = np.ldexp(x, self.grid)
+        if np.isfinite(scaled).all():
+            return _objects([int(v) for v in scaled])
+        return _objects([int(Fraction(v) * (1 << self.grid)) for v in x.tolist()])
+
+
+class FloatPlane(_Floats):
+    """A scheme's steps in float64."""
+
+    sampled = 1 << 30  # all
+    radius: Fraction | None = None
+    name, digits = float64.NAME, 17
+    method = "float64; its rounding by the same steps with compensated sums"
+
+    def __init__(
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, smaller: int = 0
+    ) -> None:
+        self.grid += smaller
+        self._maps = [
+            PointMap(
+                hamiltonian, scheme, step_size=h, steps=steps,
+                arithmetic=number_systems.get(float64.NAME, 17), compensated=compensated,
+            )
+            for compensated in (False, True)
+        ]  # fmt: skip
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        return _image(self._maps[0], x, y)
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        return _image(self._maps[1], x, y)
+
+
+class ExactPlane(_Floats):
+    """The exact flow for a time, in float64; `radius` bounds the error of all points so far."""
+
+    sampled = 0
+    name, digits = float64.NAME, 17
+
+    def __init__(self, hamiltonian: Hamiltonian, time: Fraction, smaller: int = 0) -> None:
+        self.grid += smaller
+        self._hamiltonian, self._time = hamiltonian, time
+        self.radius: Fraction | None = Fraction(0)
+        self.method = ""
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        found = exact_points(self._hamiltonian, y, x, [self._time])
+        self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
+        self.method = found.method
+        return found.q[0], found.p[0]
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        raise NotImplementedError("the exact flow's error is known")
+
+
+class WidePlane:
+    """A scheme's steps in a number system of so many digits."""
+
+    sampled = _SAMPLED
+    radius: Fraction | None = None
+
+    def __init__(
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, name: str,
+        digits: int, smaller: int = 0,
+    ) -> None:  # fmt: skip
+        """`digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
+        self._given = hamiltonian, scheme, h, steps, name
+        self.name, self.digits = name, digits
+        self._places = digits + -(-smaller * 3 // 10)
+        self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
+        self.bits, self.grid = bits_for(digits), bits_for(self._places)
+        self._map, self.arithmetic = self._made(self._places)
+
+    def _made(self, digits: int) -> tuple[PointMap, Arithmetic]:
+        hamiltonian, scheme, h, steps, name = self._given
+        arithmetic = number_systems.get(name, digits)
+        made = PointMap(hamiltonian, scheme, step_size=h, steps=steps, arithmetic=arithmetic)
+        return made, arithmetic
+
+    @cached_property
+    def _wider(self) -> tuple[PointMap, Arithmetic]:
+        return self._made(self._places + _WIDER)
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+        mp = MPContext()
+        mp.prec = self.grid + 20
+        at = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
+        number = self.arithmetic.number
+        x, y = ([number(of_mpf(mp.mpf(z[i]))) for z in at] for i in (0, 1))
+        return _objects(x), _objects(y)
+
+    def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
+        x, y = (np.array([float(self.arithmetic.exact(v)) for v in z]) for z in points)
+        return x, y
+
+    def whole(self, x: Any) -> np.ndarray:
+        exact, size = self.arithmetic.exact, 1 << self.grid
+        return _objects([round(exact(v) * size) for v in x])
+
+    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+        q, p = _image(self._map, x, y)
+        return _objects(q), _objects(p)
+
+    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+        wider, arithmetic = self._wider
+        exact, own = self.arithmetic.exact, self.arithmetic.number
+        q, p = _image(wider, *([arithmetic.number(exact(v)) for v in z] for z in (x, y)))
+        q, p = (_objects([own(arithmetic.exact(v)) for v in z]) for z in (q, p))
+        return q, p
+
+
+def _image(point_map: PointMap, x: Any, y: Any) -> tuple[Any, Any]:
+    found = point_map(p=y, q=x)
+    return found["q"], found["p"]
+
+
+def _objects(values: Sequence[Any]) -> np.ndarray:
+    made = np.empty(len(values), dtype=object)
+    made[:] = values
+    return made
+
+
+SchemePlane = FloatPlane | WidePlane

@@ -1,0 +1,284 @@
+"""The whole chain Λ₀ … Λ₄ for one step size, and its parts; see `verify.studies.separation.separate`.
+
+What is known is not run. Where the proof gives ΔJ ≡ 0, Λ₀, Λ₁ and Λ₂ are exactly 0; where ΔJ does
+not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁. Where every input is a float64, Λ₁ = Λ₀;
+after one step Λ₂ = Λ₁, for the first ΔJ is taken at the initial value. Equal links are one object,
+and the part between them is exactly 0.
+"""
+
+import copy
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.exact import magnitude
+from verify.arithmetic.number_system import UnsupportedError
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.computation import step_map_of
+from verify.kernels.stepping import Job
+from verify.runs.digits_on_demand import choose, measure
+from verify.runs.estimated import working_digits
+from verify.runs.run import proved
+from verify.schemes.step_map import StepMap
+from verify.studies.separation.working import (
+    POINTS,
+    Advance,
+    Kind,
+    Link,
+    Stopped,
+    Working,
+    WorkingRun,
+    exact_link,
+    marks_of,
+    rounded_inputs,
+)
+
+AUTO = "auto"
+PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the chain's order
+_ENDS: dict[str, tuple[int | None, int]] = {  # between which links a quantity lies
+    "lambda_working": (None, 4),
+    "truncation": (None, 0),
+    "total": (0, 4),
+    **{name: (k, k + 1) for k, name in enumerate(PARTS)},
+}
+QUANTITIES = tuple(_ENDS)
+_CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
+_ATTEMPTS = 4
+_DOUBLINGS = 6
+_BESIDE_FLOAT64 = ("fixed", "mpfr", "mpmath")  # what a mixed kernel can be made in
+_INTERPRETED, _WIDEST = "mpfr", 1000
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Λ₀ … Λ₄ of one way to evaluate Λ in float64, at the numbers of steps in `marks`."""
+
+    marks: tuple[int, ...]
+    links: tuple[Link, Link, Link, Link, Link]
+
+    def trail(self, name: str) -> tuple[tuple[Fraction, ...], Fraction]:
+        """A quantity of `QUANTITIES` at every checkpoint, and a bound of its error at all of them.
+
+        truncation + input + trajectory + determinant + product = lambda_working, exactly.
+        """
+        before, after = _ENDS[name]
+        last = self.links[after]
+        if before is None:
+            return last.trail, last.bound
+        first = self.links[before]
+        if first is last:
+            return tuple(Fraction(0) for _ in self.marks), Fraction(0)
+        differences = tuple(b - a for a, b in zip(first.trail, last.trail, strict=True))
+        return differences, first.bound + last.bound
+
+    def final(self, name: str) -> tuple[Fraction, Fraction]:
+        """A quantity after the last step, and the bound of its error."""
+        trail, bound = self.trail(name)
+        return trail[-1], bound
+
+    def lacking(self, digits: int) -> list[int]:
+        """How many digits each link lacks for those wanted of the parts at its ends.
+
+        A part of 0 may stay unknown.
+        """
+        lacking = [0] * len(self.links)
+        for name, ends in _ENDS.items():
+            value, bound = self.final(name)
+            if not (value and bound):
+                continue
+            allowed = abs(value) / (4 * Fraction(10) ** digits)
+            for k in (end for end in ends if end is not None):
+                own = self.links[k].bound
+                if own > allowed:
+                    lacking[k] = max(lacking[k], magnitude(own / allowed) + 1)
+        return lacking
+
+    @property
+    def kind(self) -> Kind:
+        return "enclosed" if all(x.kind == "enclosed" for x in self.links) else "estimated"
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """How the errors of the links were bounded, Λ₄'s apart, each way once."""
+        return tuple(dict.fromkeys(link.method for link in self.links[:4]))
+
+
+@dataclass(frozen=True)
+class Chains:
+    """The chains of the plain way and of the closed form, which has none where some det J ≤ 0.
+
+    `arithmetic` stood for exact arithmetic.
+    """
+
+    plain: Chain
+    closed_form: Chain | None
+    arithmetic: str
+    seconds: float
+
+
+class Separation:
+    """What is separated: a scheme's run of `steps` steps from exact inputs."""
+
+    def __init__(
+        self,
+        hamiltonian: Hamiltonian,
+        scheme: str,
+        start: dict[str, Fraction],
+        steps: int,
+        keeper: Keeper = NOTHING,
+    ) -> None:
+        self.job = Job(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
+        self.map = step_map_of(hamiltonian, scheme)
+
+    def chains(
+        self, digits: int, arithmetic: str = AUTO, advance: Advance = lambda _: None
+    ) -> Chains:
+        """Every part to so many digits where that can be had; raises Stopped where Λ has no value.
+
+        `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is
+        called with the steps just done, of three runs of N steps.
+        """
+        begun = time.perf_counter()
+        if arithmetic == AUTO:
+            arithmetic = choose(self.job, digits + _CANCELLED)
+        links = _Links(self.job, self.map, arithmetic, digits + _CANCELLED, advance)
+        for _ in range(_ATTEMPTS):
+            plain, closed = links.chains()
+            lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
+            if not links.refine([max(each) for each in zip(*lacking, strict=True)]):
+                break
+        return Chains(plain, closed, arithmetic, time.perf_counter() - begun)
+
+
+class _Links:
+    """The links of a separation, each made when it is asked for, at its own number of digits."""
+
+    def __init__(
+        self, job: Job, step_map: StepMap, arithmetic: str, digits: int, advance: Advance
+    ) -> None:
+        self.job, self.arithmetic, self.advance = job, arithmetic, advance
+        self.marks = marks_of(job.steps)
+        self.digits = {"first": digits, "second": digits, "beside": digits}
+        self.inputs = rounded_inputs(job)
+        self.rounded = _rounded(job, self.inputs)
+        self.same = self.rounded.start == job.start and self.rounded.parameters == job.parameters
+        self.proved = _proved(step_map, job, digits)
+        self.constant = _proved(_rounded_map(step_map, self.rounded), self.rounded, digits)
+        self.made: dict[str, Link] = {}
+        self.working: Working | None = None
+
+    def chains(self) -> tuple[Chain, Chain | None]:
+        """The chain of the plain way and that of the closed form."""
+        # Before the longer runs: where float64 leaves its range there is nothing to separate.
+        working = self.working = self.working or self._beside()
+        first = self.proved or self._reference(self.job, "first")
+        second = first if self.same else self.constant or self._reference(self.rounded, "second")
+        third = working.trajectory or second
+        plain = Chain(self.marks, (first, second, third, working.determinant, working.plain))
+        fourth, fifth = working.closed_delta_j, working.closed_form
+        if fourth is None or fifth is None:
+            return plain, None
+        return plain, Chain(self.marks, (first, second, third, fourth, fifth))
+
+    def refine(self, lacking: Sequence[int]) -> bool:
+        """Asks for so many more digits of Λ₀ … Λ₄; False where no run lacks any."""
+        first, second, *beside = lacking
+        if self.same:
+            first, second = max(first, second), 0
+        wanted = {
+            "first": 0 if self.proved else first,
+            "second": 0 if self.constant else second,
+            "beside": max(beside),
+        }
+        self.advance = lambda _: None  # what was foreseen is done
+        for name, more in wanted.items():
+            if more:
+                self.digits[name] += more + 2
+                self.made.pop(name, None)
+        if wanted["beside"]:
+            self.working = None
+        return any(wanted.values())
+
+    def _beside(self) -> Working:
+        """The float64 run with exact arithmetic beside it, in mpfr where another cannot follow."""
+        run = WorkingRun(self.job, self.inputs, self.constant is None and self.job.steps > 1)
+        digits = working_digits(self.digits["beside"], self.job.steps)
+        name = self._name(digits) if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
+        try:
+            return run.go(number_systems.get(name, digits), self.advance)
+        except UnsupportedError:
+            return run.go(number_systems.get(_INTERPRETED, digits), self.advance)
+
+    def _reference(self, job: Job, name: str) -> Link:
+        if name not in self.made:
+            digits = self.digits[name]
+            self.made[name] = _reference(job, self._name(digits), digits, self.advance)
+        return self.made[name]
+
+    def _name(self, digits: int) -> str:
+        """The arithmetic for so many digits: fixed takes ever longer to compile."""
+        return _INTERPRETED if self.arithmetic == "fixed" and digits > _WIDEST else self.arithmetic
+
+
+def _proved(step_map: StepMap | None, job: Job, digits: int) -> Link | None:
+    """Λ at every checkpoint where a proof gives it, which is where ΔJ is a constant."""
+    h, marks, digits = job.start["h"], marks_of(job.steps), digits + len(str(job.steps))
+    if step_map is None or "lambda" not in proved(step_map, h, 1, digits):
+        return None
+    if step_map.preserves_area:
+        return exact_link([Fraction(0)] * len(marks), "ΔJ ≡ 0")
+    found = [proved(step_map, h, n, digits)["lambda"] for n in marks]
+    worst = max(bound for _, bound in found)
+    return Link(tuple(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
+
+
+def _rounded(job: Job, inputs: dict[str, float]) -> Job:
+    """The same job from the rounded inputs; parameters that the kernel has inside stay exact."""
+    rounded = copy.copy(job)
+    rounded.start = {n: Fraction(inputs[n]) for n in job.start}
+    parameters = {n: Fraction(inputs[n]) for n in job.generic.parameters}
+    rounded.parameters = {**job.parameters, **parameters}
+    return rounded
+
+
+def _rounded_map(exact: StepMap, rounded: Job) -> StepMap | None:
+    """The step map for the rounded parameters; None where H is not defined for them."""
+    values = {n: rounded.parameters[n] for n in rounded.generic.parameters}
+    if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
+        return exact
+    try:
+        return step_map_of(rounded.generic.with_values(values), rounded.scheme)
+    except InputError:
+        return None
+
+
+def _reference(job: Job, arithmetic: str, digits: int, advance: Advance) -> Link:
+    """Λ in exact arithmetic's stead, to so many digits; Stopped where a run cannot give it."""
+    last = 0
+
+    def progress(done: int) -> None:
+        nonlocal last
+        advance(max(done - last, 0))
+        last = max(done, last)
+
+    measured = measure(job, arithmetic, digits, progress)
+    found, run = measured.bounds, measured.outcome
+    if found.status != "finished":
+        reason = f"in exact arithmetic: {found.method}"
+        raise Stopped(found.status, found.failed_step, reason)
+    value, bound = found.values["lambda"]
+    # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may be
+    # that of a run with more digits; the checkpoints must be those of a run that agrees with it.
+    more = working_digits(digits, job.steps)
+    for _ in range(_DOUBLINGS):
+        if run.done == job.steps and abs(run.values["lambda"] - value) <= bound:
+            trail = (*(x["lambda"] for x in run.trail[:-1]), value)
+            kind: Kind = "enclosed" if found.rigorous else "estimated"
+            return Link(trail, bound, kind, found.method)
+        more *= 2
+        run = job.go(number_systems.get(_INTERPRETED, more))
+    raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

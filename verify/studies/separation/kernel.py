@@ -1,0 +1,225 @@
+"""One loop in which float64 and exact arithmetic stand side by side, step by step.
+
+The float64 lines are those of the float64 kernel that `verify run` steps with: the same `Writer`
+makes them, so that the same operations are rounded in the same order, and states, determinants and
+products agree with it bit for bit. At each float64 state z̃_k the `wide` lines, in an arithmetic of
+high precision, evaluate what the chain of `verify.studies.separation.separate` asks for:
+
+    w_trajectory   Λ ← Λ + ΔJ(z̃_k) + Λ ΔJ(z̃_k), the step map's own ΔJ, exactly, at rounded inputs
+    w_determinant  the same with d̃_k − 1, d̃_k the determinant that float64 found
+    w_closed       the same with the ΔJ that float64 found from the closed form
+    f_plain        Π d̃_k in float64
+    f_sum, f_rest  Σ log1p of float64's ΔJ, in float64, with Knuth's two-sum: the plain additions'
+                   errors are summed apart, and Λ = expm1(f_sum + f_rest)
+
+The source is in the language of `verify.arithmetic.wide.translate`: names begin with `f_` where their value is
+a float64 and with `w_` where it is wide, but for functions of wide numbers, which have their own
+name; `wide(x)` is the exact value of a float64. Python runs it with its own floats and libm, and
+LLVM compiles it for fixed-point numbers; both round as numba's float64 kernel does (tests hold all
+three against each other).
+"""
+
+import keyword
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels import newton
+from verify.kernels.computation import step_map_of
+from verify.kernels.kernel import PARTIAL, Kernel, Writer
+from verify.kernels.lowering import Lowering
+from verify.schemes.step_map import StepMap
+
+WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
+LIMITS = ("f_reach_p", "f_reach_q", "w_reach_part")  # of an arithmetic of limited range
+_NAME = re.compile(r"[A-Za-z_]\w*")
+_BARE = {*keyword.kwlist, "abs", "range"}  # where equations are solved there is a loop in the loop
+_CLOSED_SUM = (
+    "f_log = f_log1p(f_dj)",
+    "f_total = f_sum + f_log",
+    "f_part = f_total - f_sum",
+    "f_rest = f_rest + ((f_sum - (f_total - f_part)) + (f_log - f_part))",
+    "f_sum = f_total",
+)
+
+
+@dataclass(frozen=True)
+class MixedKernel:
+    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *carried)` → (steps done,
+    *carried).
+
+    `carried` names what goes from step to step, `start` has the initial values but for those that
+    are p's or q's. `wide`: the kernel of the wide numbers alone, whose `outputs["dj"]` is the ΔJ
+    that is followed; its function is none. `closed`: whether ΔJ in closed form is not constantly 0.
+    """
+
+    function: Callable[..., tuple[Any, ...]]
+    parameters: tuple[str, ...]
+    limits: tuple[str, ...]
+    carried: tuple[str, ...]
+    start: dict[str, int]
+    wide: Kernel
+    closed: bool
+    source: str
+
+
+@lru_cache(maxsize=16)
+def mixed_kernel(
+    hamiltonian: Hamiltonian, scheme: str, arithmetic: Arithmetic, follow: bool
+) -> MixedKernel:
+    """The kernel for a generic Hamiltonian; `follow`: with ΔJ exactly at the float64 states.
+
+    Raises UnsupportedError where the arithmetic lacks a function.
+    """
+    step_map = step_map_of(hamiltonian, scheme)
+    float64 = number_systems.get("float64", 17)
+    narrow = _written(step_map, float64, WORKING)
+    if arithmetic.absolute and narrow.lowering.solves(narrow.roots):
+        raise UnsupportedError(f"{arithmetic.name} follows no float64 that solves equations")
+    value = {name: f"f_v{index}" for name, index in narrow.outputs.items()}
+    closed = not narrow.lowering.program.is_constant(narrow.outputs["dj"], 0)
+    before, inside = _lines(narrow, list(value), float64, "f_")
+    inside += [f"f_det = {value['det']}", f"f_dj = {value['dj']}"]
+
+    wide = _written(step_map, arithmetic, frozenset({"lambda"}))
+    carried: dict[str, int] = {}
+    if follow:
+        _check(wide, arithmetic)
+        static, dynamic = _lines(wide, ["dj"], arithmetic, "w_")
+        before += static
+        inside += ["w_p = wide(f_p)", "w_q = wide(f_q)", *dynamic]
+        inside += _accumulate("trajectory", f"w_v{wide.outputs['dj']}", carried)
+    inside += ["w_own = wide(f_det) - w_one", *_accumulate("determinant", "w_own", carried)]
+    carried["f_plain"] = 1
+    inside.append("f_plain = f_plain * f_det")
+    if closed:
+        inside += ["w_own = wide(f_dj)", *_accumulate("closed", "w_own", carried), *_CLOSED_SUM]
+        carried |= {"f_sum": 0, "f_rest": 0}
+    sides: list[str] = []
+    if follow:  # the region visited, over which the rounding of ΔJ is bounded
+        inside += _box("f_p") + _box("f_q")
+        sides = [f"{n}_{side}" for n in ("f_p", "f_q") for side in ("low", "high")]
+    inside += [f"f_p = f_p + ({value['dp']})", f"f_q = f_q + ({value['dq']})"]
+
+    names = ("f_p", "f_q", *sides, *carried)
+    limits = LIMITS if arithmetic.absolute else ()
+    source = _assemble(len(narrow.parameters), limits, names, before, inside)
+    function = _compiled(source, arithmetic, _scope(narrow, float64, wide, arithmetic))
+    return MixedKernel(function, narrow.parameters, limits, names, carried, wide, closed, source)
+
+
+def _written(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
+    """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
+    uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
+    return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()
+
+
+def _check(wide: Kernel, arithmetic: Arithmetic) -> None:
+    """Where the range is limited, only what stays within it by the state's limits alone."""
+    lowering = wide.lowering
+    kinds = {lowering.program.ops[i].kind for i in lowering.live([wide.outputs["dj"]])}
+    if arithmetic.absolute and kinds & set(PARTIAL):
+        raise UnsupportedError(f"{', '.join(kinds & set(PARTIAL))} may leave the range of fixed")
+
+
+def _lines(
+    kernel: Kernel, outputs: Sequence[str], arithmetic: Arithmetic, prefix: str
+) -> tuple[list[str], list[str]]:
+    """The kernel's lines before the loop and in it that make these outputs, names prefixed."""
+    bare = _BARE if prefix == "f_" else _BARE | set(arithmetic.functions)
+    fresh = Lowering(
+        kernel.lowering.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
+    )
+    before, inside = fresh.lines([kernel.outputs[name] for name in outputs])
+
+    def prefixed(line: str) -> str:
+        return _NAME.sub(lambda m: m[0] if m[0] in bare else prefix + m[0], line)
+
+    return [prefixed(line) for line in before], [prefixed(line) for line in inside]
+
+
+def _scope(
+    narrow: Kernel, float64: Arithmetic, wide: Kernel, arithmetic: Arithmetic
+) -> dict[str, Any]:
+    """The constants and functions that the source names."""
+    floats = {**float64.functions, **_constants(narrow, float64)}
+    constants = _constants(wide, arithmetic)
+    return {
+        "wide": lambda x: arithmetic.number(Fraction(x)),
+        **arithmetic.functions,
+        **{f"f_{name}": x for name, x in floats.items()},
+        **{f"w_{name}": x for name, x in constants.items()},
+        "f_log1p": _log1p,
+        "w_one": arithmetic.number(Fraction(1)),
+    }
+
+
+def _constants(kernel: Kernel, arithmetic: Arithmetic) -> dict[str, Any]:
+    return {
+        **kernel.lowering.named_constants(arithmetic.number),
+        **newton.constants(arithmetic.bits, arithmetic.number),
+    }
+
+
+def _log1p(x: float) -> float:
+    """log1p; where 1 + x ≤ 0 it is not defined, and that is found afterwards."""
+    return math.log1p(x) if x > -1.0 else math.nan
+
+
+def _accumulate(name: str, own: str, carried: dict[str, int]) -> list[str]:
+    """Λ ← Λ + e + Λ e, and the greatest |Λ| on the way, which its error bound needs."""
+    lam, top = f"w_{name}", f"w_{name}_top"
+    carried |= {lam: 0, top: 0}
+    return [
+        f"{lam} = {lam} + ({own} + {lam} * {own})",
+        f"w_size = abs({lam})",
+        f"if w_size > {top}: {top} = w_size",
+    ]
+
+
+def _box(name: str) -> list[str]:
+    low, high = f"{name}_low", f"{name}_high"
+    return [f"if {low} > {name}: {low} = {name}", f"if {name} > {high}: {high} = {name}"]
+
+
+def _assemble(
+    parameters: int,
+    limits: Sequence[str],
+    carried: Sequence[str],
+    before: Sequence[str],
+    inside: Sequence[str],
+) -> str:
+    inputs = ["h", *(f"x{k}" for k in range(parameters))]
+    given = [prefix + name for prefix in ("f_", "w_") for name in inputs]
+    kinds = {"f": ": 'float'", "w": ""}
+    arguments = ["steps: 'int'", *(n + kinds[n[0]] for n in (*given, *limits, *carried))]
+    names = ", ".join(carried)
+    guard = []
+    if limits:
+        tops = [f"{name} < w_reach_part" for name in carried if name.endswith("_top")]
+        inner = [f"-f_reach_{n} < f_{n} < f_reach_{n}" for n in ("p", "q")]
+        guard = [f"if not ({' and '.join([*inner, *tops])}): return k, {names}"]
+    return "\n".join(
+        [
+            f"def kernel({', '.join(arguments)}):",
+            *(f"    {line}" for line in before),
+            "    for k in range(steps):",
+            *(f"        {line}" for line in [*inside, *guard]),
+            f"    return steps, {names}",
+            "",
+        ]
+    )
+
+
+def _compiled(source: str, arithmetic: Arithmetic, scope: dict[str, Any]) -> Callable[..., Any]:
+    try:
+        return arithmetic.compile(source, "kernel", scope)
+    except NotImplementedError as missing:
+        raise UnsupportedError(f"{arithmetic.name} has no {missing} of float64") from None

@@ -1,0 +1,242 @@
+"""Truncation separated from rounding in the area error Λ of a float64 run.
+
+A chain of five values leads from exact arithmetic to what a float64 program prints:
+
+    Λ₀  exact arithmetic at the exact inputs
+    Λ₁  exact arithmetic at the inputs (h, parameters, p₀, q₀) rounded to float64
+    Λ₂  the states z̃_k that float64 steps to from the rounded inputs, bit by bit; ΔJ at them and
+        the product exactly
+    Λ₃  the factors det J(z̃_k) as float64 computes them, bit by bit; their product exactly
+    Λ₄  the product in float64, too: Λ as a float64 program finds it, `lambda_working`
+
+The exact flow has Λ = 0, so Λ₀ is the truncation part, all that the scheme itself does wrong. What
+each later link adds is rounding of one kind, and the sum telescopes:
+
+    Λ₄ = Λ₀ + (Λ₁ − Λ₀) + (Λ₂ − Λ₁) + (Λ₃ − Λ₂) + (Λ₄ − Λ₃)
+       = truncation + input + trajectory + determinant + product
+
+That is one equation of rationals (`verify.studies.separation.chain`), and holds exactly whatever error is
+left in Λ₀ … Λ₃, which is bounded. The order of the links is a choice, as effects interact: a part
+is what its rounding adds to those before it. Constants in H's formula, such as the 0.1 of
+0.1*q**4, are no inputs; their rounding belongs to `trajectory` and `determinant`.
+
+Two ways to evaluate Λ in float64 are separated. `plain`: four entries of J, their determinant, the
+product of determinants, minus one; each step's determinant is rounded at 1, by 2⁻⁵³ or so, however
+small ΔJ is. `closed_form`: ΔJ from its own closed form, where nothing cancels, and
+Λ = expm1(Σ log1p(ΔJ_k)) with the sum's own errors added at the end. Truncation, input and
+trajectory are the same for both.
+
+How far the parts are known is told in `verify.studies.separation.working` and `verify.runs.estimated`, what is made
+of a run's checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.run import check
+from verify.scenes.results.core import (
+    CrossoverResult,
+    EvaluationResult,
+    GrowthResult,
+    Parts,
+    PartsAt,
+    SeparationGrid,
+    SeparationResult,
+    Value,
+)
+from verify.studies.separation.chain import AUTO, PARTS, QUANTITIES, Chain, Chains, Separation
+from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
+from verify.studies.separation.working import Stopped
+
+Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
+RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
+_SHOWN = 7  # digits of what a figure shows
+_CHECKPOINTS = 32
+
+
+def separate(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    *,
+    q: Exact,
+    p: Exact,
+    step_size: Exact,
+    steps: int,
+    digits: int = 17,
+    arithmetic: str = AUTO,
+    progress: Progress | None = None,
+    keeper: Keeper = NOTHING,
+) -> SeparationResult:
+    """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
+
+    `digits`: significant digits wanted of every part. `arithmetic` stands for exact arithmetic;
+    `auto` takes the fastest that can. Raises InputError for h ≤ 0, N < 1, a parameter without a
+    value, unknown names, and for float64, which is what is examined.
+    """
+    start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
+    check(hamiltonian, steps, digits, ())
+    _check_reference(arithmetic)
+    work = Separation(hamiltonian, scheme, start, steps, keeper)
+    chains: Chains | None = None
+    stopped = None
+    try:
+        chains = work.chains(digits, arithmetic, progress or (lambda _: None))
+    except Stopped as answer:
+        stopped = answer
+    return SeparationResult(
+        **hamiltonian.written,
+        scheme=scheme,
+        arithmetic=chains.arithmetic if chains else arithmetic,
+        digits=digits,
+        step_size=text(start["h"]),
+        steps=steps,
+        q=text(start["q"]),
+        p=text(start["p"]),
+        status=stopped.status if stopped else "finished",
+        failed_step=stopped.step if stopped else None,
+        reason=stopped.reason if stopped else "",
+        plain=_evaluation(chains.plain, digits) if chains else None,
+        closed_form=(
+            _evaluation(chains.closed_form, digits) if chains and chains.closed_form else None
+        ),
+        error_method="; ".join(chains.plain.methods) if chains else "none",
+        seconds=chains.seconds if chains else 0.0,
+    )
+
+
+def separate_grid(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    *,
+    q: Exact,
+    p: Exact,
+    step_sizes: Sequence[Exact],
+    steps: int | None = None,
+    time: Exact | None = None,
+    digits: int = 17,
+    arithmetic: str = AUTO,
+    progress: Progress | None = None,
+) -> SeparationGrid:
+    """`separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
+
+    Raises InputError as `separate` does, and where a step size is given twice, or not exactly one
+    of `steps` and `time` is given.
+    """
+    counts = grid(step_sizes, steps, time)
+    for _, count in counts:
+        check(hamiltonian, count, digits, ())  # before the first of them is run
+    points = [
+        separate(
+            hamiltonian,
+            scheme,
+            q=q,
+            p=p,
+            step_size=h,
+            steps=count,
+            digits=digits,
+            arithmetic=arithmetic,
+            progress=progress,
+        )
+        for h, count in counts
+    ]
+    return as_grid(points)
+
+
+def as_grid(points: Sequence[SeparationResult]) -> SeparationGrid:
+    """Separations for several step sizes, with the crossover of each way to evaluate Λ."""
+
+    def of(name: str) -> CrossoverResult:
+        found = []
+        for point in points:
+            evaluation: EvaluationResult | None = getattr(point, name)
+            if evaluation:
+                size = (Fraction(evaluation.largest[n]) for n in ("truncation", "total"))
+                found.append((Fraction(point.step_size), *size))
+        at = crossover(found)  # type: ignore[arg-type]
+        return CrossoverResult(
+            step_size=None if at.step_size is None else f"{at.step_size:.3e}",
+            bracket=at.bracket and (text(at.bracket[0]), text(at.bracket[1])),
+            reason=at.reason,
+        )
+
+    return SeparationGrid(points=tuple(points), plain=of("plain"), closed_form=of("closed_form"))
+
+
+def grid(
+    step_sizes: Sequence[Exact], steps: int | None, time: Exact | None
+) -> list[tuple[Fraction, int]]:
+    """Each step size with its number of steps; see `separate_grid`."""
+    if (steps is None) == (time is None):
+        raise InputError("steps, time", "", "give one of the two")
+    if not step_sizes:
+        raise InputError("step_sizes", step_sizes, "give one at least")
+    found: dict[Fraction, int] = {}
+    for given in step_sizes:
+        h = positive(given, "step_size")
+        if h in found:
+            raise InputError("step_size", given, "is given twice")
+        if steps is None:
+            count = int(positive(time if time is not None else 0, "time") / h)
+            if count < 1:
+                raise InputError("time", time, f"is shorter than the step size {text(h)}")
+            found[h] = count
+        else:
+            found[h] = steps
+    return list(found.items())
+
+
+def _check_reference(arithmetic: str) -> None:
+    known = [AUTO, *(name for name in number_systems.names() if name != "float64")]
+    if arithmetic not in known:
+        wrong = "is what is examined" if arithmetic == "float64" else "unknown"
+        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(known)}")
+
+
+# -- from a chain to a result ---------------------------------------------------------------------
+
+
+def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
+    trails = {name: chain.trail(name) for name in QUANTITIES}
+    tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
+    return EvaluationResult(
+        parts=Parts(**{name: _printed(*chain.final(name), digits) for name in QUANTITIES}),
+        largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
+        growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *PARTS)},
+        series=tuple(_at(chain, trails, k) for k in _shown(chain.marks)),
+        error_kind=chain.kind,
+    )
+
+
+def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:
+    shown, within = known_digits(value, bound, digits)
+    return Value(value=shown, bound=within)
+
+
+def _shown(marks: Sequence[int]) -> list[int]:
+    return log_spaced(range(len(marks)), marks, _CHECKPOINTS)
+
+
+def _at(chain: Chain, trails: dict[str, tuple[tuple[Fraction, ...], Fraction]], k: int) -> PartsAt:
+    names = (n for n in QUANTITIES if n != "lambda_working")
+    shown = {n: known_digits(trails[n][0][k], trails[n][1], _SHOWN)[0] for n in names}
+    return PartsAt(steps=chain.marks[k], **shown)
+
+
+def _growth(found: Growth) -> GrowthResult:
+    def shown(x: float | None) -> str | None:
+        return None if x is None else f"{x:.3f}"
+
+    return GrowthResult(
+        exponent=shown(found.exponent),
+        standard_error=shown(found.standard_error),
+        name=found.name,
+        reason=found.reason,
+        first=found.first,
+        last=found.last,
+        points=found.points,
+    )

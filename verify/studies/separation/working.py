@@ -1,0 +1,316 @@
+"""Λ₂, Λ₃ and Λ₄ of the chain that splits rounding off truncation; see `verify.studies.separation.separate`.
+
+How far they are known. Λ₄ is a float64, and so exact. Λ₂ and Λ₃ are products along given float64
+states, so that nothing is magnified, and their rounding is counted:
+
+Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2 be
+the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each within
+u = 2^(1 − bits) of its exact result, are e, t = Λ̂ e, s = e + t and Λ̂ + s. From |Λ̂ + s| ≤ (1 + u) M
+it follows that |s| ≤ 2.01 M, |e| ≤ 4.02 M, |t| ≤ 2.02 M, so |ρ| ≤ 12 u M; in fixed point additions
+are exact, e and t are within a unit 2^−bits each, and |ρ| ≤ 3 units. If e itself is within B of
+its exact value (see `verify.kernels.rounding`), |ρ| grows by 2 B. As P̂' ≥ 1/2, every step multiplies by
+1 + θ at most beside the exact factor, |θ| ≤ 2.01 |ρ|; after N steps the product is within
+1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this is below 1/100.
+Where M > 1/2, or B is not known, a rerun with more digits estimates the error instead.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal
+
+import flint
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.balls import bounds as ends
+from verify.arithmetic.balls import in_reach, rational_ball
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.execution.keeping import fraction_of, fraction_text
+from verify.kernels.reach import limits
+from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
+from verify.kernels.stepping import Job
+from verify.studies.separation.kernel import MixedKernel, mixed_kernel
+
+Kind = Literal["enclosed", "estimated"]
+Advance = Callable[[int], None]  # called with the number of steps just done
+State = dict[str, Any]
+POINTS = 2048  # checkpoints of a run
+_MORE_DIGITS = 15
+_WIDE = ("trajectory", "determinant", "closed")
+
+
+class Stopped(Exception):  # noqa: N818 - no error, an answer
+    """A run of the chain that has no last value."""
+
+    def __init__(
+        self, status: Literal["left range", "unresolved"], step: int | None, reason: str
+    ) -> None:
+        super().__init__(reason)
+        self.status, self.step, self.reason = status, step, reason
+
+
+@dataclass(frozen=True)
+class Link:
+    """Λ at every checkpoint, as exact rationals, each within `bound` of what it stands for.
+
+    Two links that a proof shows to be equal are the same object.
+    """
+
+    trail: tuple[Fraction, ...]
+    bound: Fraction
+    kind: Kind
+    method: str
+
+
+@dataclass(frozen=True)
+class Working:
+    """What one run of the mixed kernel found; a link is None where it was not followed."""
+
+    trajectory: Link | None
+    determinant: Link
+    plain: Link
+    closed_delta_j: Link | None  # None: some 1 + ΔJ ≤ 0, which has no logarithm
+    closed_form: Link | None
+
+
+def exact_link(trail: Sequence[Fraction], method: str) -> Link:
+    return Link(tuple(trail), Fraction(0), "enclosed", method)
+
+
+def marks_of(steps: int) -> tuple[int, ...]:
+    """The numbers of steps at the checkpoints, as `Job.go` makes them for `POINTS`."""
+    section = -(-steps // POINTS)
+    return tuple(min(k, steps) for k in range(section, steps + section, section))
+
+
+class WorkingRun:
+    """The float64 run of a job, with exact arithmetic beside it.
+
+    `inputs`: h, p, q and the kernel's parameters, as the float64 numbers that they are rounded to.
+    """
+
+    def __init__(self, job: Job, inputs: dict[str, float], follow: bool) -> None:
+        self.job, self.inputs, self.follow = job, inputs, follow
+        self.marks = marks_of(job.steps)
+
+    def go(self, arithmetic: Arithmetic, advance: Advance) -> Working:
+        """All steps; raises Stopped where float64 leaves its range."""
+        kernel = mixed_kernel(self.job.generic, self.job.scheme, arithmetic, self.follow)
+        states = self._states(kernel, arithmetic, advance)
+        bounds = self._bounds(kernel, arithmetic, states[-1])
+        kind: Kind = "enclosed"
+        method = "rounding counted"
+        if None in bounds.values():
+            finer = number_systems.get(arithmetic.name, _digits(arithmetic) + _MORE_DIGITS)
+            again = self._states(self._kernel(finer), finer, lambda _: None)
+            bounds = {n: _apart(n, states, again, arithmetic, finer) for n in bounds}
+            kind, method = "estimated", f"rerun with {_MORE_DIGITS} more digits"
+
+        def link(name: str) -> Link | None:
+            bound = bounds.get(name)
+            if bound is None:
+                return None
+            trail = tuple(arithmetic.exact(state[f"w_{name}"]) for state in states)
+            return Link(trail, bound, kind, method)
+
+        determinant = link("determinant")
+        assert determinant is not None  # noqa: S101 - every kernel has it
+        plain = exact_link([Fraction(s["f_plain"] - 1.0) for s in states], "a float64")
+        if not kernel.closed:
+            zero = exact_link([Fraction(0)] * len(states), "ΔJ ≡ 0")
+            return Working(link("trajectory"), determinant, plain, zero, zero)
+        sums = [_expm1(s["f_sum"] + s["f_rest"]) for s in states]
+        if not all(map(math.isfinite, sums)):
+            return Working(link("trajectory"), determinant, plain, None, None)
+        closed = exact_link([Fraction(x) for x in sums], "a float64")
+        return Working(link("trajectory"), determinant, plain, link("closed"), closed)
+
+    def _kernel(self, arithmetic: Arithmetic) -> MixedKernel:
+        return mixed_kernel(self.job.generic, self.job.scheme, arithmetic, self.follow)
+
+    # -- stepping -----------------------------------------------------------------------------
+
+    def _states(self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance) -> list[State]:
+        """What the kernel carries, at every checkpoint."""
+        given = [self.inputs[n] for n in ("h", *kernel.parameters)]
+        wide = [arithmetic.number(Fraction(x)) for x in given]
+        fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
+        label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
+        found = self._kept(label, arithmetic)
+        state = found[-1] if found else self._first_state(kernel, arithmetic)
+        done = self.marks[len(found) - 1] if found else 0
+        for mark in self.marks[len(found) :]:
+            while done < mark:
+                count = min(arithmetic.chunk, mark - done)
+                after = _after(kernel, arithmetic, fixed, state, count)
+                if after is None and arithmetic.absolute:
+                    raise UnsupportedError("the orbit leaves the range of fixed")
+                if after is None:
+                    done += _last_good(kernel, arithmetic, fixed, state, count)
+                    raise Stopped("left range", done + 1, "float64 leaves its range")
+                state = after
+                done += count
+                advance(count)
+            found.append(state)
+            if self.job.keeper.due(label):
+                texts = [
+                    {n: fraction_text(_exact(arithmetic, x)) for n, x in s.items()} for s in found
+                ]
+                self.job.keeper.save(label, {"found": texts})
+        return found
+
+    def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
+        state: State = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
+        for name in kernel.carried:
+            if name not in kernel.start:  # p, q and the region that they visit
+                state[name] = state[name[:3]]
+            else:
+                state[name] = _number(arithmetic, name, Fraction(kernel.start[name]))
+        return state
+
+    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
+        """The checkpoints that an interrupted run has left."""
+        kept = self.job.keeper.load(label) or {"found": []}
+        return [
+            {n: _number(arithmetic, n, fraction_of(x)) for n, x in state.items()}
+            for state in kept["found"]
+        ]
+
+    def _limits(self, kernel: MixedKernel, arithmetic: Arithmetic) -> list[Any]:
+        """What the kernel compares p, q and Λ with; UnsupportedError where they start beyond it."""
+        if not kernel.limits:
+            return []
+        inputs = {n: Fraction(x) for n, x in self._named(kernel).items()}
+        found = limits(kernel.wide, inputs, {n: Fraction(self.inputs[n]) for n in ("p", "q")})
+        if found is None:
+            raise UnsupportedError("a step from the start may leave the range of fixed")
+        return [float(found.p), float(found.q), arithmetic.number(found.part)]
+
+    def _named(self, kernel: MixedKernel) -> dict[str, float]:
+        """h and the parameters by the names that the source has for them."""
+        named = {f"x{k}": self.inputs[n] for k, n in enumerate(kernel.parameters)}
+        return {"h": self.inputs["h"], **named}
+
+    # -- bounds -------------------------------------------------------------------------------
+
+    def _bounds(
+        self, kernel: MixedKernel, arithmetic: Arithmetic, last: State
+    ) -> dict[str, Fraction | None]:
+        """A rigorous bound of every wide Λ, or None where there is none."""
+        found: dict[str, Fraction | None] = {}
+        for name in _WIDE:
+            if f"w_{name}" in last:
+                own: Fraction | None = Fraction(0)
+                if name == "trajectory":
+                    own = self._of_delta_j(kernel, arithmetic, last)
+                top = arithmetic.exact(last[f"w_{name}_top"])
+                found[name] = _accumulated(self.job.steps, top, own, arithmetic)
+        return found
+
+    def _of_delta_j(
+        self, kernel: MixedKernel, arithmetic: Arithmetic, last: State
+    ) -> Fraction | None:
+        """B: the error of one wide ΔJ, all over the region that the float64 states have visited."""
+        lowering, root = kernel.wide.lowering, kernel.wide.outputs["dj"]
+        with flint.ctx.workprec(PRECISION):
+            # A float64 goes to a fixed-point number but for what is below its last place.
+            cut = flint.arb(2) ** -arithmetic.bits if arithmetic.absolute else flint.arb(0)
+            inputs = {
+                n: Rounded(rational_ball(Fraction(x)), cut) for n, x in self._named(kernel).items()
+            }
+            for n in ("p", "q"):
+                low, high = (rational_ball(Fraction(last[f"f_{n}_{x}"])) for x in ("low", "high"))
+                inputs[n] = Rounded(low.union(high), cut)
+            live, rounding = lowering.live([root]), rounding_of(arithmetic)
+            found = analyse(lowering.program, live, inputs, rounding)
+            error = None if found is None else found[root].error
+            return None if error is None or not in_reach(error) else ends(error)[1]
+
+
+def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Any:
+    """What a name that begins with f or with w holds: a float64 or a wide number."""
+    return float(value) if name[0] == "f" else arithmetic.number(value)
+
+
+def _exact(arithmetic: Arithmetic, x: Any) -> Fraction:
+    return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
+
+
+def rounded_inputs(job: Job) -> dict[str, float]:
+    """h, p, q and the parameters that the kernel takes, as float64; Stopped where one is not."""
+    exact = {**job.start, **{n: job.parameters[n] for n in job.generic.parameters}}
+    number = number_systems.get("float64", 17).number
+    found: dict[str, float] = {name: number(value) for name, value in exact.items()}
+    for name, value in found.items():
+        if not math.isfinite(value):
+            raise Stopped("left range", 1, f"{name} is beyond the range of float64")
+    return found
+
+
+def _after(
+    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
+) -> State | None:
+    """The state after `count` steps, or None where float64 leaves its range on the way."""
+    try:
+        with arithmetic.context():
+            carried = (state[n] for n in kernel.carried)
+            done, *after = kernel.function(count, *fixed, *carried)
+    except (ArithmeticError, ValueError):
+        return None
+    found = dict(zip(kernel.carried, after, strict=True))
+    # The sums of logarithms may be undefined while the orbit and the plain way go on.
+    vital = (x for n, x in found.items() if n not in ("f_sum", "f_rest"))
+    finite = all(math.isfinite(x) if isinstance(x, float) else arithmetic.finite(x) for x in vital)
+    return found if finite and done == count else None
+
+
+def _last_good(
+    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
+) -> int:
+    """The greatest number of steps below `count` that stays in range, by bisection."""
+    good, bad = 0, count
+    while bad - good > 1:
+        middle = (good + bad) // 2
+        if _after(kernel, arithmetic, fixed, state, middle) is None:
+            bad = middle
+        else:
+            good = middle
+    return good
+
+
+def _accumulated(
+    steps: int, top: Fraction, own: Fraction | None, arithmetic: Arithmetic
+) -> Fraction | None:
+    """The bound of the module's docstring; M = `top`, B = `own`."""
+    if own is None or top > Fraction(1, 2):
+        return None
+    rounded = 3 * _unit(arithmetic) if arithmetic.absolute else 12 * _unit(arithmetic) * top
+    bound = 4 * steps * (rounded + 2 * own)
+    return bound if bound <= Fraction(1, 100) else None
+
+
+def _apart(
+    name: str, first: Sequence[State], second: Sequence[State], coarse: Arithmetic, fine: Arithmetic
+) -> Fraction:
+    """Twice the greatest difference of two runs, and the last bits that it may hide."""
+    x = [coarse.exact(state[f"w_{name}"]) for state in first]
+    y = [fine.exact(state[f"w_{name}"]) for state in second]
+    apart = max(abs(a - b) for a, b in zip(x, y, strict=True))
+    return 2 * apart + _unit(coarse) * (1 if coarse.absolute else max(map(abs, x)))
+
+
+def _unit(arithmetic: Arithmetic) -> Fraction:
+    """One operation's error at most: relative, and twice that of rounding to nearest; or a unit."""
+    return Fraction(1 if arithmetic.absolute else 2, 2**arithmetic.bits)
+
+
+def _digits(arithmetic: Arithmetic) -> int:
+    return arithmetic.bits * 30103 // 100000
+
+
+def _expm1(x: float) -> float:
+    try:
+        return math.expm1(x)
+    except OverflowError:
+        return math.inf

@@ -1,0 +1,103 @@
+"""Whether a bounded run drifts: its energy moves on in one direction, however much it swings.
+
+The run is cut into eight stretches of equal length. A drift is a mean energy that moves in one
+direction from each to the next, by more in all than the means are uncertain; and that still does so
+in a run four times as long, so that no slow beat is taken for one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, sqrt
+from statistics import fmean, pstdev
+
+from verify.studies.stability.case_motion import CaseMotion
+from verify.studies.stability.trail import MOST_INTERPRETED, Case, Trail, follow, follow_precisely
+
+_STRETCHES = 8
+_LONGER = 4
+_PERIODS = 8  # of the exact orbit, that the longer run lasts at least
+_SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
+_MOST_LOOKED_AT = 20_000  # steps of a last period
+_SURE = 4.0  # standard errors of a mean
+_SLOWER = 16.0  # times less, at most, in the longer run
+
+
+def drift_of(motion: CaseMotion) -> Fraction | None:
+    """The energy's change in a unit of time, in parts of its scale; None where none is seen.
+
+    Of a motion that has died away within the time, over all of it.
+    """
+    case, (trail, _), period = motion.case, motion.precise, motion.orbit.period
+    if period is None or too_short(motion):
+        return None
+    errors = _errors(motion, trail)
+    if errors and errors[-1] and _died(motion, trail, period):
+        return Fraction(errors[-1] / float(case.time))
+    first = _rate(motion, case, trail)
+    if first is None:
+        return None
+    longer = replace(case, steps=_LONGER * trail.asked)
+    if longer.steps <= MOST_INTERPRETED:
+        again, _ = follow_precisely(longer, motion.digits)
+        if motion.stays(again):  # else it has drifted away
+            second = _rate(motion, longer, again)
+            if second is None or second / first < 1 / _SLOWER:
+                return None
+    return Fraction(first)
+
+
+def too_short(motion: CaseMotion) -> bool:
+    """Whether the energy has not swung often enough to be told from a drift.
+
+    Of an orbit that does not come back within the time there is only that one way.
+    """
+    orbit, (trail, _) = motion.orbit, motion.precise
+    if orbit.period is None:
+        return orbit.kind == "open"
+    return _LONGER * trail.asked * motion.case.step_size < _PERIODS * orbit.period
+
+
+def _died(motion: CaseMotion, trail: Trail, period: Fraction) -> bool:
+    """Whether at its end the run moves by a hundredth of the exact orbit's reach at most.
+
+    Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
+    """
+    last = trail.points[-1]
+    steps = min(_MOST_LOOKED_AT, ceil(period / motion.case.step_size))
+    onwards = replace(motion.case, p=last.p, q=last.q, steps=max(2, steps))
+    seen = follow(onwards, motion.precise[1]).points
+    ends = [[getattr(point, name) for point in seen] for name in ("p", "q")]
+    swings = zip(ends, motion.orbit.reach, motion.orbit.turns, strict=True)
+    return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
+
+
+def _errors(motion: CaseMotion, trail: Trail) -> list[float]:
+    """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
+    found = motion.energy_errors(trail)
+    known = [float(x) for x in found if x is not None]
+    return known if motion.orbit.scale and len(known) == len(found) else []
+
+
+def _rate(motion: CaseMotion, case: Case, trail: Trail) -> float | None:
+    errors = _errors(motion, trail)
+    if len(errors) < 4 * _STRETCHES:
+        return None
+    length = len(errors) // _STRETCHES
+    parts: list[list[float]] = [errors[k * length : (k + 1) * length] for k in range(_STRETCHES)]
+    means = [fmean(part) for part in parts]
+    steps = [b - a for a, b in pairwise(means)]
+    moved = means[-1] - means[0]
+    if not (all(s > 0 for s in steps) or all(s < 0 for s in steps)) or abs(moved) < _SEEN:
+        return None
+    if abs(moved) < _SURE * _uncertain(errors, length):
+        return None
+    stretch = trail.points[length].step * float(case.step_size)
+    return float(moved / (stretch * (_STRETCHES - 1)))
+
+
+def _uncertain(errors: Sequence[float], count: int) -> float:
+    """The standard error of a mean of so many; second differences show the noise and no trend."""
+    bends = [a - 2 * b + c for a, b, c in zip(errors, errors[1:], errors[2:], strict=False)]
+    return pstdev(bends) / sqrt(6 * count)

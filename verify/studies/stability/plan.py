@@ -1,0 +1,69 @@
+"""A scene's sections on stability → the tasks that they need."""
+
+from collections.abc import Iterator
+
+from verify.arithmetic.exact import short
+from verify.scenes.plan import Plan
+from verify.scenes.scene import Scene
+from verify.scenes.tasks import LargestStepTask, StabilityMapTask, StabilityTask
+
+
+def plan_stability(scenes: list[Scene]) -> Plan:
+    """What the scenes ask for of stability, and nothing else of them."""
+    plan = Plan()
+    for scene in scenes:
+        need_stability(plan, scene)
+    return plan
+
+
+def need_stability(plan: Plan, scene: Scene) -> None:
+    """Adds what the scene asks for of stability."""
+    name = scene.name or scene.title or "scene"
+    for case, judged in stability_tasks(scene):
+        plan.need(judged, f"{case}: is it stable, and whose fault is it if not")
+    for largest in largest_step_tasks(scene):
+        plan.need(largest, f"{name}: the largest step with bounded motion")
+    for over in stability_map_tasks(scene):
+        plan.need(over, f"{name}: stability over step size and {over.parameter}")
+
+
+def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
+    """Each case with its name: scene, section, scheme, step size and which initial value."""
+    given = scene.given() if scene.stability else {}
+    for section in scene.stability:
+        for scheme in section.schemes or scene.schemes:
+            for k, at in enumerate(section.initial_values, start=1):
+                for h in section.step_sizes:
+                    parts = [scene.name or "scene", section.name, scheme, f"h={short(h)}"]
+                    if len(section.initial_values) > 1:
+                        parts.append(f"z0 no. {k}")
+                    steps = section.steps_for(h)
+                    task = StabilityTask(
+                        **given, scheme=scheme, step_size=h, steps=steps, q=at.q, p=at.p
+                    )
+                    yield "/".join(filter(None, parts)), task
+
+
+def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
+    given = scene.given() if scene.largest_step else {}
+    for section in scene.largest_step:
+        at = section.initial_value
+        for scheme in section.schemes or scene.schemes:
+            yield LargestStepTask(**given, scheme=scheme, time=section.time, q=at.q, p=at.p)
+
+
+def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
+    given = scene.given() if scene.stability_map else {}
+    for section in scene.stability_map:
+        at = section.initial_value
+        for scheme in section.schemes or scene.schemes:
+            yield StabilityMapTask(
+                **given,
+                scheme=scheme,
+                parameter=section.parameter,
+                values=section.values,
+                step_sizes=section.step_sizes,
+                steps=section.steps,
+                q=at.q,
+                p=at.p,
+            )

@@ -1,0 +1,159 @@
+"""A run followed by its states on the way, so that the step at which something happens is found.
+
+A trail has the state after every n-th step, n = 1 in short runs and a prime number in long ones, so
+that a scheme that comes back after a few steps is not seen at one and the same place only. Where
+something happens between two of them, that stretch is run again from the first with shorter ones,
+until it is one step.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from sympy import isprime
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.stepping import Job
+from verify.runs.digits_on_demand import WORTH_COMPILING
+
+_SECTIONS = 128, 512  # of a trail, at least and at most
+_BETWEEN = 64  # steps between two of them, where that makes so many
+_FEWEST = 5  # steps between two of them, where not every step is looked at
+MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
+
+
+@dataclass(frozen=True)
+class Case:
+    """One run: N steps of one scheme from (p, q)."""
+
+    hamiltonian: Hamiltonian
+    scheme: str
+    step_size: Fraction
+    steps: int
+    p: Fraction
+    q: Fraction
+
+    @property
+    def time(self) -> Fraction:
+        return self.steps * self.step_size
+
+
+@dataclass(frozen=True)
+class Point:
+    """The state after so many steps, as the exact numbers that it has."""
+
+    step: int
+    p: Fraction
+    q: Fraction
+
+
+@dataclass(frozen=True)
+class Trail:
+    """States of a run; `done` steps of the `asked` stayed in the arithmetic's range."""
+
+    points: tuple[Point, ...]
+    done: int
+    asked: int
+
+    @property
+    def finished(self) -> bool:
+        return self.done == self.asked
+
+
+def follow(case: Case, arithmetic: Arithmetic) -> Trail:
+    """The case in this arithmetic. Raises UnsupportedError where that lacks a function."""
+    start = {"p": case.p, "q": case.q, "h": case.step_size}
+    sections = _sections(case.steps)
+    asked = case.hamiltonian, case.scheme, start, case.steps, frozenset[str](), 0
+    outcome = Job(*asked, sections=sections).go(arithmetic)
+    section = -(-case.steps // sections)
+    points = [Point(0, case.p, case.q)]
+    for k, state in enumerate(outcome.trail, start=1):
+        points.append(Point(min(k * section, case.steps), state["p"], state["q"]))
+    return Trail(tuple(points), outcome.done, case.steps)
+
+
+def _sections(steps: int) -> int:
+    """How many stretches a trail has."""
+    fewest, most = _SECTIONS
+    if steps <= most:
+        return steps
+    aimed = min(most, max(fewest, steps // _BETWEEN))
+    lengths = ((sections, -(-steps // sections)) for sections in range(aimed, 0, -1))
+    return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
+
+
+def follow_precisely(case: Case, digits: int) -> tuple[Trail, Arithmetic]:
+    """The case to so many digits, compiled where that repays; with what it was run in.
+
+    Without a compiler only the first 300 000 of its steps are done, and `asked` says so.
+    """
+    if case.steps >= WORTH_COMPILING:
+        compiled = number_systems.get("fixed", digits)
+        try:
+            trail = follow(case, compiled)
+        except UnsupportedError:
+            pass
+        else:
+            if trail.finished:
+                return trail, compiled
+    wide = number_systems.get("mpfr", digits)
+    return follow(replace(case, steps=min(case.steps, MOST_INTERPRETED)), wide), wide
+
+
+def first_step(
+    case: Case, trail: Trail, arithmetic: Arithmetic, happens: Callable[[Point], bool]
+) -> int | None:
+    """The first step after which it happens, seen at the trail's points and then between them.
+
+    A run that leaves its range does so at the step after the last that is done. None where neither
+    is seen.
+    """
+    before = trail.points[0]
+    for point in trail.points[1:]:
+        if happens(point):
+            length = point.step - before.step
+            found = _first_from(before, length, case, arithmetic, happens) if length > 1 else None
+            return point.step if found is None else found
+        before = point
+    if trail.finished:
+        return None
+    rest = trail.done - before.step
+    found = _first_from(before, rest, case, arithmetic, happens) if rest else None
+    return trail.done + 1 if found is None else found
+
+
+def _first_from(
+    before: Point, steps: int, case: Case, arithmetic: Arithmetic, happens: Callable[[Point], bool]
+) -> int | None:
+    """The same for so many steps from a point on the way."""
+    stretch = replace(case, p=before.p, q=before.q, steps=steps)
+    found = first_step(stretch, follow(stretch, arithmetic), arithmetic, happens)
+    return None if found is None else before.step + found
+
+
+def first_apart(
+    one: tuple[Case, Trail, Arithmetic],
+    other: tuple[Case, Trail, Arithmetic],
+    apart: Callable[[Point, Point], bool],
+) -> int | None:
+    """The first step after which two runs of one case are apart; None where none is seen."""
+    (case, trail, arithmetic), (second, second_trail, second_arithmetic) = one, other
+    offset = 0
+    while True:
+        pairs = list(zip(trail.points, second_trail.points, strict=False))
+        index = next((k for k, pair in enumerate(pairs) if apart(*pair)), None)
+        if index is None:
+            return None
+        if index == 0:
+            return offset
+        (x, y), step = pairs[index - 1], pairs[index][0].step
+        length = step - x.step
+        if length == 1:
+            return offset + step
+        offset += x.step
+        case = replace(case, p=x.p, q=x.q, steps=length)
+        second = replace(second, p=y.p, q=y.q, steps=length)
+        trail, second_trail = follow(case, arithmetic), follow(second, second_arithmetic)

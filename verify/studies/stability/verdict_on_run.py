@@ -1,0 +1,198 @@
+"""Whose fault is it? One run of one scheme, judged.
+
+Four solutions are held against one another: the exact one; the scheme's in high precision, which is
+the scheme's own doing; its in 53 bits with no end of exponents, which adds float64's rounding; and
+its in float64, which adds float64's range. What the first of them does that the one before did not
+is to blame:
+
+- the exact solution leaves every bound: `escapes`;
+- the scheme leaves the exact orbit's bounds in high precision: `unstable: scheme`;
+- float64 leaves them, or parts from the scheme in high precision, and so do 53 bits with any
+  exponent: `unstable: arithmetic`;
+- float64 alone does: `overflow` or `underflow`.
+
+High precision is believed where twice as many digits say the same. What is bounded is `stable`, or
+`drifts` (see `verify.studies.stability.energy_drift`). What bounds are, and when runs are apart, is told in
+`verify.studies.stability.case_motion`.
+"""
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.systems import mpfr
+from verify.flows.orbit import ExactOrbit
+from verify.scenes.results.stability import Kind
+from verify.schemes import get
+from verify.studies.stability.case_motion import CaseMotion, float64
+from verify.studies.stability.energy_drift import drift_of, too_short
+from verify.studies.stability.rounded_start import told_of_rounded_start
+from verify.studies.stability.trail import (
+    Case,
+    Trail,
+    first_apart,
+    first_step,
+    follow,
+    follow_precisely,
+)
+
+_MOST_DIGITS = 400
+_FLOAT_BITS = 53
+_FEWER_BITS = 45
+_RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
+_SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
+_LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
+_Precise = tuple[int, Trail, Arithmetic]
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A verdict with its evidence; see `StabilityResult`."""
+
+    kind: Kind
+    detail: str
+    orbit: ExactOrbit
+    step: int | None = None
+    rate: Fraction | None = None
+    energy_error: Fraction | None = None
+
+
+def judge(case: Case) -> Judgement:
+    """The verdict on one case."""
+    motion = CaseMotion(case)
+    if motion.orbit.kind == "escapes":
+        return Judgement("escapes", f"the exact solution {motion.orbit.told}", motion.orbit)
+    precise, _ = motion.precise
+    if not motion.stays(precise):
+        if motion.orbit.kind == "unknown":
+            told = f"the exact solution, to be held against, is not known: {motion.orbit.told}"
+            return Judgement("undecided", told, motion.orbit)
+        return _scheme(motion)
+    if not motion.together(motion.as_far, precise):
+        return _not_the_scheme(motion)
+    if not motion.stays(motion.float64):
+        told = (
+            f"float64 leaves its bounds beyond the {precise.asked} steps of the run it is held to"
+        )
+        return Judgement("undecided", told, motion.orbit)
+    lost = _vanished(motion)
+    if lost:
+        worst = motion.worst(motion.float64)
+        return Judgement("underflow", lost, motion.orbit, energy_error=worst)
+    return _bounded(motion)
+
+
+def bounded(case: Case) -> bool:
+    """Whether the float64 run stays within the exact orbit's bounds."""
+    motion = CaseMotion(case)
+    return motion.stays(motion.float64)
+
+
+def _scheme(motion: CaseMotion) -> Judgement:
+    digits = 2 * motion.digits
+    again, arithmetic = follow_precisely(motion.case, digits)
+    step = first_step(motion.case, again, arithmetic, motion.beyond)
+    if step is None:
+        told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
+        return Judgement("undecided", told, motion.orbit)
+    solved = get(motion.case.scheme).step_map(motion.case.hamiltonian).solved
+    unsolved = solved and not again.finished and step == again.done + 1
+    does = "finds no solution of its equations" if unsolved else "leaves the bounds"
+    told = f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits"
+    if not motion.float64.finished:
+        ends = "goes no further" if solved else "is out of its range"
+        told += f"; float64 {ends} from step {motion.float64.done + 1} on"
+    return Judgement("unstable: scheme", told, motion.orbit, step=step)
+
+
+def _not_the_scheme(motion: CaseMotion) -> Judgement:
+    """The scheme in high precision stays; float64 does not, or is elsewhere."""
+    precise, _ = motion.precise
+    case, here = replace(motion.case, steps=precise.asked), motion.as_far
+    confirmed = _confirmed(motion, case, precise)
+    if confirmed is None:
+        told = f"up to {_MOST_DIGITS} digits no two precisions give the same orbit"
+        return Judgement("undecided", told, motion.orbit)
+    digits, precise, arithmetic = confirmed
+    if not motion.stays(precise):  # fewer digits did, by rounding
+        step = first_step(case, precise, arithmetic, motion.beyond)
+        told = f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits"
+        return Judgement("unstable: scheme", told, motion.orbit, step=step)
+    if _range_alone(motion):
+        return _out_of_range(motion, here)
+    step = first_apart((case, here, float64()), (case, precise, arithmetic), motion.apart)
+    at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
+    told = f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits"
+    told += told_of_rounded_start(motion.case)
+    return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
+
+
+def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> _Precise | None:
+    """The digits with which the run in high precision comes out the same again, and that run."""
+    digits, last = motion.digits, precise
+    while digits <= _MOST_DIGITS:
+        digits *= 2
+        again, arithmetic = follow_precisely(case, digits)
+        if again.asked == last.asked and motion.together(again, last):
+            return digits, again, arithmetic
+        last = again
+    return None
+
+
+def _range_alone(motion: CaseMotion) -> bool:
+    """Whether any exponent does as high precision does, where float64 does not.
+
+    In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
+    """
+    steps = min(motion.precise[0].asked, _RANGE_STEPS, motion.as_far.done + 1)
+    case = replace(motion.case, steps=steps)
+    precise = follow(case, motion.precise[1])
+    if motion.together(follow(case, float64()), precise):
+        return False
+    wide = (follow(case, mpfr.at_bits(bits)) for bits in (_FLOAT_BITS, _FEWER_BITS))
+    return all(motion.together(run, precise) for run in wide)
+
+
+def _out_of_range(motion: CaseMotion, here: Trail) -> Judgement:
+    if here.finished:
+        told = _vanished(motion) or "numbers vanish in float64 that wider exponents keep"
+        return Judgement("underflow", told, motion.orbit)
+    told = (
+        "a number is beyond float64's range; with 53 bits and wider exponents the run stays within "
+        "its bounds"
+    )
+    return Judgement("overflow", told, motion.orbit, step=here.done + 1)
+
+
+def _vanished(motion: CaseMotion) -> str:
+    """What underflow has taken of a bounded run; empty where that is nothing.
+
+    p or q as a whole, either of which may be small beside the other one.
+    """
+    seen = [abs(x) for point in motion.float64.points for x in (point.p, point.q)]
+    if min((x for x in (*seen, *motion.orbit.reach) if x), default=_SMALL) >= _SMALL:
+        return ""
+    case = replace(motion.case, steps=min(motion.case.steps, _RANGE_STEPS))
+    wide, own = follow(case, mpfr.at_bits(_FLOAT_BITS)), follow(case, float64())
+    for name in ("q", "p"):
+        true = [getattr(point, name) for point in wide.points]
+        kept = [getattr(point, name) for point in own.points]
+        size = max(map(abs, true))
+        gap = max(abs(x - y) for x, y in zip(true, kept, strict=False))
+        if gap > _LOST * size:
+            share = "all" if not any(kept) else f"{float(gap / size):.1e}"
+            return f"{share} of {name} vanishes in float64; 53 bits with wider exponents keep it"
+    return ""
+
+
+def _bounded(motion: CaseMotion) -> Judgement:
+    precise, _ = motion.precise
+    rate = drift_of(motion)
+    told = f"bounded over all {motion.case.steps} steps"
+    if precise.asked < motion.case.steps:
+        told += f", of which {precise.asked} were done in high precision too"
+    kind: Kind = "stable" if rate is None else "drifts"
+    if rate is None and too_short(motion):
+        told += "; it goes round too few times to tell a drift of its energy from a swing"
+    worst = motion.worst(precise)
+    return Judgement(kind, told, motion.orbit, rate=rate, energy_error=worst)

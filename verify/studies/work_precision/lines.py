@@ -1,0 +1,263 @@
+"""What the points of error against run time say: orders, and schemes compared at equal run time.
+
+Order: the least-squares slope of lg error over lg h, over the points that truncation limits, from
+the smallest step up to where the slopes between neighbours leave that of the two smallest by more
+than `SETTLED`: beyond, the leading term is not yet the error.
+
+Equal run time: between two of its points a scheme is followed along the straight line on
+logarithmic axes, over the run times that both schemes cover.
+
+A run whose error is larger than the orbit itself takes no part in either: it says nothing of how
+good the scheme is.
+"""
+
+from collections.abc import Iterable, Sequence
+from decimal import Decimal
+from itertools import combinations, pairwise
+
+from verify.arithmetic.balls import slope
+from verify.scenes.results.core import Value
+from verify.scenes.results.work_precision import (
+    ComparisonResult,
+    CostResult,
+    RatioResult,
+    SlopeResult,
+    WorkLine,
+    WorkPoint,
+)
+from verify.schemes.scheme import Scheme
+
+SETTLED = 0.1
+ALIKE = 1.1  # a ratio within this both ways is within what run times are known to
+FEWEST = 3  # points of a slope
+_ANY = "Infinity"  # the size of an orbit that no error is too large for
+_NOTHING = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
+Place = tuple[float, float]  # lg of one quantity and of another
+
+
+def line(
+    points: Sequence[WorkPoint],
+    scheme: Scheme | str,
+    preserves_area: bool | None,
+    cost: CostResult | None,
+    compile_seconds: float,
+    scale: str = _ANY,
+) -> WorkLine:
+    """A scheme's line, or with only a name a peer's; `scale` is the orbit's size."""
+    peer = isinstance(scheme, str)
+    return WorkLine(
+        name=points[0].scheme,
+        peer=peer,
+        order=None if isinstance(scheme, str) else scheme.order,
+        area_preserving=bool(preserves_area),
+        error_slope=_NOTHING if peer else error_slope(points, scale),
+        lambda_slope=_NOTHING if peer else lambda_slope(points, bool(preserves_area), scale),
+        cost=cost,
+        compile_seconds=compile_seconds,
+        points=tuple(points),
+    )
+
+
+# -- orders ---------------------------------------------------------------------------------------
+
+
+def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
+    """The order of the error in h; `scale` is the orbit's size."""
+    told = [x for x in points if x.limited_by == "truncation"]
+    return _near_alone(told, [(x, x.error) for x in near(told, scale)])
+
+
+def lambda_slope(
+    points: Sequence[WorkPoint], preserves_area: bool, scale: str = _ANY
+) -> SlopeResult:
+    """The order of |Λ| in h."""
+    if preserves_area:
+        return SlopeResult(
+            value=None, standard_error=None, points=0, reason="ΔJ ≡ 0 is proved: Λ is exactly 0"
+        )
+    told = [x for x in points if x.lambda_limited_by == "truncation"]
+    return _near_alone(told, [(x, x.lam) for x in near(told, scale)])
+
+
+def _near_alone(
+    told: Sequence[WorkPoint], found: Sequence[tuple[WorkPoint, Value | None]]
+) -> SlopeResult:
+    """The order over those that are near; it says how many are not."""
+    slope, far = fitted(found), len(told) - len(found)
+    if not far:
+        return slope
+    reason = f"{slope.reason}; " if slope.reason else ""
+    reason += f"with {far} more the error is larger than the orbit"
+    return slope.model_copy(update={"reason": reason})
+
+
+def near(points: Iterable[WorkPoint], scale: str) -> list[WorkPoint]:
+    """The runs whose error is not larger than the orbit."""
+    return [x for x in points if x.error and Decimal(x.error.value) <= Decimal(scale)]
+
+
+def fitted(found: Sequence[tuple[WorkPoint, Value | None]]) -> SlopeResult:
+    places = sorted(
+        (lg(point.step_size), lg(value.value))
+        for point, value in found
+        if point.step_size and value and Decimal(value.value)
+    )
+    settled = _settled(places)
+    if len(settled) < FEWEST:
+        few = f"{len(places)} points are limited by truncation"
+        if len(places) >= FEWEST:
+            few += f", and the slopes of only the {len(settled)} smallest have settled"
+        return SlopeResult(value=None, standard_error=None, points=len(settled), reason=few)
+    value, error = slope(settled)
+    reason = ""
+    if len(settled) < len(places):
+        reason = f"of {len(places)}: at larger h it has not settled"
+    return SlopeResult(
+        value=f"{value:.3f}", standard_error=f"{error:.3f}", points=len(settled), reason=reason
+    )
+
+
+def _settled(places: Sequence[Place]) -> list[Place]:
+    """From the smallest step as far as neighbours have the slope of the first two."""
+    slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(places)]
+    count = next((k for k, s in enumerate(slopes) if abs(s - slopes[0]) > SETTLED), len(slopes))
+    return list(places[: count + 1])
+
+
+def lg(text: str) -> float:
+    """lg |x| of a decimal or a quotient that is not 0, however small."""
+    above, _, below = text.partition("/")
+    return float(abs(Decimal(above)).log10() - abs(Decimal(below or 1)).log10())
+
+
+# -- at equal run time ----------------------------------------------------------------------------
+
+
+def comparisons(lines: Sequence[WorkLine], scale: str) -> tuple[ComparisonResult, ...]:
+    """Every two schemes that claim the same order; `scale` is the orbit's size."""
+    pairs = combinations([line for line in lines if not line.peer], 2)
+    return tuple(compare(a, b, scale) for a, b in pairs if a.order == b.order)
+
+
+def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
+    """The two at equal run time; see the module's text."""
+    errors = _places(one, "error", scale), _places(other, "error", scale)
+    span = _overlap(errors)
+    if span is None:
+        why = f"{one.name} and {other.name} have no run time in common: nothing is compared."
+        return ComparisonResult(
+            one=one.name, other=other.name, seconds=None, first=None, last=None, error=None,
+            area=None, sentence=why,
+        )  # fmt: skip
+    error = _ratio(*errors, span)
+    middle = sum(span) / 2
+    area = None
+    if not (one.area_preserving or other.area_preserving):
+        areas = _places(one, "lam", scale), _places(other, "lam", scale)
+        shared = _overlap(areas)
+        area = _ratio(*areas, shared) if shared else None
+    parts = [_error_sentence(one, other, middle, span, error)]
+    parts.append(_area_sentence(one, other, area, scale))
+    return ComparisonResult(
+        one=one.name,
+        other=other.name,
+        seconds=_few(10**middle),
+        first=_few(10 ** span[0]),
+        last=_few(10 ** span[1]),
+        error=error,
+        area=area,
+        sentence=" ".join(parts),
+    )
+
+
+def _places(line: WorkLine, quantity: str, scale: str) -> list[Place]:
+    """(lg run time, lg quantity) by run time."""
+    found = []
+    for point in near(line.points, scale):
+        value: Value | None = getattr(point, quantity)
+        if value and Decimal(value.value) and point.seconds_median:
+            found.append((lg(repr(point.seconds_median)), lg(value.value)))
+    return sorted(found)
+
+
+def _overlap(both: Sequence[list[Place]]) -> Place | None:
+    if not all(both):
+        return None
+    first, last = max(each[0][0] for each in both), min(each[-1][0] for each in both)
+    return (first, last) if first < last else None
+
+
+def _ratio(one: list[Place], other: list[Place], span: Place) -> RatioResult:
+    """other / one at the middle, and at every point of either and both ends of the span."""
+    times = {*span, *(x for x, _ in (*one, *other) if span[0] <= x <= span[1])}
+    ratios = [10 ** (_at(other, x) - _at(one, x)) for x in times]
+    middle = sum(span) / 2
+    at = 10 ** (_at(other, middle) - _at(one, middle))
+    return RatioResult(at=_few(at), least=_few(min(ratios)), most=_few(max(ratios)))
+
+
+def _at(places: list[Place], x: float) -> float:
+    """On the line through the points, between two of them."""
+    for (x0, y0), (x1, y1) in pairwise(places):
+        if x0 <= x <= x1 and x1 > x0:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    return places[0][1] if x <= places[0][0] else places[-1][1]
+
+
+def _error_sentence(
+    one: WorkLine, other: WorkLine, middle: float, span: Place, ratio: RatioResult
+) -> str:
+    times = f"{_few(10 ** span[0])} to {_few(10 ** span[1])} s"
+    return (
+        f"At equal run time ({_few(10**middle)} s) the solution error of "
+        f"{_smaller(one.name, other.name, ratio, times)}."
+    )
+
+
+def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:
+    exact = [line.name for line in (one, other) if line.area_preserving]
+    if len(exact) == 2:
+        return f"Both preserve area exactly: {exact[0]} and {exact[1]} have ΔJ ≡ 0 by proof."
+    if exact:
+        rest = one if other.area_preserving else other
+        keeps = other if other.area_preserving else one
+        errors = _sizes(x.lam for x in near(rest.points, scale))
+        rounded = _sizes(x.lam_plain for x in near(keeps.points, scale))
+        seen = f", where {rest.name} has |Λ| of {_span(errors)}" if errors else ""
+        shown = f"; what float64’s rounding shows of it is {_span(rounded)}" if rounded else ""
+        return f"In area {exact[0]} makes no error (ΔJ ≡ 0 is proved){seen}{shown}."
+    if ratio is None:
+        return "In area there is nothing to compare."
+    return f"In area, |Λ| of {_smaller(one.name, other.name, ratio, '')}."
+
+
+def _sizes(values: Iterable[Value | None]) -> list[float]:
+    return sorted(abs(float(value.value)) for value in values if value)
+
+
+def _span(sizes: Sequence[float]) -> str:
+    low, high = _few(sizes[0]), _few(sizes[-1])
+    return low if low == high else f"{low} to {high}"
+
+
+def _smaller(one: str, other: str, ratio: RatioResult, times: str) -> str:
+    """`x is 3.2 times smaller than that of y`, with its range."""
+    at, least, most = (float(x) for x in (ratio.at, ratio.least, ratio.most))
+    if at < 1:
+        one, other = other, one
+        at, least, most = 1 / at, 1 / most, 1 / least
+    over = f" over {times}" if times else ""
+    if most <= ALIKE and least >= 1 / ALIKE:
+        return f"{one} is that of {other} (both within {ALIKE - 1:.0%} of each other{over})"
+    said = f"{one} is {_few(at)} times smaller than that of {other}"
+    if least >= 1:
+        return f"{said} ({_few(least)} to {_few(most)} times{over})"
+    return (
+        f"{said}, but which of the two is smaller changes{over} "
+        f"({_few(most)} times smaller to {_few(1 / least)} times larger)"
+    )
+
+
+def _few(x: float) -> str:
+    """Two significant digits."""
+    return f"{float(f'{x:.2g}'):g}"

@@ -1,0 +1,248 @@
+"""Error against run time: each scheme over a ladder of step sizes, peers, number systems.
+
+Errors first, then one interleaved timing of all points together (`verify.studies.work_precision.timing`), so that their
+run times can be compared; nothing else of this program runs meanwhile. What the errors are is told
+in `verify.studies.work_precision.runs`, what is made of the points in `verify.studies.work_precision.lines`.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from statistics import median
+
+from verify.arithmetic.exact import text, upper
+from verify.arithmetic.systems import float64
+from verify.errors import InputError
+from verify.execution.keeping import machine
+from verify.flows.extrapolation import NoFlowError
+from verify.flows.solution import exact_solution
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.run import run
+from verify.scenes.results.core import RunResult
+from verify.scenes.results.work_precision import (
+    SystemPoint,
+    WorkLine,
+    WorkPoint,
+    WorkPrecisionResult,
+)
+from verify.scenes.tasks import WorkPrecisionTask
+from verify.studies.work_precision import peers
+from verify.studies.work_precision.lines import comparisons, lg, line
+from verify.studies.work_precision.peer import Answer, InitialValueProblem, PeerError, Solver
+from verify.studies.work_precision.runs import (
+    ROUNDING_SHARE,
+    Ladder,
+    Problem,
+    distance,
+    failed,
+    finished,
+    printed,
+)
+from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
+
+_REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
+Advance = Callable[[int], None]  # called with a number of points just done
+
+
+@dataclass
+class _Timing:
+    """A point with what is timed of it: the call, and the call that does nothing."""
+
+    point: WorkPoint
+    call: Callable[[], object] | None
+    blank: Callable[[], object] = nothing
+
+
+def work_precision(
+    hamiltonian: Hamiltonian, task: WorkPrecisionTask, advance: Advance = lambda _: None
+) -> WorkPrecisionResult:
+    """What the task asks for. InputError where the exact solution does not reach the time."""
+    begun = time.perf_counter()
+    problem = _problem(hamiltonian, task)
+    _wake_compiler()
+    ladders = [Ladder(problem, name) for name in task.schemes]
+    own = [[_scheme_point(ladder, h, advance) for h in task.step_sizes] for ladder in ladders]
+    others = [_peer(problem, name, advance) for name in task.peers]
+    overhead = _time([*own, *(timings for timings, _ in others)], task.repeats)
+    lines = [
+        line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
+             ladder.compile_seconds, problem.scale)
+        for ladder, timings in zip(ladders, own, strict=True)
+    ]  # fmt: skip
+    drawn = [
+        _peer_line(name, timings, compiled)
+        for name, (timings, compiled) in zip(task.peers, others, strict=True)
+    ]
+    return WorkPrecisionResult(
+        **hamiltonian.written,
+        time=text(task.time),
+        q=text(task.q),
+        p=text(task.p),
+        repeats=task.repeats,
+        clock=clock()[1],
+        overhead=overhead,
+        rounding_share=text(ROUNDING_SHARE),
+        scale=problem.scale,
+        reference=problem.solution.method,
+        reference_bound=upper(problem.solution.bound),
+        machine=machine(),
+        lines=(*lines, *drawn),
+        comparisons=comparisons(lines, problem.scale),
+        systems=tuple(_systems(problem, task)),
+        systems_scheme=task.number_systems_scheme,
+        systems_step_size=text(task.number_systems_step_size),
+        left_out=task.peers_left_out,
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def _problem(hamiltonian: Hamiltonian, task: WorkPrecisionTask) -> Problem:
+    p, q = task.p, task.q
+    try:
+        exact = exact_solution(hamiltonian, p=p, q=q, time=task.time, digits=_REFERENCE_DIGITS)
+    except NoFlowError as error:
+        raise InputError("work_precision.time", text(task.time), str(error)) from None
+    return Problem(hamiltonian, (p, q), task.time, exact)
+
+
+def _wake_compiler() -> None:
+    """The first compilation of a process takes longer than the next; no scheme shall pay that."""
+    same = float64.compiled_at_once().compile("def same(x):\n    return x\n", "same", {})
+    same(1.0)
+
+
+def _scheme_point(ladder: Ladder, h: Fraction, advance: Advance) -> _Timing:
+    point = ladder.point(h)
+    advance(1)
+    if point.limited_by == "failed":
+        return _Timing(point, None)
+    return _Timing(point, ladder.call(h), ladder.call(h, blank=True))
+
+
+def _time(groups: list[list[_Timing]], repeats: int) -> float:
+    """Puts the run times into the points; returns what an empty call takes."""
+    timed = [t for group in groups for t in group if t.call]
+    blanks = list({_of(t.blank): t.blank for t in timed}.values())
+    calls = [*(t.call for t in timed if t.call), *blanks, nothing]
+    found = interleaved(calls, repeats)
+    empty = dict(zip(map(_of, blanks), found[len(timed) :], strict=False))
+    for each, taken in zip(timed, found, strict=False):
+        blank = empty.get(_of(each.blank), found[-1])
+        left = above(taken, blank)
+        if left is not None:
+            seconds = {"seconds_min": left.least, "seconds_median": left.median}
+            each.point = each.point.model_copy(update=seconds)
+    return found[-1].median
+
+
+def _of(blank: Callable[[], object]) -> int:
+    """One kernel's blank calls are all alike."""
+    return id(getattr(blank, "func", blank))
+
+
+# -- peers ----------------------------------------------------------------------------------------
+
+
+def _peer(problem: Problem, name: str, advance: Advance) -> tuple[list[_Timing], float]:
+    """Its points over its tolerances, and what making it ready took the first time."""
+    p, q = problem.start
+    given = InitialValueProblem(problem.hamiltonian, p, q, problem.time)
+    module, timings, compiled = peers.get(name), [], 0.0
+    for tolerance in module.TOLERANCES:
+        try:
+            solver: Solver = module.make(given, tolerance)
+            answer = solver.solve()
+        except PeerError as error:
+            point = failed(name, tolerance=text(tolerance), reason=str(error))
+            timings.append(_Timing(point, None))
+        else:
+            compiled = compiled or solver.compile_seconds
+            timings.append(_Timing(_peer_point(problem, name, tolerance, answer), solver.solve))
+        advance(1)
+    return timings, compiled
+
+
+def _peer_point(problem: Problem, name: str, tolerance: Fraction, answer: Answer) -> WorkPoint:
+    values = answer.p, answer.q
+    if not all(abs(x) < float("inf") for x in values):
+        return failed(name, tolerance=text(tolerance), reason="left the range of float64")
+    state = Fraction(answer.p), Fraction(answer.q)
+    return finished(
+        name,
+        tolerance=f"{float(tolerance):.0e}",
+        steps=answer.steps,
+        evaluations=answer.evaluations,
+        error=printed(*problem.error(state)),
+        energy=problem.energy_error(state),
+        limited_by="tolerance",
+    )
+
+
+def _peer_line(name: str, timings: list[_Timing], compiled: float) -> WorkLine:
+    return line([t.point for t in timings], name, None, None, compiled)
+
+
+# -- number systems -------------------------------------------------------------------------------
+
+
+def _systems(problem: Problem, task: WorkPrecisionTask) -> list[SystemPoint]:
+    """Certified digits of the end state against run time, of one scheme at one step size."""
+    h = task.number_systems_step_size
+    p, q = problem.start
+
+    def go(name: str, digits: int) -> RunResult:
+        return run(
+            problem.hamiltonian, task.number_systems_scheme, q=q, p=p, step_size=h,
+            steps=int(problem.time / h), arithmetic=name, digits=digits, observables=(),
+        )  # fmt: skip
+
+    asked = [
+        (name, digits)
+        for name in task.number_systems
+        for digits in (task.digits if name != "float64" else (17,))
+    ]
+    first = [go(*each) for each in asked]
+    rounds = [[go(*each) for each in asked] for _ in range(task.repeats)]
+    points = []
+    for k, ((name, digits), result) in enumerate(zip(asked, first, strict=True)):
+        taken = [each[k].seconds for each in rounds]
+        timed: Timed | None = Timed(min(taken), median(taken))
+        if name == "float64":  # compiled, as it is in the other figures
+            timed = _compiled_float(problem, task)
+        points.append(_system_point(name, digits, result, timed))
+    return points
+
+
+def _compiled_float(problem: Problem, task: WorkPrecisionTask) -> Timed | None:
+    ladder, h = Ladder(problem, task.number_systems_scheme), task.number_systems_step_size
+    taken, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], task.repeats)
+    return above(taken, blank)
+
+
+def _system_point(name: str, digits: int, result: RunResult, timed: Timed | None) -> SystemPoint:
+    known = result.status == "finished"
+    reason = result.fallback if known else f"{result.status}: {result.error_method}"
+    return SystemPoint(
+        arithmetic=result.arithmetic if known else name,
+        digits=digits,
+        certified=_digits_of_state(result) if known else None,
+        error_kind=result.error_kind,
+        error_method=result.error_method,
+        seconds_min=timed.least if known and timed else None,
+        seconds_median=timed.median if known and timed else None,
+        reason=reason,
+    )
+
+
+def _digits_of_state(result: RunResult) -> str | None:
+    """−lg(bound / size) of the state (p, q), with one decimal."""
+    p, q = (result.values.get(name) for name in ("p", "q"))
+    if p is None or q is None:
+        return None
+    size, _ = distance((Fraction(p.value), Fraction(q.value)), (Fraction(0), Fraction(0)))
+    bound = Fraction(p.bound) + Fraction(q.bound)
+    if not bound or not size:
+        return None
+    part = bound / size
+    return f"{-lg(f'{part.numerator}/{part.denominator}'):.1f}"

@@ -1,0 +1,42 @@
+"""What a peer is: another integrator, made ready to solve one problem to one tolerance."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+
+class PeerError(Exception):
+    """A peer does not take H, or did not reach the end; the message says why."""
+
+
+@dataclass(frozen=True)
+class InitialValueProblem:
+    """p' = −H_q, q' = H_p from (p, q) at t = 0 to `time`."""
+
+    hamiltonian: Hamiltonian
+    p: Fraction
+    q: Fraction
+    time: Fraction
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The state at the end, the steps taken, and evaluations of the vector field if counted."""
+
+    p: float
+    q: float
+    steps: int | None
+    evaluations: int | None
+
+
+@dataclass(frozen=True)
+class Solver:
+    """`solve` goes from the start to the end, each time anew; it raises PeerError.
+
+    `compile_seconds`: what making it ready took.
+    """
+
+    solve: Callable[[], Answer]
+    compile_seconds: float

@@ -1,0 +1,47 @@
+"""scipy's DOP853: the explicit Runge–Kutta method of order 8 of Dormand and Prince, step control
+and all (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, II.5 and II.10).
+
+Its vector field is compiled; the method itself is Python, as scipy ships it.
+"""
+
+import time
+from fractions import Fraction
+
+from verify.arithmetic.systems import float64
+from verify.flows.extrapolation import functions_at
+from verify.studies.work_precision.peer import Answer, InitialValueProblem, PeerError, Solver
+
+NAME = "DOP853"
+LIBRARY = "scipy"
+TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 14))  # scipy takes none below 100 · 2⁻⁵²
+
+
+def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
+    """With rtol = atol = tolerance."""
+    from scipy.integrate import solve_ivp
+
+    begun = time.perf_counter()
+    field, _ = problem.hamiltonian.field()
+    slopes = functions_at(
+        float64.compiled_at_once(), [(field.ring, -field.h_q), (field.ring, field.h_p)]
+    )
+    start, end = (float(problem.p), float(problem.q)), float(problem.time)
+    slopes(*start)
+    compiled = time.perf_counter() - begun
+
+    def f(_: float, z: tuple[float, float]) -> tuple[float, float]:
+        p, q = z
+        found: tuple[float, float] = slopes(p, q)
+        return found
+
+    def solve() -> Answer:
+        found = solve_ivp(
+            f, (0.0, end), start, method="DOP853", t_eval=(end,),
+            rtol=float(tolerance), atol=float(tolerance),
+        )  # fmt: skip
+        if not found.success:
+            raise PeerError(found.message)
+        p, q = found.y[:, -1]
+        return Answer(float(p), float(q), None, int(found.nfev))
+
+    return Solver(solve, compiled)

@@ -1,0 +1,48 @@
+"""A scene's section → the one task that it needs."""
+
+from importlib.util import find_spec
+
+from verify.errors import InputError
+from verify.scenes.scene import Scene
+from verify.scenes.sections import WorkPrecision
+from verify.scenes.tasks import WorkPrecisionTask
+
+
+def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTask:
+    """Error against run time. Raises InputError where peers are wanted and not installed."""
+    schemes, sizes = section.schemes or scene.schemes, sorted(section.step_sizes, reverse=True)
+    peers, left_out = _peers(section.peers)
+    return WorkPrecisionTask(
+        **scene.given(),
+        schemes=schemes,
+        time=section.time,
+        step_sizes=tuple(sizes),
+        q=section.initial_value.q,
+        p=section.initial_value.p,
+        repeats=section.repeats,
+        number_systems=section.number_systems,
+        digits=section.digits,
+        number_systems_scheme=section.number_systems_scheme or schemes[0],
+        number_systems_step_size=section.number_systems_step_size or sizes[len(sizes) // 2],
+        peers=peers,
+        peers_left_out=left_out,
+    )
+
+
+def _peers(asked: bool | None) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
+    """Those that are drawn, and the others with the reason why not."""
+    from verify.studies.work_precision import peers
+
+    drawn: list[str] = []
+    left_out: list[tuple[str, str]] = []
+    for name, library in peers.libraries().items():
+        if asked is False:
+            left_out.append((name, "the scene says `peers = false`"))
+        elif find_spec(library) is not None:
+            drawn.append(name)
+        elif asked:
+            problem = f"{library} is not installed; the extra `peers` has it"
+            raise InputError("work_precision.peers", "true", problem)
+        else:
+            left_out.append((name, f"{library} is not installed; the extra `peers` has it"))
+    return tuple(drawn), tuple(left_out)

@@ -1,0 +1,228 @@
+"""The errors of one run over [0, T], and the compiled loop that made them, ready to be timed.
+
+The error is that of the very loop that is timed, which steps the state and nothing else: its last
+state is a pair of rationals, and is held against the exact solution in rationals. What is
+truncation in it tells a run of the same scheme at high precision from the exact inputs; the
+difference of the two runs is the rounding. Λ comes from a second float64 run, which computes it
+beside the state.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, partial
+from math import isqrt
+from typing import Any
+
+from verify.algebra.enclosure import enclose
+from verify.arithmetic.balls import in_reach, middle_and_radius
+from verify.arithmetic.exact import decimal, known_digits, text
+from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.systems import float64
+from verify.flows.solution import Solution
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.chunked_loop import Walk
+from verify.kernels.kernel import Kernel, Writer
+from verify.kernels.stepping import Job
+from verify.runs.digits_on_demand import choose, measure
+from verify.runs.estimated import Bounds
+from verify.scenes.results.core import Value
+from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
+from verify.schemes import get
+from verify.studies.work_precision.step_cost import cost
+
+ROUNDING_SHARE = Fraction(1, 20)  # of the error: a larger rounding part limits the point
+EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
+_SHOWN = 12  # digits of an error at most
+_BITS = 400
+_ROOT_BITS = 160
+
+State = tuple[Fraction, Fraction]  # p, q
+
+
+@dataclass(frozen=True)
+class Problem:
+    """H, the initial value and the time, with the exact solution there."""
+
+    hamiltonian: Hamiltonian
+    start: State
+    time: Fraction
+    solution: Solution
+
+    @cached_property
+    def _energy(self) -> tuple[Any, Any]:
+        field, _ = self.hamiltonian.field()
+        return field.ring, field.energy
+
+    @property
+    def scale(self) -> str:
+        """The greater |z| of the orbit's two ends."""
+        ends = self.start, (self.solution.p, self.solution.q)
+        return decimal(max(distance(z, (Fraction(0), Fraction(0)))[0] for z in ends), 3)
+
+    def error(self, state: State) -> tuple[Fraction, Fraction]:
+        """|state − z(T)| with its bound."""
+        size, own = distance(state, (self.solution.p, self.solution.q))
+        return size, own + 2 * self.solution.bound  # of each of p and q
+
+    def energy_error(self, state: State) -> Value | None:
+        """|H(state) − H(z₀)|; None where H is not defined there, or out of reach."""
+        ring, energy = self._energy
+        ends = [
+            enclose(ring, energy, dict(zip("pq", at, strict=True)), _BITS)
+            for at in (state, self.start)
+        ]
+        if None in ends or not all(map(in_reach, ends)):
+            return None
+        (a, a_bound), (b, b_bound) = map(middle_and_radius, ends)
+        return printed(abs(a - b), a_bound + b_bound)
+
+
+class Ladder:
+    """One scheme on the problem: its loop in float64, and its runs over step sizes."""
+
+    def __init__(self, problem: Problem, scheme: str) -> None:
+        self.problem, self.scheme = problem, get(scheme)
+        self.name = scheme
+        step_map = self.scheme.step_map(problem.hamiltonian)
+        self.preserves_area = step_map.preserves_area
+        self.arithmetic: Arithmetic = float64.compiled_at_once()
+        generic = self.scheme.step_map(self._job(problem.time, frozenset()).generic)
+        begun = time.perf_counter()
+        self.kernel: Kernel = Writer(generic, self.arithmetic, frozenset(), False).kernel()
+        self.call(problem.time, blank=True)()
+        self.compile_seconds = time.perf_counter() - begun
+
+    @property
+    def cost(self) -> CostResult:
+        return cost(self.kernel, self.scheme)
+
+    def _inputs(self, h: Fraction) -> dict[str, Fraction]:
+        p, q = self.problem.start
+        return {"p": p, "q": q, "h": h}
+
+    def _job(self, h: Fraction, observables: frozenset[str]) -> Job:
+        steps = int(self.problem.time / h)
+        return Job(
+            self.problem.hamiltonian, self.name, self._inputs(h), steps, observables, points=0
+        )
+
+    def call(self, h: Fraction, *, blank: bool = False) -> Callable[[], object]:
+        """The loop over all steps, or over none, which is what a call takes by itself."""
+        job = self._job(h, frozenset())
+        walk = Walk(job, self.kernel, self.arithmetic, (), 0)
+        count = 0 if blank else job.steps
+        return partial(self.kernel.function, count, *walk.fixed, *walk.state)
+
+    def point(self, h: Fraction) -> WorkPoint:
+        """The run with this step size, not yet timed."""
+        job = self._job(h, frozenset())
+        walk = Walk(job, self.kernel, self.arithmetic, (), 0)
+        for _ in walk.chunks():
+            pass
+        if walk.done < job.steps:
+            return failed(
+                self.name, step_size=text(h), steps=job.steps, failed_step=walk.done + 1,
+                reason="left the range of float64",
+            )  # fmt: skip
+        last = walk.trail[-1]["p"], walk.trail[-1]["q"]
+        return self._finished(h, job.steps, last)
+
+    def _finished(self, h: Fraction, steps: int, last: State) -> WorkPoint:
+        error = self.problem.error(last)
+        exact = self._exactly(h)
+        truncation = rounding = None
+        limited: LimitedBy = "undecided"
+        reason = ""
+        if exact.status == "finished" and {"p", "q"} <= set(exact.values):
+            (p, p_bound), (q, q_bound) = exact.values["p"], exact.values["q"]
+            size, bound = self.problem.error((p, q))
+            truncation = size, bound + p_bound + q_bound
+            size, bound = distance(last, (p, q))
+            rounding = size, bound + p_bound + q_bound
+            limited = limited_by(error, rounding)
+        else:
+            reason = f"at high precision: {exact.status} ({exact.method})"
+        plain, lam, lambda_limited = self._area(h, exact)
+        return finished(
+            self.name,
+            step_size=text(h),
+            steps=steps,
+            error=printed(*error),
+            truncation=truncation and printed(*truncation),
+            rounding=rounding and printed(*rounding),
+            energy=self.problem.energy_error(last),
+            lam=lam,
+            lam_plain=plain,
+            limited_by=limited,
+            lambda_limited_by=lambda_limited,
+            reason=reason,
+        )
+
+    def _exactly(self, h: Fraction) -> Bounds:
+        """The same steps in high precision, from the exact inputs."""
+        job = self._job(h, frozenset() if self.preserves_area else frozenset({"lambda"}))
+        return measure(job, choose(job, EXACT_DIGITS), EXACT_DIGITS).bounds
+
+    def _area(
+        self, h: Fraction, exact: Bounds
+    ) -> tuple[Value | None, Value | None, LimitedBy | None]:
+        """Λ by the plain product, by its closed form, and what limits the latter."""
+        asked = {"lambda_plain"} | (set() if self.preserves_area else {"lambda"})
+        job = self._job(h, frozenset(asked))
+        run = job.go(float64.make(17))
+        if run.done < job.steps:
+            return None, None, "failed"
+        plain = printed(run.values["lambda_plain"], Fraction(0))
+        if self.preserves_area:  # proved; what the product shows is rounding
+            return plain, Value(value="0", bound="0"), "rounding"
+        lam = run.values["lambda"]
+        if "lambda" not in exact.values:
+            return plain, printed(lam, Fraction(0)), "undecided"
+        true, bound = exact.values["lambda"]
+        limited = limited_by((abs(lam), Fraction(0)), (abs(lam - true), bound))
+        return plain, printed(lam, Fraction(0)), limited
+
+
+def limited_by(error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fraction]) -> LimitedBy:
+    """By rounding where that may be more than its share of the error, else by truncation.
+
+    Each with its bound: what is not certainly small is not called so.
+    """
+    most, least = rounding[0] + rounding[1], error[0] - error[1]
+    return "truncation" if most <= ROUNDING_SHARE * least else "rounding"
+
+
+_NOTHING: dict[str, Any] = dict.fromkeys(
+    ("step_size", "tolerance", "steps", "error", "truncation", "rounding", "energy", "lam",
+     "lam_plain", "lambda_limited_by", "failed_step", "seconds_min", "seconds_median",
+     "evaluations")
+) | {"reason": ""}  # fmt: skip
+
+
+def finished(scheme: str, **found: Any) -> WorkPoint:
+    """A run with what was found of it, not yet timed."""
+    return WorkPoint(**{**_NOTHING, "scheme": scheme, **found})
+
+
+def failed(scheme: str, **found: Any) -> WorkPoint:
+    """A run that gave no values."""
+    return finished(scheme, limited_by="failed", lambda_limited_by="failed", **found)
+
+
+def distance(one: State, other: State) -> tuple[Fraction, Fraction]:
+    """|one − other|, Euclidean, with the bound of its root."""
+    square = sum(((a - b) ** 2 for a, b in zip(one, other, strict=True)), Fraction(0))
+    if square == 0:
+        return square, square
+    # An even shift that leaves the root enough bits, however small the square is.
+    bits = square.denominator.bit_length() - square.numerator.bit_length()
+    half = _ROOT_BITS + max(0, bits)
+    root = isqrt((square.numerator << 2 * half) // square.denominator)
+    return Fraction(root, 1 << half), Fraction(1, 1 << half)
+
+
+def printed(value: Fraction, bound: Fraction) -> Value:
+    shown, within = known_digits(value, bound, _SHOWN)
+    return Value(value=shown, bound=within)

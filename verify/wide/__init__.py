@@ -1,4 +1,0 @@
-"""Fixed-point numbers of 128, 192, 256, … bits, compiled by LLVM: formats, operations, functions.
-
-`verify.arithmetic.fixed` makes a number system of it.
-"""
