@@ -25,7 +25,7 @@ from tight_mpmath import DELTA, NAMES, STEP_SIZE, P, Q, Result
 
 from verify import arithmetic
 from verify.hamiltonians import systems
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 
 HERE = Path(__file__).parent
 BITS = {33: 113, 53: 170, 72: 240}  # digits asked of us → bits of the competitors
@@ -47,8 +47,8 @@ def ours(system: str, digits: int, steps: int, name: str = "fixed") -> Result:
     hamiltonian = systems.get(system).hamiltonian({"delta": DELTA} if system == "duffing" else {})
     start = {"h": Fraction(STEP_SIZE), "q": Fraction(Q), "p": Fraction(P)}
     observables = frozenset({"lambda", "mse", "delta_j_max"})
-    job = Job(hamiltonian, "lie2", start, steps, observables, points=0)
-    outcome = job.go(arithmetic.get(name, digits))
+    kernel_run = KernelRun(hamiltonian, "lie2", start, steps, observables, points=0)
+    outcome = kernel_run.go(arithmetic.get(name, digits))
     return outcome.seconds, {x: outcome.values[x] for x in NAMES}
 
 

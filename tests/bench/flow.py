@@ -22,8 +22,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
 from verify.scenes.region_sections import ShapeGiven
 from verify.scenes.shapes import named as shapes
-from verify.scenes.tasks import FlowTask
 from verify.studies.regions.carry import carry
+from verify.studies.regions.task import FlowTask
 
 SYSTEMS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
 POINTS, STEPS, H = 2_000, 20_000, Fraction(1, 100)

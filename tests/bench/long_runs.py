@@ -52,11 +52,11 @@ def show(what: str, value: str, target: str, met: bool, judged: bool = True) -> 
 
 def _job(hamiltonian: str, parameters: dict[str, str], steps: int) -> Any:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.kernels.stepping import Job
+    from verify.kernels.stepping import KernelRun
 
     start = {"h": Fraction("0.001"), "q": Fraction("1.5"), "p": Fraction(0)}
     chosen = Hamiltonian.parse(hamiltonian, parameters)
-    return Job(chosen, "lie2", start, steps, frozenset(OBSERVABLES), points=0)
+    return KernelRun(chosen, "lie2", start, steps, frozenset(OBSERVABLES), points=0)
 
 
 def step_costs(system: str, name: str, digits: int, long: int) -> tuple[float, float]:
@@ -65,12 +65,12 @@ def step_costs(system: str, name: str, digits: int, long: int) -> tuple[float, f
     from verify.hamiltonians import systems
 
     made, formula = arithmetic.get(name, digits), systems.get(system).formula
-    jobs = {n: _job(formula, SYSTEMS[system], n) for n in (SHORT, long)}
-    taken: dict[int, list[float]] = {n: [] for n in jobs}
-    jobs[SHORT].go(made)
+    kernel_runs = {n: _job(formula, SYSTEMS[system], n) for n in (SHORT, long)}
+    taken: dict[int, list[float]] = {n: [] for n in kernel_runs}
+    kernel_runs[SHORT].go(made)
     for _ in range(ROUNDS):
         for steps, times in ((SHORT, 10), (long, 1)):
-            taken[steps] += [jobs[steps].go(made).seconds / steps for _ in range(times)]
+            taken[steps] += [kernel_runs[steps].go(made).seconds / steps for _ in range(times)]
     return statistics.median(taken[SHORT]), statistics.median(taken[long])
 
 
@@ -98,7 +98,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     from verify.commands.input import target
     from verify.execution.execute import Store, execute
     from verify.execution.executors import Where
-    from verify.scenes.results.core import RunResult
+    from verify.scenes.results.run import RunResult
     from verify.studies.plan import plan_scenes
 
     _, scenes, _ = target("paper")

@@ -17,7 +17,7 @@ from fractions import Fraction
 from verify.execution import keeping
 from verify.execution.executors import Call, Place, Where, opened, performed
 from verify.execution.perform import perform
-from verify.scenes.tasks import SeparationTask
+from verify.studies.separation.task import SeparationTask
 
 FEW, MANY = 400_000, 4_000_000  # steps; fewer are stepped in another way
 TARGETS = {"2 workers": 1.8, "Dask, 2 workers": 1.7}

@@ -23,8 +23,8 @@ from verify.execution.execute import execute
 from verify.execution.executors import HERE, Call, Where, opened, performed
 from verify.execution.keeping import machine
 from verify.scenes.results.work_precision import WorkPrecisionResult
-from verify.scenes.tasks import WorkPrecisionTask
 from verify.studies.plan import plan_scenes
+from verify.studies.work_precision.task import WorkPrecisionTask
 
 distributed = pytest.importorskip("distributed")
 GIVEN_UP = 1  # workers that may be lost with a task, so that a test of it is short

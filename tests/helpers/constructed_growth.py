@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from verify.scenes.results.core import AverageResult, GrowthLawResult, PredictionResult, Value
+from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
+from verify.scenes.results.value import Value
 
 
 def value(text: str) -> Value:

@@ -8,9 +8,11 @@ from verify.arithmetic.exact import decimal, text
 from verify.claims.findings import Findings
 from verify.claims.judge import check_claims
 from verify.claims.kinds import Claim
-from verify.scenes.results.core import ClaimResult, ProofResult, RunResult, Value
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.value import Value
 from verify.scenes.scene import Scene, scene_from
-from verify.scenes.tasks import key
 from verify.studies.plan import grid_task, proof_task
 from verify.verdict import Verdict
 
@@ -79,11 +81,11 @@ def made_findings(
 ) -> Findings:
     """Findings whose grid run at step size h and start k has `values(h, k)`."""
     assert scene.grid is not None
-    results: dict[str, Any] = {key(proof_task(scene, "lie2")): proof or made_proof()}
+    results: dict[str, Any] = {proof_task(scene, "lie2").key: proof or made_proof()}
     for k, start in enumerate(scene.grid.initial_values):
         for h in scene.grid.step_sizes:
             at = {"q": text(start.q), "p": text(start.p), **changes}
-            results[key(grid_task(scene, "lie2", h, k))] = made_run(h, values(h, k), **at)
+            results[grid_task(scene, "lie2", h, k).key] = made_run(h, values(h, k), **at)
     return Findings({scene.name: scene}, results)
 
 

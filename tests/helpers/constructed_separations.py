@@ -3,14 +3,14 @@
 from decimal import Decimal
 from typing import Any
 
-from verify.scenes.results.core import (
+from verify.scenes.results.separation import (
     EvaluationResult,
     GrowthResult,
     Parts,
     SeparationGrid,
     SeparationResult,
-    Value,
 )
+from verify.scenes.results.value import Value
 from verify.studies.separation.separate import as_grid
 
 PARTS = ("input", "trajectory", "determinant", "product")

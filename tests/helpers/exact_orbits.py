@@ -18,7 +18,7 @@ from tests.helpers.random_formulas import H, P, Q, lie_step, plain, plain_delta_
 from verify.arithmetic.balls import in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 
 OBSERVABLES = frozenset({"lambda", "lambda_max", "mse", "delta_j_max"})
 True_ = tuple[Fraction, Fraction]  # a value and the radius around it in which the true one is
@@ -38,10 +38,10 @@ class Case:
     steps: int
     parameters: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
 
-    def job(self, observables: frozenset[str] = OBSERVABLES) -> Job:
+    def run(self, observables: frozenset[str] = OBSERVABLES) -> KernelRun:
         start = {"p": self.p, "q": self.q, "h": self.h}
         h = Hamiltonian.parse(self.text, self.parameters)
-        return Job(h, self.scheme, start, self.steps, observables, 0)
+        return KernelRun(h, self.scheme, start, self.steps, observables, 0)
 
 
 def case(text: str, scheme: str, q: Any, p: Any, h: Any, steps: int, **parameters: Any) -> Case:

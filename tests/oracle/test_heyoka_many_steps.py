@@ -32,7 +32,7 @@ from tests.oracle.by_heyoka import (
 )
 from verify import arithmetic
 from verify.runs.run import run
-from verify.scenes.results.core import RunResult
+from verify.scenes.results.run import RunResult
 
 STEPS = 300
 START = (Fraction(1, 4), Fraction(5, 4))

@@ -79,11 +79,11 @@ def results(asked: Sequence[Asked], backwards: bool = False) -> dict[Asked, str]
     """Of each all its results as text; backwards: the last one first, and in it the last result."""
     found = {}
     for one in list(asked)[::-1] if backwards else asked:
-        jobs = [lambda one=one, s=s: proved(one, s) for s in (False, True)]
-        jobs += [lambda one=one, name=name: ran(one, name) for name in RUNS]
-        order = range(len(jobs))[::-1] if backwards else range(len(jobs))
-        made = {k: jobs[k]() for k in order}
-        found[one] = json.dumps([made[k] for k in range(len(jobs))], sort_keys=True)
+        kernel_runs = [lambda one=one, s=s: proved(one, s) for s in (False, True)]
+        kernel_runs += [lambda one=one, name=name: ran(one, name) for name in RUNS]
+        order = range(len(kernel_runs))[::-1] if backwards else range(len(kernel_runs))
+        made = {k: kernel_runs[k]() for k in order}
+        found[one] = json.dumps([made[k] for k in range(len(kernel_runs))], sort_keys=True)
     return found
 
 

@@ -4,20 +4,18 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import flint
 
+from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.generator import terms_of
 from verify.arithmetic.flint_precision import working_precision
-
-if TYPE_CHECKING:
-    from verify.algebra.ring import Ring
 
 _FAR_POINTS = 200
 
 
-def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) -> Any:
+def enclose(ring: DifferentialRing, x: Any, point: dict[str, Fraction], precision: int) -> Any:
     """A ball (flint.arb) that contains x at the point, or None where x is not defined.
 
     Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
@@ -36,7 +34,7 @@ def enclose(ring: "Ring", x: Any, point: dict[str, Fraction], precision: int) ->
         return enclose_over(ring, x, exact)
 
 
-def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
+def enclose_over(ring: DifferentialRing, x: Any, box: Mapping[str, Any]) -> Any:
     """A ball that contains x at every point of a box of balls, or None where x may be undefined.
 
     In flint's present precision.
@@ -45,7 +43,9 @@ def enclose_over(ring: "Ring", x: Any, box: Mapping[str, Any]) -> Any:
     return None if found is None else found[0]
 
 
-def enclose_all(ring: "Ring", elements: Sequence[Any], box: Mapping[str, Any]) -> list[Any] | None:
+def enclose_all(
+    ring: DifferentialRing, elements: Sequence[Any], box: Mapping[str, Any]
+) -> list[Any] | None:
     """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
     values: dict[int, Any] = {}
     powers: dict[tuple[int, int], Any] = {}

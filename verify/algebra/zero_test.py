@@ -4,13 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
-from typing import TYPE_CHECKING
 
+from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.enclosure import enclose, points
 from verify.algebra.generator import Poly
-
-if TYPE_CHECKING:
-    from verify.algebra.ring import Ring
 
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
@@ -25,7 +22,7 @@ class Decision:
     enclosure: str = ""
 
 
-def decided(ring: "Ring", x: Poly) -> Decision:
+def decided(ring: DifferentialRing, x: Poly) -> Decision:
     """Of x in normal form."""
     if x == 0:
         return Decision(True)
@@ -40,7 +37,7 @@ def decided(ring: "Ring", x: Poly) -> Decision:
 
 
 def _witness(
-    ring: "Ring", x: Poly, at: Iterable[dict[str, Fraction]], precision: int
+    ring: DifferentialRing, x: Poly, at: Iterable[dict[str, Fraction]], precision: int
 ) -> Decision | None:
     for point in at:
         value = enclose(ring, x, point, precision)
@@ -49,7 +46,7 @@ def _witness(
     return None
 
 
-def clear_inverses(ring: "Ring", x: Poly) -> Poly:
+def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
     """x times the powers of denominators that remove every inverse, in normal form."""
     for g in reversed([g for g in ring.generators if g.kind == "inverse"]):
         parts = ring.split(x, g.index)

@@ -3,18 +3,27 @@
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from fractions import Fraction
-from typing import Any
+from typing import Any, Protocol
 
 import flint
 
 from verify.arithmetic.exact import known_digits
 from verify.arithmetic.flint_precision import working_precision
-from verify.scenes.results.core import Value
 
 Ball = Any  # flint.arb, which has no type stubs
 UNKNOWN = flint.arb.nan()
 _BITS = 256
 _MOST_EXPONENT = 1 << 17  # of what becomes a rational; a ball's exponent may itself be astronomical
+
+
+class Reported(Protocol):
+    """A number with a bound of its error, both as decimals."""
+
+    @property
+    def value(self) -> str: ...
+
+    @property
+    def bound(self) -> str: ...
 
 
 def precision() -> AbstractContextManager[None]:
@@ -26,7 +35,7 @@ def rational_ball(value: Fraction) -> Ball:
     return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 
-def ball(value: Value) -> Ball:
+def ball(value: Reported) -> Ball:
     """The ball of a reported value and its bound."""
     return around(Fraction(value.value), Fraction(value.bound))
 

@@ -9,7 +9,7 @@ from verify.claims.formulas import step_map_of
 from verify.claims.kinds import AreaClaim, ConvergenceOrderClaim, OrderClaim
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of, leading_of
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 

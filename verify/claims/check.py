@@ -14,9 +14,9 @@ from verify.claims.plan import add_claims
 from verify.errors import InputError
 from verify.execution.execute import Done, Store, execute
 from verify.execution.executors import ANYWHERE, Where
-from verify.execution.perform import Result
-from verify.scenes.plan import Plan
-from verify.scenes.results.core import ClaimResult
+from verify.execution.plan import Plan
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.claim import ClaimResult
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Check:
     file: ClaimsFile
     claims: tuple[Claim, ...]
     plan: Plan
-    known: dict[str, Result]
+    known: dict[str, Frozen]
 
     def run(
         self, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
@@ -44,7 +44,7 @@ class Check:
             found[claim.id] = self._judge(claim, {**self.known, **results})
         return [found[claim.id] for claim in self.claims]
 
-    def _judge(self, claim: Claim, results: Mapping[str, Result]) -> ClaimResult:
+    def _judge(self, claim: Claim, results: Mapping[str, Frozen]) -> ClaimResult:
         try:
             return check_claim(claim, Findings(self.file.scenes, results))
         except InputError as error:

@@ -23,7 +23,7 @@ from verify.claims.kinds import (
 )
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
 from verify.schemes.step_map import H_STEP
 from verify.verdict import Verdict

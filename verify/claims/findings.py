@@ -5,17 +5,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from verify.errors import InputError
-from verify.execution.perform import Result
-from verify.scenes.results.core import (
-    AverageResult,
-    ClaimResult,
-    CriterionResult,
-    ProofResult,
-    RunResult,
-    SeparationResult,
-)
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.claim import ClaimResult, CriterionResult
+from verify.scenes.results.growth import AverageResult
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.separation import SeparationResult
 from verify.scenes.scene import Grid, Scene
-from verify.scenes.tasks import key
 from verify.studies.criteria import judge
 from verify.studies.plan import grid_task, growth_task, proof_task, separation_task
 from verify.verdict import Verdict
@@ -26,7 +22,7 @@ class Findings:
     """The scenes with all results that were computed for them."""
 
     scenes: Mapping[str, Scene]
-    results: Mapping[str, Result] = field(default_factory=dict)
+    results: Mapping[str, Frozen] = field(default_factory=dict)
 
     def scene(self, name: str) -> Scene:
         if name not in self.scenes:
@@ -41,7 +37,7 @@ class Findings:
 
     def proof(self, scene: Scene, scheme: str) -> ProofResult:
         _has_scheme(scene, scheme)
-        result = self.results[key(proof_task(scene, scheme))]
+        result = self.results[proof_task(scene, scheme).key]
         assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's
         return result
 
@@ -50,7 +46,7 @@ class Findings:
         if scene.grid is None:
             return []
         names = [
-            key(grid_task(scene, scheme, h, start))
+            grid_task(scene, scheme, h, start).key
             for start in range(len(scene.grid.initial_values))
             for h in scene.grid.step_sizes
         ]
@@ -60,7 +56,7 @@ class Findings:
     def separations(self, scene: Scene, scheme: str, grid: Grid) -> list[SeparationResult]:
         """The separations over a grid by initial value, then step size."""
         names = [
-            key(separation_task(scene, scheme, grid, h, start))
+            separation_task(scene, scheme, grid, h, start).key
             for start in range(len(grid.initial_values))
             for h in grid.step_sizes
         ]
@@ -72,7 +68,7 @@ class Findings:
         if scene.grid is None:
             return []
         starts = range(len(scene.grid.initial_values))
-        found = [self.results.get(key(growth_task(scene, scheme, start))) for start in starts]
+        found = [self.results.get(growth_task(scene, scheme, start).key) for start in starts]
         return [r for r in found if isinstance(r, AverageResult)]
 
     def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:

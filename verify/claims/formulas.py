@@ -22,7 +22,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion
 from verify.proof.order import convergence_of
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
 from verify.schemes.step_map import H_STEP, StepMap, grouped, h_inside
 from verify.verdict import Verdict

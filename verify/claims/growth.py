@@ -29,9 +29,10 @@ from verify.claims.runs import (
     start_of,
 )
 from verify.errors import InputError
-from verify.scenes.results.core import ClaimResult, RunResult
+from verify.runs.task import RunTask
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import RunTask, key
 from verify.studies.plan import grid_task
 from verify.verdict import Verdict
 
@@ -83,7 +84,7 @@ def check_growth(claim: GrowthClaim, findings: Findings) -> ClaimResult:
 def _by_proof(claim: GrowthClaim, findings: Findings) -> ClaimResult | None:
     """The verdict of a proof, where there is one: so far of ΔJ ≡ 0 alone."""
     scene = findings.scene_of(claim)
-    runs = [findings.results[key(task)] for task in growth_tasks(scene, claim.scheme)]
+    runs = [findings.results[task.key] for task in growth_tasks(scene, claim.scheme)]
     if not all(isinstance(run, RunResult) and _zero(run) for run in runs):
         return None
     holds = claim.growth == "bounded"
@@ -99,7 +100,7 @@ def _zero(run: RunResult) -> bool:
 
 def _by_runs(claim: GrowthClaim, findings: Findings) -> ClaimResult:
     tasks = growth_tasks(findings.scene_of(claim), claim.scheme)
-    runs = [findings.results[key(task)] for task in tasks]
+    runs = [findings.results[task.key] for task in tasks]
     try:
         with precision():
             values = [_largest(run) for run in runs]

@@ -11,7 +11,7 @@ from verify.claims import regions as flow_claims
 from verify.claims.every_hamiltonian import check_every
 from verify.claims.findings import Checks, Findings, result
 from verify.claims.kinds import Claim, CriteriaClaim, TheoremClaim
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from verify.errors import InputError
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.values import Number, StepSize
 
 EVERY_SEPARABLE = "separable hamiltonian"

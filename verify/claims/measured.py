@@ -22,7 +22,8 @@ from verify.claims.findings import Checks, Findings, result
 from verify.claims.kinds import LessClaim, MagnitudeClaim, MonotoneClaim, SpreadClaim
 from verify.claims.runs import LABELS, QUANTITIES, all_hold, decided, rows_of, sign, start_of
 from verify.errors import InputError
-from verify.scenes.results.core import ClaimResult, RunResult
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
 
 

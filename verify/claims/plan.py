@@ -10,12 +10,12 @@ from verify.claims.growth import growth_tasks
 from verify.claims.kinds import Claim, CriteriaClaim, FlowClaim, GrowthClaim
 from verify.claims.regions import flow_tasks_of
 from verify.claims.scenes import ON_RUNS
-from verify.execution.perform import Result
+from verify.execution.plan import Plan
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import known_run
-from verify.scenes.plan import Plan
+from verify.runs.task import RunTask
+from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import RunTask, key
 from verify.studies.plan import grid_task, proof_task
 
 _BY_PROOF_ALONE = (1, 2)  # criteria
@@ -23,15 +23,15 @@ _BY_PROOF_ALONE = (1, 2)  # criteria
 
 def add_claims(
     plan: Plan, claims: Sequence[Claim], scenes: Mapping[str, Scene]
-) -> dict[str, Result]:
+) -> dict[str, Frozen]:
     """Adds to the plan what the claims need; returns what needs no run, by the task's key.
 
     Raises InputError for a claim whose scene is not among them.
     """
-    known: dict[str, Result] = {}
+    known: dict[str, Frozen] = {}
     for claim in claims:
         for task in _runs(claim, scenes):
-            name = key(task)
+            name = task.key
             found = known.get(name) or _without_a_run(task)
             if found is None:
                 plan.need(task, f"claim {claim.id}")
@@ -65,7 +65,7 @@ def _runs(claim: Claim, scenes: Mapping[str, Scene]) -> list[RunTask]:
     ]
 
 
-def _without_a_run(task: RunTask) -> Result | None:
+def _without_a_run(task: RunTask) -> Frozen | None:
     return known_run(
         Hamiltonian.parse(task.hamiltonian, task.parameters),
         task.scheme,

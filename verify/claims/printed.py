@@ -23,7 +23,8 @@ from verify.claims.findings import Checks, Findings, result
 from verify.claims.kinds import TableClaim, ValueClaim
 from verify.claims.runs import LABELS, NEEDS, QUANTITIES, all_hold, decided, rows_of, start_of
 from verify.errors import InputError
-from verify.scenes.results.core import ClaimResult, RunResult
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
 
 _ALSO_SHOWN = 3  # digits beyond those that are printed

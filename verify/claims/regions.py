@@ -10,11 +10,11 @@ from verify.arithmetic.exact import text
 from verify.claims.findings import Checks, Findings, result
 from verify.claims.kinds import FlowAreaClaim, FlowClaim, FlowDistanceClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import FlowTask, key
 from verify.studies.regions.plan import flow_tasks
+from verify.studies.regions.task import FlowTask
 from verify.verdict import Verdict
 
 _HEAD = ("h", "N", "t")
@@ -97,7 +97,7 @@ _At = tuple[str, str, str]  # h, N, t
 def _images(claim: FlowClaim, scene: Scene, findings: Findings) -> list[tuple[_At, FlowImage]]:
     found = []
     for task in flow_tasks_of(claim, scene):
-        image = findings.results.get(key(task))
+        image = findings.results.get(task.key)
         if isinstance(image, FlowImage):
             found.append(((text(task.step_size), str(image.steps), image.time), image))
     return found

@@ -12,16 +12,19 @@ from verify.claims.plan import add_claims
 from verify.execution.execute import Done, Store, execute
 from verify.execution.executors import ANYWHERE, Where
 from verify.execution.keeping import machine, versions
+from verify.execution.plan import Plan
 from verify.hamiltonians import systems
 from verify.scenes.paper_figures import PaperFigure
-from verify.scenes.plan import Plan
-from verify.scenes.results.core import EveryResult, GrowthLawResult, RunResult, SeparationGrid
 from verify.scenes.results.exploration import Gallery
+from verify.scenes.results.growth import GrowthLawResult
+from verify.scenes.results.proof import EveryResult
 from verify.scenes.results.report import Provenance, Report, SceneResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import EveryTask, key
 from verify.studies.plan import plan_scenes, series_task
+from verify.studies.proofs.every import EveryTask
 from verify.studies.regions.findings import flows_of
 from verify.studies.separation.separate import as_grid
 from verify.studies.stability.findings import judged_cases, largest_steps, stability_maps
@@ -126,7 +129,7 @@ def _series(scene: Scene, findings: Findings) -> Iterator[RunResult]:
     """The series that were run, each with what the scene says it repeats."""
     for scheme in scene.schemes:
         for index, asked in enumerate(scene.series):
-            run = findings.results.get(key(series_task(scene, scheme, index)))
+            run = findings.results.get(series_task(scene, scheme, index).key)
             if isinstance(run, RunResult):
                 yield run.model_copy(update={"source": asked.source})
 
@@ -148,7 +151,7 @@ def _separations(scene: Scene, findings: Findings, *, own: bool) -> tuple[Separa
 
 def _every(scene: Scene, findings: Findings) -> tuple[EveryResult, ...]:
     """What is proved of the scene's schemes for every H, where it was asked for."""
-    found = (findings.results.get(key(EveryTask(scheme=name))) for name in scene.schemes)
+    found = (findings.results.get(EveryTask(scheme=name).key) for name in scene.schemes)
     return tuple(r for r in found if scene.every_hamiltonian and isinstance(r, EveryResult))
 
 
@@ -156,7 +159,7 @@ def _growth_laws(scene: Scene, findings: Findings) -> tuple[GrowthLawResult, ...
     """The grid's runs against the growth law, where it was asked for."""
     if scene.grid is None or not scene.grid.growth:
         return ()
-    from verify.studies.growth_law import predictions
+    from verify.studies.growth.prediction import predictions
 
     exact, found = scene.exact_hamiltonian(), []
     for scheme in scene.schemes:
@@ -172,6 +175,6 @@ def _work_precision(scene: Scene, findings: Findings) -> WorkPrecisionResult | N
     """Error against run time, where it was asked for."""
     if scene.work_precision is None:
         return None
-    found = findings.results[key(work_precision_task(scene, scene.work_precision))]
+    found = findings.results[work_precision_task(scene, scene.work_precision).key]
     assert isinstance(found, WorkPrecisionResult)  # noqa: S101 - the key is such a task's
     return found

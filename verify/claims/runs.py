@@ -7,7 +7,8 @@ from typing import Any
 from verify.arithmetic.balls import Ball, ball, lg, precision
 from verify.claims.findings import Findings, result
 from verify.errors import InputError
-from verify.scenes.results.core import ClaimResult, RunResult
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 

@@ -26,10 +26,18 @@ from verify.claims.kinds import (
 )
 from verify.claims.runs import NEEDS
 from verify.errors import InputError
-from verify.runs.run import AUTO, CLOSED_FORM
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Grid, Scene
-from verify.scenes.values import Digits, InitialValue, Number, Steps, StepSize, Time
+from verify.scenes.values import (
+    AUTO,
+    CLOSED_FORM,
+    Digits,
+    InitialValue,
+    Number,
+    Steps,
+    StepSize,
+    Time,
+)
 from verify.studies.regions.plan import maps_of
 
 SUBJECTS = ("scene", "system", "hamiltonian", "every")

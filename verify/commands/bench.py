@@ -15,7 +15,7 @@ from verify.errors import InputError
 if TYPE_CHECKING:
     from verify.scenes.results.work_precision import WorkPrecisionResult
     from verify.scenes.scene import Scene
-    from verify.scenes.tasks import WorkPrecisionTask
+    from verify.studies.work_precision.task import WorkPrecisionTask
 
 
 @click.command()
@@ -51,22 +51,21 @@ def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
     from verify.commands.progress import progress_bar
     from verify.studies.work_precision import peers
-    from verify.studies.work_precision.measure import work_precision
 
     for scene in scenes:
         task = _task(scene)
         total = len(task.schemes) * len(task.step_sizes)
         total += sum(len(peers.get(name).TOLERANCES) for name in task.peers)
         with progress_bar(f"{scene.name}, errors", total, unit="") as advance:
-            yield scene.name, work_precision(scene.exact_hamiltonian(), task, advance)
+            yield scene.name, task.measure(advance)
 
 
 def _measured_there(
     scenes: "list[Scene]", cluster: str
 ) -> "Iterator[tuple[str, WorkPrecisionResult]]":
     """On the cluster, one after another: the times are of the machine that each result names."""
+    from verify.execution.execute import perform
     from verify.execution.executors import Call, Where, opened, performed
-    from verify.execution.perform import perform
 
     calls = [Call(each.name, perform, (_task(each),), f"scene {each.name}") for each in scenes]
     with opened(Where(cluster=cluster)) as place:

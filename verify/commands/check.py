@@ -12,7 +12,7 @@ from verify.commands.tasks import told, with_tasks
 
 if TYPE_CHECKING:
     from verify.execution.executors import Where
-    from verify.scenes.results.core import ClaimResult
+    from verify.scenes.results.claim import ClaimResult
 
 REFUTED = 1  # exit status
 

@@ -92,11 +92,11 @@ def explore(
 
     from verify.execution.execute import Store
     from verify.exploration.explore import Exploration, explore, found_earlier, keep_found
-    from verify.scenes.tasks import Drawn
+    from verify.exploration.sample_space import SampleSpace
 
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
     looks, left_out = _looks(claims, names) if maximise is None else ({}, {})
-    drawn = Drawn(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
+    drawn = SampleSpace(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
     if maximise is not None:
         if claims or names:
             raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")

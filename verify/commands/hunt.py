@@ -15,8 +15,8 @@ from verify.commands.tasks import told
 if TYPE_CHECKING:
     from verify.execution.executors import Where
     from verify.exploration.hunting import Hunt
+    from verify.exploration.sample_space import SampleSpace
     from verify.scenes.results.exploration import Gallery, GalleryScene
-    from verify.scenes.tasks import Drawn
 
 STEPS = 100  # of each scene, where nothing else is asked for
 _OWN = re.compile(r"worst-([0-9]+)\.toml")
@@ -27,7 +27,7 @@ def hunt(
     seed: int,
     examples: int,
     steps: int,
-    drawn: "Drawn",
+    drawn: "SampleSpace",
     output: Path,
     keep: Path | None,
     where: "Where",

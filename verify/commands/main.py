@@ -99,8 +99,8 @@ def run(
     """
     from verify.commands.progress import steps_bar
     from verify.execution.keeping import Keeper, name_of
-    from verify.runs.run import ASKED, AUTO, CLOSED_FORM
     from verify.runs.run import run as run_scheme
+    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED
 
     exact = hamiltonian_of(system, hamiltonian, params)
     arithmetic = arithmetic or (AUTO if digits else "float64")
@@ -119,7 +119,7 @@ def run(
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
             # The plain way shows what rounding does to it; at many digits that is nothing.
-            observables=ASKED if arithmetic == "float64" else CLOSED_FORM,
+            observables=REPORTED if arithmetic == "float64" else CLOSED_FORM,
             progress=tell,
             keeper=keeper,
         )

@@ -8,16 +8,16 @@ import click
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.proof.order import Proof
+    from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
-    from verify.scenes.results.core import (
+    from verify.scenes.results.report import Report
+    from verify.scenes.results.run import RunResult
+    from verify.scenes.results.separation import (
         CrossoverResult,
         EvaluationResult,
-        RunResult,
         SeparationGrid,
         SeparationResult,
     )
-    from verify.scenes.results.report import Report
 
 _LONGEST = 400  # characters of a formula on the terminal
 _LABELS = {

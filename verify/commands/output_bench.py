@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from verify.scenes.results.core import Value
+    from verify.scenes.results.value import Value
     from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
 
 

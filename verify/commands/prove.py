@@ -13,7 +13,7 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.proof.order import Proof
+    from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
     from verify.schemes.scheme import Scheme
 

@@ -105,7 +105,7 @@ def _tell(name: str) -> None:
 def _writer(name: str) -> Any:
     """What writes a report in that format; only what is asked for is imported."""
     if name == "md":
-        from verify.pages.text.markdown import write as write_markdown
+        from verify.pages.markdown.page import write as write_markdown
 
         return write_markdown
     from verify.pages.page import write as write_page

@@ -79,11 +79,11 @@ def _of_scenes(
 
 
 def _print(found: "StabilityFindings") -> None:
-    width = max((len(case.verdict) for case in found.cases), default=0)
-    for case in found.cases:
-        click.echo(f"{case.verdict:{width}}  {case.id}")
-        if case.kind not in _PLAIN:
-            told = textwrap.fill(case.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
+    width = max((len(run.verdict) for run in found.runs), default=0)
+    for run in found.runs:
+        click.echo(f"{run.verdict:{width}}  {run.id}")
+        if run.kind not in _PLAIN:
+            told = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
             click.echo(told)
     for step in found.largest_steps:
         measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"

@@ -10,7 +10,7 @@ import click
 
 if TYPE_CHECKING:
     from verify.execution.execute import Done
-    from verify.scenes.tasks import Task
+    from verify.execution.task import Task
 
 keep_option = click.option(
     "--keep",
@@ -52,12 +52,14 @@ def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
 def told(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[Done]":
     """Yields what is called with each finished task; an interruption says what is kept where."""
     from verify.commands.progress import progress_bar
-    from verify.execution.execute import Store, cost
+    from verify.execution.execute import Store
 
-    with progress_bar(f"{len(tasks)} tasks", sum(map(cost, tasks.values())), unit="") as advance:
+    with progress_bar(
+        f"{len(tasks)} tasks", sum(task.cost for task in tasks.values()), unit=""
+    ) as advance:
 
         def done(name: str, _: object) -> None:
-            advance(cost(tasks[name]))
+            advance(tasks[name].cost)
 
         try:
             yield done

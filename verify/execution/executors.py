@@ -11,7 +11,7 @@ import re
 import socket
 import threading
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
@@ -89,8 +89,10 @@ class Place(Protocol):
 
 
 @contextlib.contextmanager
-def opened(where: Where) -> Iterator[Place]:
+def opened(where: Where, modules: Sequence[str] = ()) -> Iterator[Place]:
     """What performs calls there; left by an exception, it ends what is under way at once.
+
+    `modules`: what processes have imported before their first call.
 
     Processes are started as they are needed. InputError where the cluster does not answer, has no
     workers, or has other code than this.
@@ -103,7 +105,7 @@ def opened(where: Where) -> Iterator[Place]:
     elif where.workers == 1:
         yield _Here()
     else:
-        processes = Processes(where.workers or os.cpu_count() or 1)
+        processes = Processes(where.workers or os.cpu_count() or 1, modules)
         try:
             yield processes
         except BaseException:

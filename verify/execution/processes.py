@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cached_property
@@ -24,8 +24,9 @@ class Processes:
 
     local, attempts, blames = True, 3, True
 
-    def __init__(self, workers: int) -> None:
-        self.room = workers
+    def __init__(self, workers: int, modules: Sequence[str] = ()) -> None:
+        """`modules`: what the processes have imported before their first call."""
+        self.room, self._modules = workers, modules
         self._idle: list[ProcessPoolExecutor] = []
         self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
 
@@ -44,7 +45,7 @@ class Processes:
 
     @cached_property
     def _context(self) -> Any:
-        return _forked_beside_this()
+        return _forked_beside_this(self._modules)
 
     def release(self, future: "Future[Any]") -> None:
         pool = self._busy.pop(future)
@@ -77,7 +78,7 @@ def _process(context: Any) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
 
 
-def _forked_beside_this() -> Any:
+def _forked_beside_this(modules: Sequence[str]) -> Any:
     """How a process comes to be: forked, but not from this one.
 
     This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported
@@ -87,7 +88,7 @@ def _forked_beside_this() -> Any:
     if sys.platform == "darwin" or "forkserver" not in methods:  # macOS's libraries start threads
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["verify.execution.perform"])
+    context.set_forkserver_preload(list(modules))
     with safe_path(), _held(signal.SIGINT):  # which it and the workers then never get
         forkserver.ensure_running()
     return context

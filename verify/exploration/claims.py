@@ -38,9 +38,9 @@ from verify.claims.scenes import ON_RUNS, scene_for
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import HERE
+from verify.execution.plan import Plan
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Example
-from verify.scenes.plan import Plan
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.verdict import Verdict

@@ -17,12 +17,14 @@ from verify.errors import InputError
 from verify.execution.execute import Done, Store, execute
 from verify.execution.executors import ANYWHERE, Where
 from verify.execution.keeping import name_of, write_atomically
-from verify.exploration import properties
+from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
-from verify.exploration.property import Property, Violation
+from verify.exploration.property import Property
+from verify.exploration.property_checks import outcome, properties_of
 from verify.exploration.sample import Example
-from verify.exploration.scenes import drawn_scene, scenes_of, simplest
-from verify.scenes.plan import Plan
+from verify.exploration.sample_space import SampleSpace
+from verify.exploration.scenes import scenes_of
+from verify.exploration.tasks import ExploreTask, ShrinkTask
 from verify.scenes.results.exploration import (
     ExploreReport,
     ExploreResult,
@@ -32,8 +34,6 @@ from verify.scenes.results.exploration import (
     ShrunkResult,
 )
 from verify.scenes.scene import Scene, load_scene
-from verify.scenes.tasks import Drawn, ExploreTask, ShrinkTask
-from verify.scenes.toml_text import scene_text
 
 MOST_EXAMPLES = 10**12
 _STRETCH, _MOST_TASKS = 50, 20_000  # scenes of a task, and tasks
@@ -51,7 +51,7 @@ class Exploration:
     examples: int
     properties: tuple[str, ...]
     claims: tuple[str, ...] = ()
-    drawn: Drawn = field(default_factory=Drawn)
+    drawn: SampleSpace = field(default_factory=SampleSpace)
 
     def __post_init__(self) -> None:
         if not 1 <= self.examples <= MOST_EXAMPLES:
@@ -68,7 +68,7 @@ class Exploration:
 
     @property
     def looks(self) -> tuple[Property, ...]:
-        return _looks(self.properties, self.claims)
+        return properties_of(self.properties, self.claims)
 
     @cached_property
     def plan(self) -> Plan:
@@ -102,65 +102,6 @@ class Exploration:
             )
             plan.need(task, "it failed")
         return plan
-
-
-def _looks(names: Sequence[str], claims: Sequence[str]) -> tuple[Property, ...]:
-    return (*map(properties.get, names), *map(claim_property, claims))
-
-
-# -- tasks ----------------------------------------------------------------------------------------
-
-
-def look(task: ExploreTask) -> ExploreResult:
-    """Holds each of the task's properties against each of its scenes."""
-    looked_at, failed = Counter[str](), Counter[str]()
-    first: dict[str, Failure] = {}
-    asked = _looks(task.properties, task.claims)
-    for number in range(task.first, task.first + task.count):
-        example = Example.of(drawn_scene(task.drawn, task.seed, number))
-        for each in asked:
-            spoke, wrong = outcome(each, example)
-            looked_at[each.name] += spoke
-            if wrong:
-                failed[each.name] += 1
-                found = Failure(property=each.name, example=number, message=wrong)
-                first.setdefault(each.name, found)
-    names = [each.name for each in asked]
-    return ExploreResult(
-        looked_at={name: looked_at[name] for name in names},
-        failed={name: failed[name] for name in names},
-        first=tuple(first.values()),
-    )
-
-
-def outcome(asked: Property, example: Example) -> tuple[bool, str]:
-    """Whether the property speaks of the example, and what is wrong; empty where nothing is."""
-    try:
-        return asked.holds(example), ""
-    except Violation as violation:
-        return True, str(violation)
-    except Exception as error:  # whatever the code under test may raise is a finding
-        return True, f"raised {type(error).__name__}: {' '.join(str(error).split())}"
-
-
-def shrink(task: ShrinkTask) -> ShrunkResult:
-    """The simplest scene for which the task's one property fails."""
-    (asked,) = _looks(task.properties, task.claims)
-    scene, message = simplest(
-        task.drawn, task.seed, task.example, lambda scene: outcome(asked, Example.of(scene))[1]
-    )
-    # Another scheme may have been drawn than the one that a claim speaks of.
-    named = scene.model_copy(
-        update={"name": slug(asked.name), "schemes": (asked.scheme or scene.schemes[0],)}
-    )
-    origin = f"example {task.example} of seed {task.seed}, shrunk"
-    comment = f"{asked.name}: {asked.sentence}\n{message}\n{origin}"
-    return ShrunkResult(
-        property=asked.name,
-        example=task.example,
-        message=message,
-        scene=scene_text(named, comment=comment),
-    )
 
 
 # -- the whole ------------------------------------------------------------------------------------

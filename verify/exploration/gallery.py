@@ -7,14 +7,15 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal, text
 from verify.execution.execute import Done, Store, execute
 from verify.execution.executors import ANYWHERE, Where
-from verify.exploration.hunting import COEFFICIENTS, REACH, STEP_SIZES, Found, Hunt, scene_of
+from verify.execution.plan import Plan
+from verify.exploration.hunting import Found, Hunt
+from verify.exploration.island_search import COEFFICIENTS, REACH, STEP_SIZES, scene_of
 from verify.exploration.measures import MEASURES, orbit
 from verify.exploration.sample import Example
-from verify.scenes.plan import Plan
-from verify.scenes.results.core import PartsAt, SeparationResult
 from verify.scenes.results.exploration import Gallery, GalleryScene, Worst
-from verify.scenes.tasks import SeparationTask, key
+from verify.scenes.results.separation import PartsAt, SeparationResult
 from verify.scenes.toml_text import scene_text
+from verify.studies.separation.task import SeparationTask
 
 _LONGER, _MOST_STEPS = 100, 10_000  # the run that is shown, in runs of the hunt, and its most steps
 _SHOWN = 6  # digits of a point
@@ -40,7 +41,7 @@ def gallery(
         for task in tasks:
             plan.need(task, "the gallery of the worst scenes")
         results = execute(plan, store, where=where, done=done)
-        of_tasks = [results[key(task)] for task in tasks]
+        of_tasks = [results[task.key] for task in tasks]
         return [result for result in of_tasks if isinstance(result, SeparationResult)]
 
     runs = separated(found.worst, longer)

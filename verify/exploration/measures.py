@@ -12,7 +12,7 @@ from fractions import Fraction
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
 from verify.exploration.sample import Example
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.studies.separation.chain import Separation
 from verify.studies.separation.working import Stopped
 
@@ -81,8 +81,8 @@ def growth(example: Example, digits: int = DIGITS) -> float | None:
 
 def orbit(example: Example) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
-    job = Job(*example.given, frozenset(), 0, sections=_POINTS)
-    trail = job.go(number_systems.get("mpfr", DIGITS)).trail
+    run = KernelRun(*example.given, frozenset(), 0, sections=_POINTS)
+    trail = run.go(number_systems.get("mpfr", DIGITS)).trail
     return [(example.q, example.p), *((x["q"], x["p"]) for x in trail)]
 
 
@@ -95,8 +95,8 @@ def _stays(example: Example, digits: int) -> Outcome | None:
     return found if near else None
 
 
-def _job(example: Example, observables: frozenset[str]) -> Job:
-    return Job(*example.given, observables, 0)
+def _job(example: Example, observables: frozenset[str]) -> KernelRun:
+    return KernelRun(*example.given, observables, 0)
 
 
 def _lg(x: Fraction) -> float:

@@ -7,7 +7,8 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import Proof, prove
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import TaylorSeries
@@ -121,5 +122,5 @@ class Example:
 
     @property
     def start(self) -> dict[str, Fraction]:
-        """p, q and h by name, as a job and an enclosure want them."""
+        """p, q and h by name, as a run and an enclosure want them."""
         return {"p": self.p, "q": self.q, "h": self.step_size}

@@ -16,8 +16,8 @@ from hypothesis.database import InMemoryExampleDatabase
 
 from verify import strategies
 from verify.exploration.property import Violation
+from verify.exploration.sample_space import SampleSpace
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import Drawn
 from verify.strategies.schemes import separable_for
 
 _BYTES = 4096
@@ -28,11 +28,11 @@ Look = Callable[[Scene], str]  # what is wrong with a scene; empty where nothing
 
 
 @lru_cache(maxsize=32)
-def scenes_of(drawn: Drawn) -> st.SearchStrategy[Scene]:
+def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
     """The strategy. Raises InputError for an unknown kind or scheme, and a degree below 1."""
     given_schemes = strategies.schemes(names=drawn.schemes) if drawn.schemes else None
     hamiltonians = None
-    if drawn.kinds or drawn.degree != Drawn().degree:
+    if drawn.kinds or drawn.degree != SampleSpace().degree:
         kinds = drawn.kinds or strategies.KINDS
         hamiltonians = strategies.hamiltonians(
             kinds, degree=drawn.degree, separable=separable_for(drawn.schemes)
@@ -42,7 +42,7 @@ def scenes_of(drawn: Drawn) -> st.SearchStrategy[Scene]:
     )
 
 
-def drawn_scene(drawn: Drawn, seed: int, number: int) -> Scene:
+def drawn_scene(drawn: SampleSpace, seed: int, number: int) -> Scene:
     """Scene `number` of the seed."""
     box, fuzz = _drawer(drawn)
     for attempt in range(_ATTEMPTS):
@@ -59,7 +59,7 @@ def bytes_of(seed: int, number: int, attempt: int = 0) -> bytes:
 
 
 @lru_cache(maxsize=32)
-def _drawer(drawn: Drawn) -> tuple[list[Scene], Callable[[bytes], Any]]:
+def _drawer(drawn: SampleSpace) -> tuple[list[Scene], Callable[[bytes], Any]]:
     box: list[Scene] = []
 
     @settings(database=None)
@@ -70,7 +70,7 @@ def _drawer(drawn: Drawn) -> tuple[list[Scene], Callable[[bytes], Any]]:
     return box, draw.hypothesis.fuzz_one_input  # type: ignore[attr-defined]
 
 
-def simplest(drawn: Drawn, seed: int, number: int, look: Look) -> tuple[Scene, str]:
+def simplest(drawn: SampleSpace, seed: int, number: int, look: Look) -> tuple[Scene, str]:
     """The simplest scene that hypothesis shrinks that one to, where `look` still finds something.
 
     It must find something in that scene itself.

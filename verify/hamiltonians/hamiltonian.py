@@ -13,8 +13,8 @@ from verify.algebra.generators import MAX_TERMS, embed
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
+from verify.drawable import drawn_by
 from verify.errors import InputError
-from verify.from_type import drawn_by
 from verify.hamiltonians.lie_derivatives import Along
 
 

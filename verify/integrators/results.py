@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from verify.proof.order import Proof
+from verify.proof.order_proof import Proof
 from verify.verdict import Verdict
 
 MOST_CLAIMED = 12

@@ -1,19 +1,17 @@
-"""A walk: one kernel's loop in chunks, what is noted on the way, and its checkpoints."""
+"""One kernel's loop in chunks, what is noted on the way, and its checkpoints."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels import tangent_map as tangent
 from verify.kernels.kernel import Kernel
-from verify.scenes.results.core import SeriesPoint
-
-if TYPE_CHECKING:
-    from verify.kernels.stepping import Job
+from verify.kernels.run_inputs import RunInputs
+from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Any, ...]
@@ -29,37 +27,37 @@ _SCALED = {
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 
 
-class Walk:
-    """Steps a job with one kernel from its start, or from where a checkpoint was kept."""
+class ChunkedLoop:
+    """Does a run with one kernel from its start, or from where a checkpoint was kept."""
 
     def __init__(
         self,
-        job: "Job",
+        run: RunInputs,
         kernel: Kernel,
         arithmetic: Arithmetic,
         limits: Sequence[Fraction],
         shift: int,
     ) -> None:
-        self.job, self.kernel, self.arithmetic, self.shift = job, kernel, arithmetic, shift
+        self.run, self.kernel, self.arithmetic, self.shift = run, kernel, arithmetic, shift
         number = arithmetic.number
-        self.fixed: list[Any] = [number(x) for x in job.inputs(kernel, shift).values()]
+        self.fixed: list[Any] = [number(x) for x in run.inputs(kernel, shift).values()]
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
-        self.section = -(-job.steps // job.sections)  # steps between two notes
+        self.section = -(-run.steps // run.sections)  # steps between two notes
         self.done, self.seconds = 0, 0.0
         self.trail: list[dict[str, Fraction]] = []
         self.tangents: list[dict[str, Fraction]] = []
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
-        inputs = (job.start, job.parameters, job.scheme, job.steps, job.points)
+        inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
-        self._restore(job.keeper.load(self._label))
+        self._restore(run.keeper.load(self._label))
         self._sound = self._mark()
 
     def _first_state(self) -> State:
-        start, number = self.job.start, self.arithmetic.number
+        start, number = self.run.start, self.arithmetic.number
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
@@ -71,11 +69,11 @@ class Walk:
     def chunks(self) -> Iterator[int]:
         """Steps to the end, and tells the steps done after every chunk; ends early where a number
         left the arithmetic's range, with `done` the steps that stayed in it."""
-        job = self.job
+        run = self.run
         self._advance(0)  # compiles: `seconds` is the stepping alone
-        while self.done < job.steps:
+        while self.done < run.steps:
             left = self.section - self.done % self.section
-            count = min(self.arithmetic.chunk, left, job.steps - self.done)
+            count = min(self.arithmetic.chunk, left, run.steps - self.done)
             begun = time.perf_counter()
             after = self._advance(count)
             self.seconds += time.perf_counter() - begun
@@ -86,7 +84,7 @@ class Walk:
             self._note()
             self._sound = self._mark()
             yield self.done
-            if job.keeper.due(self._label):
+            if run.keeper.due(self._label):
                 self.keep()
 
     def _advance(self, count: int) -> State | None:
@@ -124,7 +122,7 @@ class Walk:
                 low = name.endswith("low")
                 end = raw[name] - radius(x) if low else raw[name] + radius(x)
                 self._seen[name] = (min if low else max)(end, self._seen.get(name, end))
-        if self.done % self.section and self.done < self.job.steps:
+        if self.done % self.section and self.done < self.run.steps:
             return
         self.trail.append(self._finals(raw))
         if "growth" in raw:
@@ -145,7 +143,7 @@ class Walk:
         """p, q and the observables after the steps done, as the exact rationals that they are."""
         total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
         result = {"p": total["p"], "q": total["q"]}
-        for name in self.job.observables & set(_ACCUMULATORS):
+        for name in self.run.observables & set(_ACCUMULATORS):
             carried = _ACCUMULATORS[name]
             result[name] = self._unscaled(carried, total[carried])
         if "mse" in result:
@@ -157,10 +155,10 @@ class Walk:
     def radii(self) -> dict[str, Fraction]:
         """How far the last values may be from the true ones, where numbers are enclosures."""
         radius = self.arithmetic.radius
-        if radius is None or self.done < self.job.steps:
+        if radius is None or self.done < self.run.steps:
             return {}
         raw = {n: radius(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
-        names = self.job.observables & set(_ACCUMULATORS)
+        names = self.run.observables & set(_ACCUMULATORS)
         found = {"p": raw["p"], "q": raw["q"]} | {n: raw[_ACCUMULATORS[n]] for n in names}
         if "mse" in found:
             found["mse"] /= self.done
@@ -190,7 +188,7 @@ class Walk:
             "tangents": list(map(_texts, self.tangents[:tangents])),
             "series": [point.model_dump(mode="json") for point in self.series[:series]],
         }
-        self.job.keeper.save(self._label, data)
+        self.run.keeper.save(self._label, data)
 
     def _mark(self) -> tuple[int, float, State, dict[str, Fraction], tuple[int, ...]]:
         """Where the run is after a chunk and its notes; an interruption may come amid them."""

@@ -18,7 +18,7 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import LOOP, Kernel, kernel_for
 from verify.kernels.reach import limits
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 
 _LANES = 64  # points whose states stay in the nearest cache
 _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
@@ -46,8 +46,10 @@ class PointMap:
         """Raises UnsupportedError where the arithmetic lacks what the scheme needs."""
         self.arithmetic, self.steps = arithmetic, steps
         start = {"h": step_size, "p": Fraction(0), "q": Fraction(0)}
-        self.job = Job(hamiltonian, scheme, start, steps, observables, 0)
-        self.kernel = kernel_for(self.job.generic, scheme, arithmetic, observables, compensated)
+        self.kernel_run = KernelRun(hamiltonian, scheme, start, steps, observables, 0)
+        self.kernel = kernel_for(
+            self.kernel_run.generic, scheme, arithmetic, observables, compensated
+        )
         if self.kernel.scales or self.kernel.tangent:
             raise UnsupportedError(f"{arithmetic.name} carries no observables for many points")
 
@@ -62,7 +64,7 @@ class PointMap:
         return dict(zip(self.kernel.carried, self._one_by_one(p, q), strict=True))
 
     def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Any]:
-        given = [*self.job.inputs(self.kernel, 0).values(), *extra]
+        given = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
         return [self.arithmetic.number(x) for x in given]
 
     def _in_lanes(self, p: np.ndarray, q: np.ndarray) -> list[np.ndarray]:
@@ -109,7 +111,9 @@ class PointMap:
             return ()
         exact = self.arithmetic.exact
         far = {"p": max(abs(exact(x)) for x in p), "q": max(abs(exact(x)) for x in q)}
-        found = limits(self.kernel, self.job.inputs(self.kernel, 0), self.job.start | far)
+        found = limits(
+            self.kernel, self.kernel_run.inputs(self.kernel, 0), self.kernel_run.start | far
+        )
         if found is None:
             raise UnsupportedError(f"no box around the points is safe in {self.arithmetic.name}")
         return tuple(found)

@@ -1,21 +1,16 @@
-"""Stepping: a job of N steps, in chunks, in whatever arithmetic it is given."""
+"""Stepping: a run of N steps, in chunks, in whatever arithmetic it is given."""
 
 from collections.abc import Callable, Iterator, Mapping
-from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 
 from verify.arithmetic.exact import text
 from verify.arithmetic.number_system import Arithmetic
-from verify.errors import InputError
-from verify.execution.keeping import NOTHING, Keeper
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.chunked_loop import Progress, Walk
-from verify.kernels.computation import step_map_of
+from verify.kernels.chunked_loop import ChunkedLoop, Progress
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.reach import Limits, limits
-from verify.scenes.results.core import SeriesPoint
+from verify.kernels.run_inputs import RunInputs
+from verify.scenes.results.run import SeriesPoint
 
 
 @dataclass(frozen=True)
@@ -49,59 +44,8 @@ _NOWHERE = Outcome(
 )
 
 
-def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
-    """H with its parameters as the kernel's arguments, where the scheme takes it so.
-
-    A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
-    a = 1; then the values are put in.
-    """
-    generic = hamiltonian.generic()
-    return generic if _takes(generic, scheme) else Hamiltonian(hamiltonian.exact)
-
-
-@lru_cache(maxsize=256)
-def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
-    try:
-        step_map_of(hamiltonian, scheme)
-    except InputError:
-        return False
-    return True
-
-
-class Job:
-    """What is run, apart from the arithmetic it is run in.
-
-    The state is noted `points` times on the way where a series is kept, else `sections` times.
-    """
-
-    def __init__(
-        self,
-        hamiltonian: Hamiltonian,
-        scheme: str,
-        start: dict[str, Fraction],
-        steps: int,
-        observables: frozenset[str],
-        points: int,
-        keeper: Keeper = NOTHING,
-        sections: int = 16,
-    ) -> None:
-        self.generic, self.scheme = _compilable(hamiltonian, scheme), scheme
-        self.parameters, self.start = dict(hamiltonian.values), start
-        self.steps, self.observables, self.points = steps, observables, points
-        self.sections = points or sections
-        self.keeper = keeper
-
-    @property
-    def solved(self) -> bool:
-        """Whether a step solves equations; there is no certificate of such runs."""
-        return step_map_of(self.generic, self.scheme).solved
-
-    def observing(self, observables: frozenset[str]) -> "Job":
-        """The same job with other observables, and without a series."""
-        other = copy(self)
-        other.observables, other.points = observables, 0
-        other.sections = 16
-        return other
+class KernelRun(RunInputs):
+    """A run that can be done in any arithmetic."""
 
     def fits(self, arithmetic: Arithmetic) -> bool:
         """Whether a step from the start stays in an arithmetic of limited range.
@@ -131,10 +75,10 @@ class Job:
         made = (self.generic, self.scheme, arithmetic, observables, compensated)
         kernel = kernel_for(*made)
         if not arithmetic.absolute:
-            return self._walk(kernel, arithmetic, (), 0, progress, enough)
+            return self._loop(kernel, arithmetic, (), 0, progress, enough)
         outcome = _NOWHERE
         for shift, found in self._formats(kernel):
-            outcome = self._walk(kernel, arithmetic, tuple(found), shift, progress, enough)
+            outcome = self._loop(kernel, arithmetic, tuple(found), shift, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             reason = (
@@ -143,13 +87,6 @@ class Job:
             )
             outcome = replace(outcome, reason=reason)
         return outcome
-
-    def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
-        """h, the parameters and the scales by the names that the kernel's source has for them."""
-        h = self.start["h"]
-        named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
-        scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
-        return {"h": h, **named, **(scales if kernel.scales else {})}
 
     def _formats(self, kernel: Kernel) -> Iterator[tuple[int, Limits]]:
         """Scalings s of ΔJ with the limits that they have, the finest first.
@@ -165,7 +102,7 @@ class Job:
                 last = found
                 yield shift, found
 
-    def _walk(
+    def _loop(
         self,
         kernel: Kernel,
         arithmetic: Arithmetic,
@@ -174,27 +111,27 @@ class Job:
         progress: Progress | None,
         enough: Callable[[Outcome], bool] | None,
     ) -> Outcome:
-        walk = Walk(self, kernel, arithmetic, limits, shift)
+        loop = ChunkedLoop(self, kernel, arithmetic, limits, shift)
 
         def outcome() -> Outcome:
-            return Outcome(walk.done, tuple(walk.trail), tuple(walk.tangents), tuple(walk.series),
-                           walk.seconds, kernel, walk.radii(), walk.shift)  # fmt: skip
+            return Outcome(loop.done, tuple(loop.trail), tuple(loop.tangents), tuple(loop.series),
+                           loop.seconds, kernel, loop.radii(), loop.shift)  # fmt: skip
 
         def falls_short() -> bool:
-            return enough is not None and walk.done >= walk.section and not enough(outcome())
+            return enough is not None and loop.done >= loop.section and not enough(outcome())
 
         try:
             # A run that goes on from beyond its first checkpoint is asked about that one as well.
-            asked = walk.done >= walk.section
+            asked = loop.done >= loop.section
             if asked and falls_short():
-                return replace(_NOWHERE, done=walk.done, seconds=walk.seconds)
-            for done in walk.chunks():
+                return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)
+            for done in loop.chunks():
                 if progress:
                     progress(done)
                 if not asked and falls_short():
-                    return replace(_NOWHERE, done=done, seconds=walk.seconds)
-                asked = asked or done >= walk.section
+                    return replace(_NOWHERE, done=done, seconds=loop.seconds)
+                asked = asked or done >= loop.section
         except KeyboardInterrupt:
-            walk.keep()
+            loop.keep()
             raise
         return outcome()

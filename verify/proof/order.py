@@ -6,11 +6,8 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from fractions import Fraction
+from dataclasses import dataclass
 from functools import cached_property
-
-import sympy
 
 from verify.algebra.conditions import Condition
 from verify.algebra.generators import embed
@@ -18,59 +15,12 @@ from verify.algebra.power_series import Series, delta_j
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.hamiltonian import VectorField
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_left
+from verify.proof.order_proof import Proof
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
-
-
-@dataclass(frozen=True)
-class Proof:
-    """What is proved of one step map.
-
-    `order`: ΔJ = `leading`·h^order + O(h^(order+1)) with `leading` not the zero function; None
-    where ΔJ ≡ 0 (`area_preserving` True) or where it is not decided (`area_preserving` None).
-    `witness`: a point (p, q, parameters) at which `leading` is not zero; `enclosure`: its value.
-    `convergence_order`: p', q' agree with the exact flow up to h to this power; None where all
-    coefficients looked at agree. `convergence_decided`: whether it is shown to agree no further.
-    `verdict` is REFUTED for a map that is not a scheme for H at all,
-    or misses the order its scheme claims; `reason` says what was found in one line.
-    """
-
-    verdict: Verdict
-    reason: str
-    order: int | None
-    first: Leading
-    area_preserving: bool | None
-    convergence_order: int | None
-    step_map: StepMap = field(repr=False, compare=False)
-    witness: dict[str, Fraction] = field(default_factory=dict)
-    enclosure: str = ""
-    convergence_decided: bool = True
-
-    @property
-    def leading(self) -> sympy.Expr:
-        return self.first.coefficient
-
-    @property
-    def delta_j(self) -> sympy.Expr | None:
-        """ΔJ in closed form, written out when it is asked for; None where it is too large."""
-        return self.step_map.delta_j if self.step_map.written else None
-
-    @property
-    def consistent(self) -> bool:
-        return self.convergence_order is None or self.convergence_order >= 1
-
-    def _repr_html_(self) -> str:
-        from verify.notebook import proof_html
-
-        return proof_html(self)
-
-    def _repr_latex_(self) -> str:
-        from verify.notebook import proof_latex
-
-        return proof_latex(self)
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:

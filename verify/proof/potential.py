@@ -20,7 +20,7 @@ from verify.algebra.linear_combination import combination, may_combine
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import VectorField
-from verify.proof.order import Proof
+from verify.proof.order_proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme

@@ -45,7 +45,7 @@ from verify.arithmetic.balls import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, is_known, rounding_of
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.derivatives import Derivatives
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
@@ -62,39 +62,39 @@ class _Steps:
     size: Ball  # a bound of |D|
 
 
-def certify(job: Job, arithmetic: Arithmetic, outcome: Outcome) -> dict[str, Fraction] | None:
+def certify(run: KernelRun, arithmetic: Arithmetic, outcome: Outcome) -> dict[str, Fraction] | None:
     """Bounds of the errors of a run's final values, rigorous; None where there is none.
 
     The run must have carried the tangent map. Errors are those against the exact orbit of the exact
     map for the exact h, parameters and initial values.
     """
-    return certify_at(job, arithmetic, outcome, len(outcome.trail) - 1)
+    return certify_at(run, arithmetic, outcome, len(outcome.trail) - 1)
 
 
 def certify_at(
-    job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int
+    run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int
 ) -> dict[str, Fraction] | None:
     """`certify` for the values at one of the run's checkpoints."""
     with working_precision(PRECISION):
-        found = _Certificate(job, arithmetic, outcome, note).bounds()
+        found = _Certificate(run, arithmetic, outcome, note).bounds()
     return found
 
 
 class _Certificate:
-    def __init__(self, job: Job, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
+    def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
-        self.job, self.arithmetic, self.kernel = job, arithmetic, outcome.kernel
+        self.run, self.arithmetic, self.kernel = run, arithmetic, outcome.kernel
         self.shift = outcome.shift
         self.steps = int(outcome.tangents[note]["done"])
         self.values = outcome.trail[note]
         self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
-        self.h = rational_ball(job.start["h"])
+        self.h = rational_ball(run.start["h"])
         self.unit = flint.arb(2) ** -arithmetic.bits
 
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
-        derivatives = Derivatives.of(self.job.generic, self.job.scheme)
+        derivatives = Derivatives.of(self.run.generic, self.run.scheme)
         steps = self.one_step()
         if derivatives is None or steps is None:
             return None
@@ -134,7 +134,7 @@ class _Certificate:
     def inputs(self) -> dict[str, Rounded]:
         """The state, which is data and has no error, and h and the parameters as rounded."""
         given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
-        for name, exact in self.job.inputs(self.kernel, self.shift).items():
+        for name, exact in self.run.inputs(self.kernel, self.shift).items():
             lost = self.arithmetic.exact(self.arithmetic.number(exact)) - exact
             given[name] = Rounded(rational_ball(exact), rational_ball(abs(lost)))
         return given
@@ -190,12 +190,12 @@ class _Certificate:
         return (top * start).abs_upper(), (start * path).abs_upper()
 
     def first_error(self) -> Ball:
-        start, number, exact = self.job.start, self.arithmetic.number, self.arithmetic.exact
+        start, number, exact = self.run.start, self.arithmetic.number, self.arithmetic.exact
         lost = [rational_ball(exact(number(start[n])) - start[n]) for n in ("p", "q")]
         return _norm(lost)
 
     def values_of_inputs(self) -> dict[str, Ball]:
-        named = {n: rational_ball(x) for n, x in self.job.parameters.items()}
+        named = {n: rational_ball(x) for n, x in self.run.parameters.items()}
         return {"h": self.h, **named}
 
     # -- the observables ----------------------------------------------------------------------
@@ -203,7 +203,7 @@ class _Certificate:
     def observables(
         self, steps: _Steps, derivatives: Derivatives, error: Ball, summed: Ball
     ) -> dict[str, Ball]:
-        asked, count = self.job.observables, self.steps
+        asked, count = self.run.observables, self.steps
         if not asked & {"delta_j_max", "mse", "lambda", "lambda_max"}:
             return {}
         scale = flint.arb(2) ** -self.shift

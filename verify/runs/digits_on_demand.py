@@ -13,7 +13,7 @@ from fractions import Fraction
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.kernels.chunked_loop import Progress
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import METHOD, certify, certify_at
 from verify.runs.enclosed import enclosed
 from verify.runs.estimated import Bounds, missing_digits, resolved, working_digits
@@ -38,62 +38,64 @@ class Measured:
     fallback: str = ""  # why another arithmetic was taken than the one that was asked for
 
 
-def choose(job: Job, digits: int) -> str:
+def choose(kernel_run: KernelRun, digits: int) -> str:
     """The fastest arithmetic with rigorous bounds for so many digits, steps and these functions.
 
     float64 is not among them: it is what is under test, and its bounds are estimates.
     """
-    if job.steps < WORTH_COMPILING or digits > _WIDEST:
+    if kernel_run.steps < WORTH_COMPILING or digits > _WIDEST:
         return _INTERPRETED
-    return _COMPILED if _fits(job, digits) else _INTERPRETED
+    return _COMPILED if _fits(kernel_run, digits) else _INTERPRETED
 
 
-def _fits(job: Job, digits: int) -> bool:
+def _fits(kernel_run: KernelRun, digits: int) -> bool:
     """Whether fixed has the functions, and a step from the start stays within its range."""
     try:
-        return job.fits(number_systems.get(_COMPILED, digits))
+        return kernel_run.fits(number_systems.get(_COMPILED, digits))
     except UnsupportedError:
         return False
 
 
-def measure(job: Job, name: str, digits: int, progress: Progress | None = None) -> Measured:
-    """The job's values to so many digits in the arithmetic of that name, or in its fallback.
+def measure(
+    kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
+) -> Measured:
+    """The run's values to so many digits in the arithmetic of that name, or in its fallback.
 
     A fixed-point run that leaves its range, and where a function is missing, or equations cannot be
     solved, goes to mpfr.
     """
     try:
         if number_systems.get(name, digits).radius is not None:
-            own = number_systems.get(name, working_digits(digits, job.steps))
-            bounds, run = enclosed(job, own, digits, progress)
+            own = number_systems.get(name, working_digits(digits, kernel_run.steps))
+            bounds, run = enclosed(kernel_run, own, digits, progress)
             return Measured(bounds, name, run)
-        found = certified(job, name, digits, progress)
+        found = certified(kernel_run, name, digits, progress)
         if isinstance(found, Measured):
             return found
-        found = _estimated(job, found, digits, progress)
+        found = _estimated(kernel_run, found, digits, progress)
         if name != _COMPILED or found.bounds.status == "finished":
             return found
         reason = found.outcome.reason or found.bounds.method
     except UnsupportedError as error:
         reason = str(error)
-    return replace(measure(job, _INTERPRETED, digits, progress), fallback=reason)
+    return replace(measure(kernel_run, _INTERPRETED, digits, progress), fallback=reason)
 
 
 def certified(
-    job: Job, name: str, digits: int, progress: Progress | None = None
+    kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
 ) -> Measured | Arithmetic:
-    """The job's values to so many digits with rigorous bounds; where there are none, the arithmetic
+    """The run's values to so many digits with rigorous bounds; where there are none, the arithmetic
     at the precision that was reached. Raises UnsupportedError."""
-    own = number_systems.get(name, _first_digits(name, digits, job))
-    if job.solved:
+    own = number_systems.get(name, _first_digits(name, digits, kernel_run))
+    if kernel_run.solved:
         return own
     for _ in range(_ATTEMPTS):
-        foreseen = _Foresight(job, own, digits) if job.steps > _SHORT else None
-        outcome = job.go(own, tangent=True, progress=progress, enough=foreseen)
+        foreseen = _Foresight(kernel_run, own, digits) if kernel_run.steps > _SHORT else None
+        outcome = kernel_run.go(own, tangent=True, progress=progress, enough=foreseen)
         if foreseen and foreseen.missing > 0:
             own = _finer(own, foreseen.missing)
             continue
-        errors = certify(job, own, outcome) if outcome.done == job.steps else None
+        errors = certify(kernel_run, own, outcome) if outcome.done == kernel_run.steps else None
         if errors is None or len(errors) < len(outcome.values):
             break
         values = {n: (x, errors[n]) for n, x in outcome.values.items()}
@@ -104,21 +106,25 @@ def certified(
     return own
 
 
-def _estimated(job: Job, own: Arithmetic, digits: int, progress: Progress | None) -> Measured:
-    first = job.go(own, progress=progress)
-    if own.absolute and first.done < job.steps:
+def _estimated(
+    kernel_run: KernelRun, own: Arithmetic, digits: int, progress: Progress | None
+) -> Measured:
+    first = kernel_run.go(own, progress=progress)
+    if own.absolute and first.done < kernel_run.steps:
         bounds = Bounds({}, "", "left range", first.done + 1)
     else:
-        bounds = resolved(job, own, first, digits)
+        bounds = resolved(kernel_run, own, first, digits)
     return Measured(bounds, own.name, first)
 
 
-def _first_digits(name: str, digits: int, job: Job) -> int:
+def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
     if name != _COMPILED:
-        return working_digits(digits, job.steps) + (_MORE if job.steps <= _SHORT else 0)
+        return working_digits(digits, kernel_run.steps) + (
+            _MORE if kernel_run.steps <= _SHORT else 0
+        )
     # Formats come in steps of 19 digits, and foresight costs a sixteenth of the run.
-    time = job.steps * job.start["h"]
-    return digits + 3 + len(str(job.steps)) + len(str(int(time)))
+    time = kernel_run.steps * kernel_run.start["h"]
+    return digits + 3 + len(str(kernel_run.steps)) + len(str(int(time)))
 
 
 def _finer(own: Arithmetic, missing: int) -> Arithmetic:
@@ -128,14 +134,14 @@ def _finer(own: Arithmetic, missing: int) -> Arithmetic:
 class _Foresight:
     """Asked at a run's first checkpoint whether its digits will do; `missing` says how many."""
 
-    def __init__(self, job: Job, own: Arithmetic, digits: int) -> None:
-        self.job, self.own, self.digits, self.missing = job, own, digits, 0
+    def __init__(self, kernel_run: KernelRun, own: Arithmetic, digits: int) -> None:
+        self.kernel_run, self.own, self.digits, self.missing = kernel_run, own, digits, 0
 
     def __call__(self, outcome: Outcome) -> bool:
-        errors = certify_at(self.job, self.own, outcome, 0)
+        errors = certify_at(self.kernel_run, self.own, outcome, 0)
         if errors is None:  # let it run: what follows is for estimates
             return True
-        growth = Fraction(self.job.steps, int(outcome.tangents[0]["done"]))
+        growth = Fraction(self.kernel_run.steps, int(outcome.tangents[0]["done"]))
         note, seen = outcome.trail[0], outcome.tangents[0]
         sizes = {n: abs(x) for n, x in note.items()}
         sizes["p"] = sizes["q"] = max(sizes["p"], sizes["q"])

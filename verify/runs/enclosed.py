@@ -9,7 +9,7 @@ domain there. Where too many digits or attempts would be needed, the run is "unr
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.chunked_loop import Progress
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.estimated import Bounds, digits_of, missing_of
 
 _ATTEMPTS = 6
@@ -17,14 +17,14 @@ _MOST_TIMES = 64  # the first attempt's digits, beyond which a ball is given up
 
 
 def enclosed(
-    job: Job, own: Arithmetic, digits: int, progress: Progress | None = None
+    kernel_run: KernelRun, own: Arithmetic, digits: int, progress: Progress | None = None
 ) -> tuple[Bounds, Outcome]:
     """The values with the radii of their balls, and the run that they are of."""
     most, last = _MOST_TIMES * digits_of(own), None
     for attempt in range(1, _ATTEMPTS + 1):
-        run = job.go(own, progress=progress)
+        run = kernel_run.go(own, progress=progress)
         has, wanted = digits_of(own), 2 * digits_of(own)
-        if run.done == job.steps:
+        if run.done == kernel_run.steps:
             found = {n: (x, run.radii[n]) for n, x in run.values.items()}
             missing = max(missing_of(n, *value, digits) for n, value in found.items())
             if missing <= 0:
@@ -35,7 +35,7 @@ def enclosed(
             return Bounds({}, "ball arithmetic", "left range", run.done + 1), run
         elif last:  # about evenly, steps cost digits
             steps, spent = run.done - last[1], has - last[0]
-            wanted = max(wanted, has + (job.steps - run.done) * spent // steps)
+            wanted = max(wanted, has + (kernel_run.steps - run.done) * spent // steps)
         if wanted > most or attempt == _ATTEMPTS:
             break
         last = has, run.done

@@ -15,7 +15,7 @@ from typing import Literal
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 
 Bounded = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
 Status = Literal["finished", "left range", "unresolved"]
@@ -63,20 +63,20 @@ def _noise(own: Arithmetic, *runs: Outcome) -> Fraction:
     return max(sizes, default=Fraction(0)) * Fraction(1, 2 ** (own.bits // 2))
 
 
-def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
+def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
     """The values to so many digits, by raising the precision until a rerun confirms them."""
     for _ in range(_ATTEMPTS):
         finer = number_systems.get(own.name, digits_of(own) + _MORE_DIGITS)
-        second = job.go(finer)
+        second = kernel_run.go(finer)
         method = f"rerun with {_MORE_DIGITS} more digits"
         noise = _noise(own, first, second)
         if first.done != second.done or not second.trail or spread(first, second, noise) > LINEAR:
-            if first.done == second.done < job.steps and not second.trail:
+            if first.done == second.done < kernel_run.steps and not second.trail:
                 return Bounds({}, method, "left range", second.done + 1)
             own = number_systems.get(own.name, 2 * digits_of(own))
-            first = job.go(own)
+            first = kernel_run.go(own)
             continue
-        if second.done < job.steps:
+        if second.done < kernel_run.steps:
             return Bounds({}, method, "left range", second.done + 1)
         unit = Fraction(1, 2 ** (own.bits - 2))
         found = {
@@ -91,7 +91,7 @@ def resolved(job: Job, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
         if missing <= 0:
             return Bounds(found, method)
         own = number_systems.get(own.name, digits_of(own) + missing + 5)
-        first = job.go(own)
+        first = kernel_run.go(own)
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
 
 

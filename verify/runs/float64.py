@@ -17,7 +17,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import Measured, certified, choose
 from verify.runs.estimated import LINEAR, Bounded, Bounds, resolved, spread, working_digits
 
@@ -30,14 +30,14 @@ _RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no c
 _STATE = ("p", "q")
 
 
-def bounded(job: Job, first: Outcome, known: Bounded) -> Bounds:
-    """The values of the float64 run `first` of the job with their bounds.
+def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Bounds:
+    """The values of the float64 run `first` of the run with their bounds.
 
     `known`: what a proof gives for observables that were not run.
     """
-    if first.done < job.steps:
+    if first.done < run.steps:
         return Bounds({}, "none", "left range", first.done + 1)
-    found = _held(job, first) if job.steps <= DIRECT_STEPS else _compensated(job, first)
+    found = _held(run, first) if run.steps <= DIRECT_STEPS else _compensated(run, first)
     values = dict(found.values)
     better = (known | values).get("lambda")
     if "lambda_plain" in first.values and "lambda_plain" not in values and better:
@@ -47,16 +47,16 @@ def bounded(job: Job, first: Outcome, known: Bounded) -> Bounds:
     return replace(found, values={n: x for n, x in values.items() if n in first.values})
 
 
-def _held(job: Job, first: Outcome) -> Bounds:
+def _held(run: KernelRun, first: Outcome) -> Bounds:
     """Against a certified run; else against an estimated one, or a compensated one."""
-    exact = job.observing(_comparable(job.observables))
+    exact = run.observing(_comparable(run.observables))
     name = choose(exact, _CERTIFIED_DIGITS)
     true = certified(exact, name, _CERTIFIED_DIGITS)
     if isinstance(true, Measured):
         method = f"difference from a certified run in {name}"
         return Bounds(_from(first, true.bounds.values), method, rigorous=True)
-    if job.steps > _RERUN_STEPS:
-        return _compensated(job, first)
+    if run.steps > _RERUN_STEPS:
+        return _compensated(run, first)
     return _against_rerun(exact, first)
 
 
@@ -73,26 +73,26 @@ def _from(first: Outcome, true: Bounded) -> Bounded:
     return {n: (x, abs(x - true[n][0]) + true[n][1]) for n, x in first.values.items() if n in true}
 
 
-def _against_rerun(job: Job, first: Outcome) -> Bounds:
-    reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, job.steps))
-    second = job.go(reference)
+def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
+    reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
+    second = run.go(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
-    if second.done == job.steps and spread(first, second) < LINEAR:
-        return Bounds(_differences(first, second.values, job.steps), method)
+    if second.done == run.steps and spread(first, second) < LINEAR:
+        return Bounds(_differences(first, second.values, run.steps), method)
     # float64 has lost every digit, so the reference has lost many: is it good for the rest?
-    if job.steps > _FOLLOWED_STEPS:
-        return _compensated(job, first)
-    true = resolved(job, reference, second, 1)
+    if run.steps > _FOLLOWED_STEPS:
+        return _compensated(run, first)
+    true = resolved(run, reference, second, 1)
     if true.status != "finished":
         return Bounds({}, f"{method}, which finds another orbit", "unresolved")
     values = {n: value for n, (value, _) in true.values.items()}
-    return Bounds(_differences(first, values, job.steps), method)
+    return Bounds(_differences(first, values, run.steps), method)
 
 
-def _compensated(job: Job, first: Outcome) -> Bounds:
+def _compensated(run: KernelRun, first: Outcome) -> Bounds:
     method = "four times the difference from a compensated run"
-    second = job.go(number_systems.get("float64", 17), compensated=True)
-    if second.done < job.steps:
+    second = run.go(number_systems.get("float64", 17), compensated=True)
+    if second.done < run.steps:
         return Bounds({}, f"{method}, which left the range", "unresolved")
     apart = spread(first, second)
     if apart > 1:  # two orbits, not one with errors
@@ -106,7 +106,7 @@ def _compensated(job: Job, first: Outcome) -> Bounds:
         else:
             pairs = zip(first.trail, second.trail, strict=True)
             difference = 4 * max(abs(a[name] - b[name]) for a, b in pairs)
-        found[name] = x, difference + _floor(x, job.steps)
+        found[name] = x, difference + _floor(x, run.steps)
     return Bounds(found, method)
 
 

@@ -21,19 +21,14 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.computation import step_map_of
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded
 from verify.runs.float64 import bounded
-from verify.scenes.results.core import RunResult, Value
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.value import Value
+from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
 from verify.schemes.step_map import StepMap
-
-MAX_STEPS = 10**12
-MAX_DIGITS = 10_000
-AUTO = "auto"
-CLOSED_FORM = ("delta_j_max", "mse", "lambda")
-ASKED = (*CLOSED_FORM, "lambda_plain")
-OBSERVABLES = (*ASKED, "lambda_max")  # the last: the greatest |Λ| after any of the steps
 
 
 def run(
@@ -66,10 +61,10 @@ def run(
     step_map = step_map_of(hamiltonian, scheme)
     known = proved(step_map, start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
-    job = Job(hamiltonian, scheme, start, steps, needed, points, keeper)
+    kernel_run = KernelRun(hamiltonian, scheme, start, steps, needed, points, keeper)
     if arithmetic == AUTO:
-        arithmetic = choose(job, digits)
-    done = _run(job, arithmetic, digits, known, progress)
+        arithmetic = choose(kernel_run, digits)
+    done = _run(kernel_run, arithmetic, digits, known, progress)
     found = done.bounds
     most = min(digits, 17) if done.arithmetic == "float64" else digits
     values = {
@@ -135,12 +130,12 @@ def known_run(
 
 
 def _run(
-    job: Job, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
+    kernel_run: KernelRun, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
 ) -> Measured:
     if arithmetic != "float64":
-        return measure(job, arithmetic, digits, progress)
-    first = job.go(number_systems.get(arithmetic, digits), progress=progress)
-    return Measured(bounded(job, first, known), arithmetic, first)
+        return measure(kernel_run, arithmetic, digits, progress)
+    first = kernel_run.go(number_systems.get(arithmetic, digits), progress=progress)
+    return Measured(bounded(kernel_run, first, known), arithmetic, first)
 
 
 def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:

@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from verify.errors import InputError
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
 
 

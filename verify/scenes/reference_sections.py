@@ -14,7 +14,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from verify.errors import InputError
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.values import InitialValue, StepSize
 
 MOST_ROWS = 100_000  # of a section: they are held in memory, and checked one by one

@@ -24,11 +24,10 @@ from pydantic import Field, model_validator
 
 from verify.arithmetic.exact import text
 from verify.errors import InputError
-from verify.runs.run import MAX_STEPS
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
-from verify.scenes.values import Digits, InitialValue, Number, Steps, StepSize, Time
+from verify.scenes.values import MAX_STEPS, Digits, InitialValue, Number, Steps, StepSize, Time
 
 MOST_DIGITS = 1000  # of points: a curve has thousands of them
 FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them are floats too

@@ -56,17 +56,27 @@ from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import text
+from verify.drawable import drawn_by
 from verify.errors import InputError
-from verify.from_type import drawn_by
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import CLOSED_FORM, MAX_STEPS, OBSERVABLES
+from verify.scenes.frozen import Frozen
 from verify.scenes.reference_sections import Reference
 from verify.scenes.region_sections import Flow
-from verify.scenes.results.core import Frozen
 from verify.scenes.sections import WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
-from verify.scenes.values import ArithmeticName, Digits, InitialValue, Number, Steps, StepSize, Time
+from verify.scenes.values import (
+    CLOSED_FORM,
+    MAX_STEPS,
+    OBSERVABLES,
+    ArithmeticName,
+    Digits,
+    InitialValue,
+    Number,
+    Steps,
+    StepSize,
+    Time,
+)
 
 _MAX_DEPTH = 12
 

@@ -21,9 +21,8 @@ from pydantic import Field, model_validator
 from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import text
 from verify.errors import InputError
-from verify.runs.run import AUTO
-from verify.scenes.results.core import Frozen
-from verify.scenes.values import ArithmeticName, Digits, InitialValue, StepSize, Time
+from verify.scenes.frozen import Frozen
+from verify.scenes.values import AUTO, ArithmeticName, Digits, InitialValue, StepSize, Time
 
 MOST_STEPS = 10**8  # of a run that is repeated
 

@@ -29,7 +29,7 @@ from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import decimal, positive, text
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.values import InitialValue, Number, Steps, StepSize, Time
 
 _MOST_STEPS = 10**9  # of a run that is judged: minutes

@@ -7,10 +7,16 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import positive, rational, text
+from verify.drawable import drawn_by
 from verify.errors import InputError
-from verify.from_type import drawn_by
-from verify.runs.run import AUTO, MAX_DIGITS, MAX_STEPS
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
+
+MAX_STEPS = 10**12
+MAX_DIGITS = 10_000
+AUTO = "auto"  # the fastest number system that certifies the digits
+CLOSED_FORM = ("delta_j_max", "mse", "lambda")
+REPORTED = (*CLOSED_FORM, "lambda_plain")
+OBSERVABLES = (*REPORTED, "lambda_max")  # the last: the greatest |Λ| after any of the steps
 
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)

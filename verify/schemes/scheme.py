@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from verify.algebra.conditions import ByConditions
-from verify.from_type import drawn_by
+from verify.drawable import drawn_by
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.step_map import StepMap

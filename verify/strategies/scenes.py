@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import MAX_STEPS
 from verify.scenes.scene import Grid, Scene
-from verify.scenes.values import InitialValue
+from verify.scenes.values import MAX_STEPS, InitialValue
 from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import strategy_or_none, whole
 from verify.strategies.formulas import Formula

@@ -17,7 +17,9 @@ from math import log10
 
 from verify.arithmetic.balls import ball, precision, slope
 from verify.proof.expansion import MOST_ORDERS
-from verify.scenes.results.core import CriterionResult, ProofResult, RunResult
+from verify.scenes.results.claim import CriterionResult
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
 
 NAMES = {

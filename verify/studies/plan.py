@@ -4,12 +4,16 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from verify.arithmetic.exact import text
-from verify.runs.run import CLOSED_FORM
-from verify.scenes.plan import Plan
+from verify.execution.plan import Plan
+from verify.runs.task import RunTask
 from verify.scenes.scene import Grid, Scene
-from verify.scenes.tasks import EveryTask, GrowthTask, ProofTask, RunTask, SeparationTask
+from verify.scenes.values import CLOSED_FORM
 from verify.schemes import get
+from verify.studies.growth.task import GrowthTask
+from verify.studies.proofs.every import EveryTask
+from verify.studies.proofs.one import ProofTask
 from verify.studies.regions.plan import need_flows
+from verify.studies.separation.task import SeparationTask
 from verify.studies.stability.plan import need_stability
 from verify.studies.work_precision.plan import work_precision_task
 

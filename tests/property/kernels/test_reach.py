@@ -21,40 +21,41 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import reach, stepping
 from verify.kernels.kernel import Writer, kernel_for
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import certify
-from verify.runs.run import ASKED, CLOSED_FORM, run
-from verify.scenes.results.core import RunResult
+from verify.runs.run import run
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import CLOSED_FORM, REPORTED
 
 FIXED, LIKE, TRUE = fixed.at_bits(128 - FRACTION_OF), mpfr.at_bits(112), mpfr.at_bits(500)
 
 
-def check_job(job: Job) -> Outcome:
+def check_job(kernel_run: KernelRun) -> Outcome:
     """The job in fixed: what finishes agrees with mpfr, within the bounds that are certified.
 
     Where there is no certificate it is about as near as mpfr is in as many bits.
     """
-    found = job.go(FIXED, tangent=True)
-    where = f"{job.generic}, {job.parameters}, {job.scheme}, {job.start}, {job.steps} steps"
-    if found.done < job.steps:
+    found = kernel_run.go(FIXED, tangent=True)
+    where = f"{run.generic}, {run.parameters}, {run.scheme}, {run.start}, {run.steps} steps"
+    if found.done < kernel_run.steps:
         assert found.reason, where
         return found
-    true, like = job.go(TRUE), job.go(LIKE)
-    assert true.done == job.steps, f"{where}: mpfr leaves its range at step {true.done + 1}"
-    known = certify(job, FIXED, found) or {}
+    true, like = kernel_run.go(TRUE), kernel_run.go(LIKE)
+    assert true.done == kernel_run.steps, f"{where}: mpfr leaves its range at step {true.done + 1}"
+    known = certify(kernel_run, FIXED, found) or {}
     for name, x in true.values.items():
-        lost = abs(like.values[name] - x) if like.done == job.steps else abs(x)
+        lost = abs(like.values[name] - x) if like.done == kernel_run.steps else abs(x)
         bound = known.get(name, lost * 2**24 + (1 + abs(x)) / 2**60)
         error = abs(found.values[name] - x)
         assert error <= bound, f"{where}: {name} is off by {float(error)} > {float(bound)}"
     return found
 
 
-def job_of(
+def kernel_run_of(
     h: Hamiltonian, scheme: str, start: dict[str, Fraction], steps: int = 50,
     observables: tuple[str, ...] = CLOSED_FORM,
-) -> Job:  # fmt: skip
-    return Job(h, scheme, start, steps, frozenset(observables), 0)
+) -> KernelRun:  # fmt: skip
+    return KernelRun(h, scheme, start, steps, frozenset(observables), 0)
 
 
 # -- any Hamiltonian ------------------------------------------------------------------------------
@@ -90,7 +91,7 @@ def test_a_run_is_right_or_ends_and_says_so(
     observables: tuple[str, ...],
 ) -> None:  # fmt: skip
     given = {n: x for n, x in (("a", a), ("b", b)) if n in Hamiltonian.parse(text).symbols}
-    check_job(job_of(Hamiltonian.parse(text, given), "lie2", start, steps, observables))
+    check_job(kernel_run_of(Hamiltonian.parse(text, given), "lie2", start, steps, observables))
 
 
 @drawn(20)
@@ -103,7 +104,7 @@ def test_a_run_of_any_hamiltonian_is_right_or_ends_and_says_so(
     text: str, scheme: str, start: dict[str, Fraction]
 ) -> None:
     try:
-        check_job(job_of(Hamiltonian.parse(text), scheme, start))
+        check_job(kernel_run_of(Hamiltonian.parse(text), scheme, start))
     except InputError:  # a scheme may be implicit for this H
         assume(False)
 
@@ -169,7 +170,7 @@ def test_a_result_is_the_one_of_mpfr_and_says_where_it_fell_back(
 GROWING = ("p**2/2 + q**2/2", {}, "0.01", 0, "0.1", 1200)  # Π det J grows to 10^5, and q to 4
 
 
-@pytest.mark.parametrize("observables", [("lambda_plain",), ("lambda_plain", "mse"), ASKED])
+@pytest.mark.parametrize("observables", [("lambda_plain",), ("lambda_plain", "mse"), REPORTED])
 def test_a_product_of_determinants_that_outgrows_the_format_is_seen(
     observables: tuple[str, ...],
 ) -> None:
@@ -203,13 +204,13 @@ def test_a_function_that_has_no_value_before_the_loop_is_seen(
 # -- losses ---------------------------------------------------------------------------------------
 
 
-def job_of_case(case: tuple[Any, ...], scheme: str, observables: tuple[str, ...]) -> Job:
+def job_of_case(case: tuple[Any, ...], scheme: str, observables: tuple[str, ...]) -> KernelRun:
     text, parameters, *start, steps = case
     at = {n: Fraction(x) for n, x in zip("qph", start, strict=True)}
-    return job_of(Hamiltonian.parse(text, parameters), scheme, at, steps, observables)
+    return kernel_run_of(Hamiltonian.parse(text, parameters), scheme, at, steps, observables)
 
 
-def jobs() -> list[Job]:
+def kernel_runs() -> list[KernelRun]:
     """What leaves the format for good, only for a while, or before the loop."""
     tasks: list[tuple[tuple[Any, ...], str, tuple[str, ...]]] = [
         (("p**2/2 + q**2/2 + q**4/4", {}, 3, 0, "1", 4), "lie2", CLOSED_FORM),
@@ -225,9 +226,9 @@ def jobs() -> list[Job]:
 def check_jobs() -> list[str]:
     """Of the jobs those that the check finds wrong."""
     wrong = []
-    for job in jobs():
+    for kernel_run in kernel_runs():
         try:
-            check_job(job)
+            check_job(kernel_run)
         except AssertionError as error:
             wrong.append(str(error))
     return wrong

@@ -26,7 +26,7 @@ from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.lowering import Lowering
 from verify.kernels.program import Op
 from verify.kernels.rounding import PRECISION, Ball, Rounded, Rounding, analyse, rounding_of
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 
 
 def values(kernel: Kernel, arithmetic: Arithmetic, inputs: dict[str, Any]) -> dict[int, Fraction]:
@@ -133,9 +133,11 @@ def tried(text: str, scheme: str, arithmetic: Arithmetic, at: Sequence[Fraction]
     observables = frozenset({"lambda", "mse", "tangent"})
     start = {"q": q, "p": p, "h": h}
     try:
-        job = Job(Hamiltonian.parse(text, parameters), scheme, start, 1, observables, 0)
-        kernel = kernel_for(job.generic, scheme, arithmetic, observables)
-        inputs = job.inputs(kernel, 0)
+        kernel_run = KernelRun(
+            Hamiltonian.parse(text, parameters), scheme, start, 1, observables, 0
+        )
+        kernel = kernel_for(kernel_run.generic, scheme, arithmetic, observables)
+        inputs = kernel_run.inputs(kernel, 0)
         state = {n: arithmetic.exact(arithmetic.number(x)) for n, x in (("p", p), ("q", q))}
         found = values(kernel, arithmetic, inputs | state)
     except (InputError, UnsupportedError, ArithmeticError, ValueError):

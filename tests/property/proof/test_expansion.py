@@ -25,7 +25,8 @@ from verify.algebra.generators import embed
 from verify.algebra.ring import Decision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_left
-from verify.proof.order import Proof, prove
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
 from verify.schemes import get
 from verify.schemes.step_map import StepMap

@@ -17,7 +17,8 @@ from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.a_posteriori import certify_at
-from verify.runs.run import ASKED, run
+from verify.runs.run import run
+from verify.scenes.values import REPORTED
 
 
 def polynomial(degree: int, terms: int, variables: str = "pq") -> st.SearchStrategy[str]:
@@ -69,13 +70,13 @@ orbits = st.builds(
 def check(case: Case, arithmetic: Arithmetic, observables: frozenset[str]) -> None:
     """Every checkpoint of the run is contained, as far as it has a certificate."""
     try:
-        job = case.job(observables)
-        walked = job.go(arithmetic, tangent=True)
+        kernel_run = case.kernel_run(observables)
+        walked = kernel_run.go(arithmetic, tangent=True)
     except (InputError, UnsupportedError):
         assume(False)
     assume(walked.tangents)
     for note in sorted({0, len(walked.tangents) // 2, len(walked.tangents) - 1}):
-        errors = certify_at(job, arithmetic, walked, note)
+        errors = certify_at(kernel_run, arithmetic, walked, note)
         if errors is not None:
             at = Case(
                 case.text, case.scheme, case.q, case.p, case.h, int(walked.tangents[note]["done"])
@@ -116,7 +117,7 @@ def test_what_a_run_calls_enclosed_contains_the_true_value_as_it_is_printed(
     try:
         found = run(
             Hamiltonian.parse(case.text), case.scheme, q=case.q, p=case.p, step_size=case.h,
-            steps=case.steps, arithmetic=name, digits=digits, observables=ASKED, points=points,
+            steps=case.steps, arithmetic=name, digits=digits, observables=REPORTED, points=points,
         )  # fmt: skip
     except InputError:
         assume(False)

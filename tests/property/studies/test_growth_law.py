@@ -20,9 +20,9 @@ from tests.helpers.random_formulas import monomial, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import GrowthLaw, growth_law
 from verify.runs.run import run
-from verify.scenes.results.core import RunResult
-from verify.studies import growth_law as growth
-from verify.studies.growth_law import average_of, predictions
+from verify.scenes.results.run import RunResult
+from verify.studies.growth import prediction as growth
+from verify.studies.growth.prediction import average_of, predictions
 
 TIME = 6
 STEP_SIZES = tuple(Fraction(1, n) for n in (25, 50, 100, 400))

@@ -13,7 +13,7 @@ from verify.claims.findings import Findings
 from verify.claims.judge import check_claim
 from verify.claims.kinds import AreaClaim, ConvergenceOrderClaim, DeltaJClaim, OrderClaim
 from verify.errors import InputError
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 

@@ -7,7 +7,7 @@ from verify.claims.check import prepare
 from verify.claims.file import load_claims
 from verify.execution.execute import Store
 from verify.execution.executors import HERE
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED

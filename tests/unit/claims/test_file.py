@@ -28,7 +28,6 @@ from verify.claims.kinds import (
     TableClaim,
 )
 from verify.errors import InputError
-from verify.scenes.tasks import key
 from verify.studies.plan import grid_task
 from verify.verdict import Verdict
 
@@ -87,7 +86,7 @@ on_runs = pytest.mark.parametrize("claim", ON_RUNS.values(), ids=ON_RUNS)
 def two_runs(*runs: Any) -> Findings:
     """A scene of two step sizes and one initial value with these runs."""
     scene = made_scene(("0.01", "0.02"), (("1", "0"),))
-    names = [key(grid_task(scene, "lie2", h, 0)) for h in H]
+    names = [grid_task(scene, "lie2", h, 0).key for h in H]
     return Findings({"made": scene}, dict(zip(names, runs, strict=False)))
 
 

@@ -10,8 +10,7 @@ from verify.claims.findings import Findings
 from verify.claims.growth import growth_tasks
 from verify.claims.judge import check_claim
 from verify.claims.kinds import BoundedClaim, GrowthClaim, TableClaim, ValueClaim
-from verify.scenes.results.core import ClaimResult
-from verify.scenes.tasks import key
+from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED
@@ -155,7 +154,7 @@ def growing(growth: Any, *sizes: Given, **run: Any) -> ClaimResult:
         made_run(t.step_size, {"lambda_max": size}, steps=t.steps, **run)
         for t, size in zip(growth_tasks(scene, "lie2"), sizes, strict=True)
     ]
-    names = [key(task) for task in growth_tasks(scene, "lie2")]
+    names = [task.key for task in growth_tasks(scene, "lie2")]
     return check_claim(claim, Findings({"made": scene}, dict(zip(names, runs, strict=True))))
 
 

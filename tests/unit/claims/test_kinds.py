@@ -23,7 +23,7 @@ from verify.claims.kinds import Claim
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import HERE
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.plan import plan_scenes
 from verify.verdict import Verdict

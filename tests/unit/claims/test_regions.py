@@ -13,14 +13,14 @@ from verify.claims.kinds import FlowAreaClaim, FlowDistanceClaim
 from verify.claims.plan import add_claims
 from verify.claims.regions import conserves_area
 from verify.errors import InputError
+from verify.execution.plan import Plan
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.plan import Plan
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.scenes.scene import Scene, scene_from
-from verify.scenes.tasks import FlowTask, key
 from verify.studies.regions.carry import carry
 from verify.studies.regions.plan import plan_flows
+from verify.studies.regions.task import FlowTask
 from verify.verdict import Verdict
 
 PROVED, REFUTED = Verdict.PROVED, Verdict.REFUTED
@@ -55,9 +55,9 @@ def findings(scene: Scene, given: Any = None) -> Findings:
     for task in plan_flows([scene]).tasks.values():
         assert isinstance(task, FlowTask)
         if given is None:
-            results[key(task)] = carry(exact, task)
+            results[task.key] = carry(exact, task)
         else:
-            results[key(task)] = image(task, **given[count % len(given)])
+            results[task.key] = image(task, **given[count % len(given)])
             count += 1
     return Findings({scene.name: scene}, results)
 

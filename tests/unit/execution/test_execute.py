@@ -20,10 +20,10 @@ from verify.execution import keeping
 from verify.execution.execute import Store, execute
 from verify.execution.executors import HERE, Where
 from verify.execution.keeping import fingerprint, write_atomically
-from verify.execution.perform import Result
-from verify.scenes.plan import Plan
-from verify.scenes.tasks import ProofTask
+from verify.execution.plan import Plan
+from verify.scenes.frozen import Frozen
 from verify.studies.plan import plan_scenes
+from verify.studies.proofs.one import ProofTask
 
 CONTENT = (
     DUFFING.replace('"lie2"', '"lie2", "lie3"')
@@ -44,7 +44,7 @@ def kept_in(folder: Path) -> Store:
     return Store(folder / "kept")
 
 
-def plain(results: dict[str, Result]) -> dict[str, dict[str, Any]]:
+def plain(results: dict[str, Frozen]) -> dict[str, dict[str, Any]]:
     """The results without their run times."""
     return {name: r.model_dump(exclude={"seconds"}) for name, r in results.items()}
 
@@ -54,7 +54,7 @@ def count_tasks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     seen: list[Any] = []
     perform = execution.perform
 
-    def counting(task: Any, *more: Any) -> Result:
+    def counting(task: Any, *more: Any) -> Frozen:
         seen.append(task)
         return perform(task, *more)
 

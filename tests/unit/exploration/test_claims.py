@@ -14,9 +14,9 @@ from verify.exploration.claims import claim_property, claim_texts, left_out
 from verify.exploration.explore import explore, found_earlier, keep_found
 from verify.exploration.property import Violation
 from verify.exploration.sample import Example
+from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import drawn_scene
 from verify.scenes.scene import load_scene, scene_from
-from verify.scenes.tasks import Drawn
 
 PAPER = Path(__file__).parents[2] / "reports" / "paper"
 
@@ -71,7 +71,7 @@ def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
 def test_a_claim_on_a_run_is_asked_of_the_drawn_run(tmp_path: Path) -> None:
     text = CLAIMS.partition("[[claim]]")[0] + CLAIMS[CLAIMS.index('[[claim]]\nid = "small"') :]
     (claim,) = claims_of(tmp_path, text)
-    scene = drawn_scene(Drawn(schemes=("lie2",), degree=3), 5, 0)
+    scene = drawn_scene(SampleSpace(schemes=("lie2",), degree=3), 5, 0)
     assert claim_property(claim).holds(Example.of(scene))
     (zero,) = claims_of(tmp_path, text.replace("1e300", "0"))
     with pytest.raises(Violation):
@@ -129,7 +129,10 @@ every = "separable hamiltonian"
 def test_a_true_claim_of_every_h_holds_of_each_and_a_false_one_fails(tmp_path: Path) -> None:
     """Some H pass an order that not every H passes, and some H are not separable."""
     asked = exploration(
-        properties=(), claims=claims_of(tmp_path, OF_EVERY), examples=25, drawn=Drawn(degree=3)
+        properties=(),
+        claims=claims_of(tmp_path, OF_EVERY),
+        examples=25,
+        drawn=SampleSpace(degree=3),
     )
     report = explore(asked, Store(None), where=HERE)
     failing = {each.name for each in report.properties if each.failures}
@@ -200,7 +203,7 @@ def test_two_of_one_name_are_refused(tmp_path: Path) -> None:
 def test_a_claim_is_written_under_a_name_that_a_file_can_have(tmp_path: Path) -> None:
     text = CLAIMS.partition('[[claim]]\nid = "small"')[0].replace("fourth-order", "../§2/eq.3")
     asked = exploration(properties=(), claims=claims_of(tmp_path, text), examples=15,
-                        drawn=Drawn(schemes=("lie1",), degree=3))  # fmt: skip
+                        drawn=SampleSpace(schemes=("lie1",), degree=3))  # fmt: skip
     report = explore(asked, Store(None), where=HERE)
     folder = tmp_path / "found"
     (path,) = keep_found(report, folder)
@@ -219,5 +222,5 @@ def test_a_claim_of_a_theorem_is_refused(tmp_path: Path) -> None:
 
 def test_a_claim_keeps_its_own_scheme(tmp_path: Path) -> None:
     (text, *_) = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "fourth')])
-    scene = drawn_scene(Drawn(schemes=("lie1",)), 5, 0)
+    scene = drawn_scene(SampleSpace(schemes=("lie1",)), 5, 0)
     assert claim_property(text).holds(Example.of(scene)), "of lie2, though lie1 was drawn"

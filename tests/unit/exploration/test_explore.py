@@ -11,14 +11,14 @@ from verify.exploration import properties
 from verify.exploration.explore import Exploration, explore, found_earlier, keep_found
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Example
+from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import drawn_scene
 from verify.scenes.results.exploration import ExploreReport
 from verify.scenes.scene import load_scene
-from verify.scenes.tasks import Drawn
 from verify.scenes.toml_text import scene_text
 
 CHEAP = ("quadratic-hamiltonians", "time-scaling")
-LIES = Drawn(schemes=("lie1", "lie2"), degree=3)
+LIES = SampleSpace(schemes=("lie1", "lie2"), degree=3)
 
 
 def exploration(**changes: object) -> Exploration:
@@ -53,12 +53,12 @@ def test_scene_k_of_a_seed_is_always_the_same() -> None:
 def test_what_is_asked_for_is_drawn() -> None:
     scenes = [drawn_scene(LIES, 3, k) for k in range(40)]
     assert {scene.schemes for scene in scenes} == {("lie1",), ("lie2",)}
-    rational = Drawn(kinds=("rational",), schemes=("lie1",))
+    rational = SampleSpace(kinds=("rational",), schemes=("lie1",))
     assert all("/(" in (drawn_scene(rational, 3, k).hamiltonian or "") for k in range(10))
 
 
 def test_separable_schemes_get_separable_hamiltonians() -> None:
-    asked = Drawn(schemes=("stormer-verlet",), degree=4)
+    asked = SampleSpace(schemes=("stormer-verlet",), degree=4)
     for k in range(20):
         assert drawn_scene(asked, 1, k).exact_hamiltonian().field()[0].separable()
 
@@ -139,9 +139,9 @@ def test_kept_results_are_taken_up_and_give_the_same_report(tmp_path: Path) -> N
         ({"seed": -1}, "seed"),
         ({"properties": ("nothing",)}, "property"),
         ({"properties": ()}, "properties"),
-        ({"drawn": Drawn(kinds=("blue",))}, "kinds"),
-        ({"drawn": Drawn(degree=0)}, "degree"),
-        ({"drawn": Drawn(schemes=("lie0",))}, "scheme"),
+        ({"drawn": SampleSpace(kinds=("blue",))}, "kinds"),
+        ({"drawn": SampleSpace(degree=0)}, "degree"),
+        ({"drawn": SampleSpace(schemes=("lie0",))}, "scheme"),
     ],
 )
 def test_bad_arguments_are_named(changes: dict[str, object], name: str) -> None:

@@ -12,8 +12,8 @@ from verify.execution.executors import HERE
 from verify.exploration.gallery import gallery as gallery_of
 from verify.exploration.gallery import meaningless
 from verify.exploration.hunting import Found, Hunt
+from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import HuntResult, Worst
-from verify.scenes.tasks import Drawn
 
 
 def _text(formula: str) -> str:
@@ -57,7 +57,7 @@ def test_a_run_that_does_not_end_is_shown_by_the_hunts_own() -> None:
 
 
 def test_the_command_makes_the_same_hunt_again() -> None:
-    drawn = Drawn(kinds=("polynomial",), degree=4, schemes=("lie1", "p_next = p; q_next = q"))
+    drawn = SampleSpace(kinds=("polynomial",), degree=4, schemes=("lie1", "p_next = p; q_next = q"))
     asked = Hunt(measure="growth", seed=3, examples=10, steps=50)
     assert _command(asked) == ("verify explore --maximise growth --examples 10 --seed 3 --steps 50")
     object.__setattr__(asked, "drawn", drawn)

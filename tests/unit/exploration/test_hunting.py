@@ -18,10 +18,11 @@ from verify.exploration.hunting import Hunt, by_shape, hunt, scene_of, search
 from verify.exploration.measures import MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
 from verify.exploration.sample import Example
+from verify.exploration.sample_space import SampleSpace
+from verify.exploration.tasks import HuntTask
 from verify.scenes.results.exploration import Worst
-from verify.scenes.tasks import Drawn, HuntTask
 
-POLYNOMIAL = Drawn(kinds=("polynomial",), degree=4)
+POLYNOMIAL = SampleSpace(kinds=("polynomial",), degree=4)
 
 
 def task(**changes: Any) -> HuntTask:
@@ -193,9 +194,11 @@ def beyond(ranges: set[tuple[int | None, int | None]]) -> Iterator[tuple[int | N
     yield from (r for r in ranges if r[0] is None or r[1] is None or r[0] < -99 or r[1] > 99)
 
 
-@pytest.mark.parametrize("drawn", [Drawn(), Drawn(degree=64), Drawn(schemes=("stormer-verlet",))])
+@pytest.mark.parametrize(
+    "drawn", [SampleSpace(), SampleSpace(degree=64), SampleSpace(schemes=("stormer-verlet",))]
+)
 def test_nothing_that_is_drawn_depends_on_what_is_loaded(
-    drawn: Drawn, plant: Plant, ranges: set[tuple[int | None, int | None]]
+    drawn: SampleSpace, plant: Plant, ranges: set[tuple[int | None, int | None]]
 ) -> None:
     plant(lambda _: 0.0)
     search(task(drawn=drawn, steps=100_000))
@@ -231,9 +234,9 @@ def test_one_worker_and_two_find_the_same(monkeypatch: pytest.MonkeyPatch) -> No
         ({"examples": 10**12}, "examples=1000000000000: must be"),
         ({"seed": -1}, "seed=-1: must be 0 or more"),
         ({"steps": 1}, "steps=1: must be 2 … 1000000"),
-        ({"drawn": Drawn(kinds=("round",))}, "kinds=round: unknown"),
-        ({"drawn": Drawn(schemes=("nothing",))}, "nothing"),
-        ({"drawn": Drawn(degree=0)}, "degree=0"),
+        ({"drawn": SampleSpace(kinds=("round",))}, "kinds=round: unknown"),
+        ({"drawn": SampleSpace(schemes=("nothing",))}, "nothing"),
+        ({"drawn": SampleSpace(degree=0)}, "degree=0"),
     ],
 )
 def test_a_bad_argument_is_named(changes: dict[str, Any], said: str) -> None:

@@ -18,9 +18,9 @@ from verify.arithmetic.balls import bounds, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr, mpmath
-from verify.kernels.chunked_loop import Walk
+from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import kernel_for
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.a_posteriori import _Certificate, _square_of_norm
 
 ORBITS = {
@@ -34,13 +34,13 @@ ORBITS = {
 Matrix = list[Fraction]
 
 
-def states(job: Job, arithmetic: Arithmetic) -> Iterator[dict[str, Fraction]]:
+def states(kernel_run: KernelRun, arithmetic: Arithmetic) -> Iterator[dict[str, Fraction]]:
     """The carried numbers before the first step, and after each."""
-    made = job.generic, job.scheme, arithmetic, job.observables | {"tangent"}
+    made = kernel_run.generic, kernel_run.scheme, arithmetic, kernel_run.observables | {"tangent"}
     kernel = kernel_for(*made)
-    shift, limits = next(job._formats(kernel)) if arithmetic.absolute else (0, ())
-    walk = Walk(job, kernel, arithmetic, tuple(limits), shift)
-    for step in range(job.steps + 1):
+    shift, limits = next(kernel_run._formats(kernel)) if arithmetic.absolute else (0, ())
+    walk = ChunkedLoop(kernel_run, kernel, arithmetic, tuple(limits), shift)
+    for step in range(kernel_run.steps + 1):
         if step:
             after = walk._advance(1)
             assert after is not None
@@ -68,16 +68,16 @@ def test_the_tangent_map_is_as_near_as_is_counted_and_its_sums_are_its_own(
     name: str, arithmetic: Arithmetic
 ) -> None:
     orbit = ORBITS[name]
-    job = orbit.job()
+    kernel_run = orbit.kernel_run()
     seen, determinants, sizes, visited, products = [], [], [], [], [Fraction(0)]
-    for at in states(job, arithmetic):
+    for at in states(kernel_run, arithmetic):
         seen.append((at, matrix(at)))
         sizes.append(squares(matrix(at)))
         a, b, c, d = matrix(at)
         determinants.append(a * d - b * c)
         visited.append((at["p"], at["q"]))
         products.append(at["part" if arithmetic.absolute else "lam"])
-    counted = rho(job, arithmetic)
+    counted = rho(kernel_run, arithmetic)
     worst = Fraction(0)
     for (before, m), (_, after) in pairwise(seen):
         with working_precision(300):
@@ -92,17 +92,17 @@ def test_the_tangent_map_is_as_near_as_is_counted_and_its_sums_are_its_own(
     assert near_float(last["growth_top"], max(sizes), 1)
     assert abs(last["det_low"] - min(determinants)) <= max(sizes) / 2**50
     for k, n in enumerate("pq"):
-        values = [Fraction(float(job.start[n])), *(state[k] for state in visited[:-1])]
+        values = [Fraction(float(kernel_run.start[n])), *(state[k] for state in visited[:-1])]
         assert abs(last[f"{n}_low"] - min(values)) <= (1 + max(map(abs, values))) / 2**51
         assert abs(last[f"{n}_high"] - max(values)) <= (1 + max(map(abs, values))) / 2**51
     assert (last["least"], last["most"]) == (min(products), max(products))
 
 
-def rho(job: Job, arithmetic: Arithmetic) -> Fraction:
+def rho(kernel_run: KernelRun, arithmetic: Arithmetic) -> Fraction:
     """ρ for the whole run."""
-    run = job.go(arithmetic, tangent=True)
+    run = kernel_run.go(arithmetic, tangent=True)
     with working_precision(96):
-        steps = _Certificate(job, arithmetic, run, len(run.trail) - 1).one_step()
+        steps = _Certificate(kernel_run, arithmetic, run, len(run.trail) - 1).one_step()
         assert steps is not None
         return bounds(steps.tangent)[1]
 
@@ -114,7 +114,7 @@ def near_float(x: Fraction, true: Fraction, additions: int) -> bool:
 @pytest.mark.parametrize("name", ORBITS)
 def test_a_norm_is_bounded_by_the_sum_of_squares_and_the_determinant(name: str) -> None:
     """The square of the norm, of each matrix and of their mean; equal where the determinant is."""
-    all_of = [matrix(at) for at in states(ORBITS[name].job(), mpfr.at_bits(70))]
+    all_of = [matrix(at) for at in states(ORBITS[name].kernel_run(), mpfr.at_bits(70))]
     with working_precision(200):
         balls = [[rational_ball(x) for x in m] for m in all_of]
         determinants = [a * d - b * c for a, b, c, d in balls]

@@ -20,8 +20,11 @@ from verify.execution.execute import Store
 from verify.execution.executors import HERE
 from verify.pages.page import render, write
 from verify.pages.text.typography import number
-from verify.scenes.results.core import ClaimResult, ProofResult, RunResult, Value
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Provenance, Report, SceneResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.value import Value
 from verify.scenes.scene import scene_from
 from verify.verdict import Verdict
 

@@ -26,7 +26,7 @@ from tests.helpers.exact_orbits import (
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import ball, fixed, mpfr, mpmath
-from verify.kernels.stepping import Job, Outcome
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import certify, certify_at
 
 VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
@@ -35,11 +35,11 @@ SYSTEMS = [fixed.at_bits(112), mpfr.at_bits(24), mpfr.at_bits(120), mpmath.at_bi
 systems = pytest.mark.parametrize("arithmetic", SYSTEMS, ids=lambda a: f"{a.name}-{a.bits}")
 
 
-def certified(job: Job, arithmetic: Arithmetic) -> tuple[Outcome, dict[str, Fraction]]:
+def certified(kernel_run: KernelRun, arithmetic: Arithmetic) -> tuple[Outcome, dict[str, Fraction]]:
     """A run to its end, and its certificate."""
-    run = job.go(arithmetic, tangent=True)
-    assert run.done == job.steps
-    errors = certify(job, arithmetic, run)
+    run = kernel_run.go(arithmetic, tangent=True)
+    assert run.done == kernel_run.steps
+    errors = certify(kernel_run, arithmetic, run)
     assert errors is not None
     return run, errors
 
@@ -66,7 +66,7 @@ EXACTLY = {
 @pytest.mark.parametrize("name", EXACTLY)
 def test_a_few_steps_contain_what_rational_numbers_give(name: str, arithmetic: Arithmetic) -> None:
     at = EXACTLY[name]
-    run, errors = certified(at.job(), arithmetic)
+    run, errors = certified(at.kernel_run(), arithmetic)
     assert set(errors) == {"p", "q", *OBSERVABLES}
     assert_contained(run.values, errors, exact(at), at)
 
@@ -97,9 +97,9 @@ WINDOWS = {
 @pytest.mark.parametrize("name", WINDOWS)
 def test_a_window_contains_what_balls_give(name: str, arithmetic: Arithmetic) -> None:
     at = WINDOWS[name]
-    job = at.job()
-    run = job.go(arithmetic, tangent=True)
-    errors = certify(job, arithmetic, run)
+    kernel_run = at.kernel_run()
+    run = kernel_run.go(arithmetic, tangent=True)
+    errors = certify(kernel_run, arithmetic, run)
     assert errors is not None or arithmetic.bits == 24, "with 24 bits an error may be too large"
     if errors is not None:
         assert_contained(run.values, errors, enclosed_finely(at, errors), at)
@@ -108,14 +108,14 @@ def test_a_window_contains_what_balls_give(name: str, arithmetic: Arithmetic) ->
 @pytest.mark.parametrize("name", WINDOWS)
 def test_ball_arithmetic_and_every_checkpoint_of_a_certified_run_overlap(name: str) -> None:
     at, wide = WINDOWS[name], ball.at_bits(1000)
-    job, own = at.job(), mpfr.at_bits(100)
-    run = job.go(own, tangent=True)
+    kernel_run, own = at.kernel_run(), mpfr.at_bits(100)
+    run = kernel_run.go(own, tangent=True)
     steps = [int(note["done"]) for note in run.tangents]
     for note in (0, len(steps) // 2, len(steps) - 1):
-        errors = certify_at(job, own, run, note)
+        errors = certify_at(kernel_run, own, run, note)
         assert errors is not None
         here = Case(at.text, at.scheme, at.q, at.p, at.h, steps[note], at.parameters)
-        true = here.job().go(wide)
+        true = here.kernel_run().go(wide)
         found: dict[str, True_] = {n: (x, true.radii[n]) for n, x in true.values.items()}
         assert_contained(run.trail[note], errors, found, here)
 
@@ -131,7 +131,7 @@ def test_values_that_were_computed_elsewhere_are_contained(
 ) -> None:
     at = case(given["hamiltonian"], given["scheme"], given["q0"], given["p0"], given["step_size"],
               given["steps"], **given["parameters"])  # fmt: skip
-    run, errors = certified(at.job(), arithmetic)
+    run, errors = certified(at.kernel_run(), arithmetic)
     errors = {n: error for n, error in errors.items() if n in given}
     true = {n: (Fraction(given[n]), unit_before_the_last(given[n])) for n in errors}
     assert_contained(run.values, errors, true, at)
@@ -163,9 +163,9 @@ LONG = {
 @pytest.mark.parametrize("name", LONG)
 def test_a_long_run_contains_what_64_more_bits_give_and_keeps_its_digits(name: str) -> None:
     at, state, product, others = LONG[name]
-    job = at.job() if product else at.job(frozenset())
-    run, errors = certified(job, fixed.at_bits(BITS))
-    finer, finer_errors = certified(job, fixed.at_bits(MORE))
+    kernel_run = at.kernel_run() if product else at.kernel_run(frozenset())
+    run, errors = certified(kernel_run, fixed.at_bits(BITS))
+    finer, finer_errors = certified(kernel_run, fixed.at_bits(MORE))
     true = {n: (x, finer_errors[n]) for n, x in finer.values.items()}
     assert_contained(run.values, errors, true, at)
     expected = {"p": state, "q": state, "lambda": product, "mse": others, "delta_j_max": others}
@@ -180,11 +180,11 @@ def test_a_long_run_contains_what_64_more_bits_give_and_keeps_its_digits(name: s
 def test_every_checkpoint_of_a_long_run_contains_what_64_more_bits_give(
     arithmetic: Arithmetic,
 ) -> None:
-    job = case(PENDULUM, "lie2", "3/2", "3/2", "1/100", 100_000).job()
-    run, finer = (job.go(a, tangent=True) for a in (arithmetic, fixed.at_bits(BITS)))
+    kernel_run = case(PENDULUM, "lie2", "3/2", "3/2", "1/100", 100_000).kernel_run()
+    run, finer = (kernel_run.go(a, tangent=True) for a in (arithmetic, fixed.at_bits(BITS)))
     for note, (rough, fine) in enumerate(zip(run.trail, finer.trail, strict=True)):
         errors, small = (
-            certify_at(job, *pair, note)
+            certify_at(kernel_run, *pair, note)
             for pair in ((arithmetic, run), (fixed.at_bits(BITS), finer))
         )
         assert errors
@@ -213,9 +213,9 @@ def test_where_errors_grow_exponentially_a_certificate_holds_as_long_as_there_is
     made = 0
     for doublings in range(1, 13):
         at = Case(*EXPONENTIAL[name], 2**doublings)
-        job = at.job()
-        run = job.go(arithmetic, tangent=True)
-        errors = certify(job, arithmetic, run) if run.done == at.steps else None
+        kernel_run = at.kernel_run()
+        run = kernel_run.go(arithmetic, tangent=True)
+        errors = certify(kernel_run, arithmetic, run) if run.done == at.steps else None
         if errors is None:
             break
         assert_contained(run.values, errors, enclosed_finely(at, errors), at)
@@ -227,8 +227,8 @@ def test_where_errors_grow_exponentially_a_certificate_holds_as_long_as_there_is
 
 
 def test_an_arithmetic_whose_rounding_is_not_known_gets_no_certificate() -> None:
-    job, new = (
-        case(PENDULUM, "lie2", "3/2", 0, "1/10", 20).job(),
+    kernel_run, new = (
+        case(PENDULUM, "lie2", "3/2", 0, "1/10", 20).kernel_run(),
         replace(mpfr.at_bits(60), name="new"),
     )
-    assert certify(job, new, job.go(new, tangent=True)) is None
+    assert certify(kernel_run, new, kernel_run.go(new, tangent=True)) is None

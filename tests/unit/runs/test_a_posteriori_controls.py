@@ -48,19 +48,19 @@ class Orbit:
         return self.again()
 
     def again(self) -> Outcome:
-        run = self.case.job().go(self.arithmetic, tangent=True)
+        run = self.case.kernel_run().go(self.arithmetic, tangent=True)
         assert run.done == self.case.steps
         return run
 
     def outside(self, run: Outcome | None = None) -> set[str]:
         """The names of values that are not within what is certified; of none without one."""
         run = run or self.run()
-        errors = certify(self.case.job(), self.arithmetic, run) or {}
+        errors = certify(self.case.kernel_run(), self.arithmetic, run) or {}
         true = enclosed_finely(self.case, errors)
         return {n for n, e in errors.items() if abs(run.values[n] - true[n][0]) > e + true[n][1]}
 
     def certified(self) -> dict[str, Fraction]:
-        return certify(self.case.job(), self.arithmetic, self.run()) or {}
+        return certify(self.case.kernel_run(), self.arithmetic, self.run()) or {}
 
 
 FREE = "p**2/2"  # an H for maps that are written down

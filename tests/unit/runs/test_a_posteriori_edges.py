@@ -16,10 +16,11 @@ from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.program import Op
 from verify.kernels.rounding import rounding_of
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.a_posteriori import certify
 from verify.runs.derivatives import Derivatives
-from verify.runs.run import ASKED, run
+from verify.runs.run import run
+from verify.scenes.values import REPORTED
 
 FREE = "p**2/2"
 WIDE = fixed.at_bits(112)
@@ -27,10 +28,10 @@ WIDE = fixed.at_bits(112)
 
 def certified_and_contained(at: Any, arithmetic: Arithmetic) -> dict[str, Fraction]:
     """What is certified of a run, which contains the true values."""
-    job = at.job()
-    made = job.go(arithmetic, tangent=True)
+    kernel_run = at.kernel_run()
+    made = kernel_run.go(arithmetic, tangent=True)
     assert made.done == at.steps
-    errors = certify(job, arithmetic, made)
+    errors = certify(kernel_run, arithmetic, made)
     assert errors is not None
     assert_contained(made.values, errors, enclosed_finely(at, errors), at)
     return errors
@@ -66,7 +67,7 @@ def test_a_function_of_a_parameter_with_a_value_stays_in_fixed_point() -> None:
     assert (found.arithmetic, found.error_kind) == ("fixed", "enclosed")
 
 
-@pytest.mark.parametrize("observables", [ASKED, ("lambda_plain",)])
+@pytest.mark.parametrize("observables", [REPORTED, ("lambda_plain",)])
 def test_a_product_of_determinants_that_leaves_the_format_goes_to_mpfr(
     observables: tuple[str, ...],
 ) -> None:
@@ -105,9 +106,9 @@ def test_an_area_that_nearly_vanishes_or_doubles_at_every_step_is_certified(
 @pytest.mark.parametrize("factor", ["0", "-1/2", "-1", "5/2"])
 def test_a_factor_that_is_not_near_1_gives_no_certificate_of_the_product(factor: str) -> None:
     at = case(FREE, area(factor), "1/3", "1/7", 1, 5)
-    job = at.job()
-    made = job.go(mpfr.at_bits(60), tangent=True)
-    errors = certify(job, mpfr.at_bits(60), made) or {}
+    kernel_run = at.kernel_run()
+    made = kernel_run.go(mpfr.at_bits(60), tangent=True)
+    errors = certify(kernel_run, mpfr.at_bits(60), made) or {}
     assert "lambda" not in errors
     assert not errors or {"delta_j_max", "mse"} <= set(errors)
 
@@ -121,10 +122,10 @@ def test_step_sizes_far_from_those_in_use_are_certified(h: str, arithmetic: Arit
 
 @pytest.mark.parametrize("asked", [(), ("mse",), ("lambda",), ("delta_j_max",), ("lambda", "mse")])
 def test_what_is_certified_is_what_was_asked_for(asked: tuple[str, ...]) -> None:
-    job = case("p**2/2 - cos(q)", "lie2", "1.5", 0, "0.1", 30).job(frozenset(asked))
+    kernel_run = case("p**2/2 - cos(q)", "lie2", "1.5", 0, "0.1", 30).kernel_run(frozenset(asked))
     for arithmetic in (WIDE, mpfr.at_bits(60)):
-        made = job.go(arithmetic, tangent=True)
-        assert set(certify(job, arithmetic, made) or {}) == {"p", "q", *asked}
+        made = kernel_run.go(arithmetic, tangent=True)
+        assert set(certify(kernel_run, arithmetic, made) or {}) == {"p", "q", *asked}
 
 
 # -- rounding, domains, sizes ---------------------------------------------------------------------
@@ -179,9 +180,9 @@ def test_a_run_in_few_bits_has_a_certificate_that_holds_or_none(bits: int) -> No
     """So few that the quadratic term decides."""
     for steps in (10, 30, 100, 300):
         at = case("p**2/2 - cos(q)", "lie2", "1.5", "0.5", "1/10", steps)
-        job, made = at.job(), mpfr.at_bits(bits)
-        walked = job.go(made, tangent=True)
-        errors = certify(job, made, walked) or {}
+        kernel_run, made = at.kernel_run(), mpfr.at_bits(bits)
+        walked = kernel_run.go(made, tangent=True)
+        errors = certify(kernel_run, made, walked) or {}
         assert_contained(walked.values, errors, enclosed_finely(at, errors), at)
 
 
@@ -191,7 +192,7 @@ def test_a_run_in_few_bits_has_a_certificate_that_holds_or_none(bits: int) -> No
 def test_the_bounds_of_a_float64_run_are_those_of_a_certified_one() -> None:
     at = case("p**2/2 + q**2/2 + q**4/4", "lie2", "1.5", 0, "1/1000", 3000)
     found = run(Hamiltonian.parse(at.text), "lie2", q=at.q, p=at.p, step_size=at.h, steps=at.steps,
-                observables=ASKED)  # fmt: skip
+                observables=REPORTED)  # fmt: skip
     assert (found.arithmetic, found.error_kind) == (float64.NAME, "enclosed")
     values = {n: Fraction(v.value) for n, v in found.values.items()}
     errors = {n: Fraction(v.bound) for n, v in found.values.items()}
@@ -206,20 +207,22 @@ def test_a_run_that_was_interrupted_is_certified_as_the_one_that_was_not(
     at = case("p**2/2 - cos(q)", "lie2", "1.5", "1.5", "1/100", 3000)
     start = {"p": at.p, "q": at.q, "h": at.h}
 
-    def job(keeper: Keeper) -> Job:
+    def kernel_run(keeper: Keeper) -> KernelRun:
         observables = frozenset({"lambda", "mse"})
-        return Job(Hamiltonian.parse(at.text), at.scheme, start, at.steps, observables, 0, keeper)
+        return KernelRun(
+            Hamiltonian.parse(at.text), at.scheme, start, at.steps, observables, 0, keeper
+        )
 
     def interrupt(done: int) -> None:
         if done > 1000:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        job(Keeper(tmp_path, "run")).go(arithmetic, tangent=True, progress=interrupt)
+        kernel_run(Keeper(tmp_path, "run")).go(arithmetic, tangent=True, progress=interrupt)
     went_on: list[int] = []
-    of = job(Keeper(tmp_path, "run"))
+    of = kernel_run(Keeper(tmp_path, "run"))
     second = of.go(arithmetic, tangent=True, progress=went_on.append)
-    whole = job(Keeper(None, "")).go(arithmetic, tangent=True)
+    whole = kernel_run(Keeper(None, "")).go(arithmetic, tangent=True)
     assert went_on[0] > 1000
     assert (second.trail, second.tangents) == (whole.trail, whole.tangents)
     assert certify(of, arithmetic, second) == certify(of, arithmetic, whole) is not None

@@ -14,9 +14,10 @@ from verify import arithmetic
 from verify.execution import keeping
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.chunked_loop import Walk
-from verify.runs.run import ASKED, CLOSED_FORM, run
-from verify.scenes.results.core import RunResult
+from verify.kernels.chunked_loop import ChunkedLoop
+from verify.runs.run import run
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import CLOSED_FORM, REPORTED
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 STEPS, POINTS = 96, 6
@@ -61,7 +62,7 @@ def calls(name: str, **more: Any) -> int:
 
 
 @every
-@pytest.mark.parametrize("observables", [CLOSED_FORM, ASKED], ids=["certified", "plain-too"])
+@pytest.mark.parametrize("observables", [CLOSED_FORM, REPORTED], ids=["certified", "plain-too"])
 def test_a_run_that_is_interrupted_anywhere_goes_on_to_the_same_bits(
     name: str, observables: tuple[str, ...], tmp_path: Path
 ) -> None:
@@ -112,11 +113,11 @@ def test_a_run_that_needs_more_digits_than_it_began_with_does_so_after_an_interr
 def test_an_interruption_amid_a_note_loses_the_chunk_and_nothing_else(
     name: str, method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    true, original = bits(go(name)), getattr(Walk, method)
+    true, original = bits(go(name)), getattr(ChunkedLoop, method)
     for nth in (1, 2, 4):
         keeper, left = Keeper(tmp_path, f"task-{nth}-"), [nth]
 
-        def interrupted(self: Walk, *arguments: Any, left: list[int] = left) -> Any:
+        def interrupted(self: ChunkedLoop, *arguments: Any, left: list[int] = left) -> Any:
             left[0] -= 1
             if left[0] == 0:
                 original(self, *arguments)
@@ -124,7 +125,7 @@ def test_an_interruption_amid_a_note_loses_the_chunk_and_nothing_else(
             return original(self, *arguments)
 
         with monkeypatch.context() as patch:
-            patch.setattr(Walk, method, interrupted)
+            patch.setattr(ChunkedLoop, method, interrupted)
             with pytest.raises(KeyboardInterrupt):
                 go(name, keeper)
         assert bits(go(name, keeper)) == true

@@ -28,8 +28,9 @@ from tests.helpers.random_formulas import (
 )
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import ASKED, run
-from verify.scenes.results.core import RunResult
+from verify.runs.run import run
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import REPORTED
 
 DIGITS = 40
 Map = tuple[sympy.Expr, sympy.Expr]
@@ -76,7 +77,7 @@ def test_a_polynomial_h_is_stepped_as_mpmath_steps_it(
     true = expected(lie_step(plain(text), eta), at, 2)
     assume(max(abs(true["p"]), abs(true["q"])) < 10**6)
     found = run(Hamiltonian.parse(text), f"lie{eta}", q=q, p=p, step_size=h, steps=2,
-                arithmetic="mpmath", digits=DIGITS, observables=ASKED)  # fmt: skip
+                arithmetic="mpmath", digits=DIGITS, observables=REPORTED)  # fmt: skip
     assert_found(found, true)
 
 
@@ -93,7 +94,7 @@ def test_a_trigonometric_h_is_stepped_as_mpmath_steps_it(
     true = expected(lie_step(plain(text), eta), at, 2)
     assume(max(abs(true["p"]), abs(true["q"])) < 10**4)
     found = run(Hamiltonian.parse(text), f"lie{eta}", q=q, p=p, step_size=h, steps=2,
-                arithmetic="mpmath", digits=DIGITS, observables=ASKED)  # fmt: skip
+                arithmetic="mpmath", digits=DIGITS, observables=REPORTED)  # fmt: skip
     assert_found(found, true)
 
 
@@ -118,7 +119,7 @@ def test_every_function_is_stepped_as_mpmath_steps_it(text: str, arithmetic: str
     at = Fraction(2, 7), Fraction(3, 5), Fraction(1, 9)
     true = expected(lie_step(plain(text), 2), at, 5)
     found = run(Hamiltonian.parse(text), "lie2", q=at[1], p=at[0], step_size=at[2], steps=5,
-                arithmetic=arithmetic, digits=DIGITS, observables=ASKED)  # fmt: skip
+                arithmetic=arithmetic, digits=DIGITS, observables=REPORTED)  # fmt: skip
     assert_found(found, true)
 
 
@@ -131,7 +132,7 @@ def test_a_users_map_is_stepped_as_mpmath_steps_it(text: str, arithmetic: str) -
     q_next = plain(formulas["q_next"]).subs(sympy.Symbol("p_next"), p_next)
     true = expected((p_next, q_next), at, 5)
     found = run(Hamiltonian.parse("p**2/2 + q**2/2"), text, q=at[1], p=at[0], step_size=at[2],
-                steps=5, arithmetic=arithmetic, digits=DIGITS, observables=ASKED)  # fmt: skip
+                steps=5, arithmetic=arithmetic, digits=DIGITS, observables=REPORTED)  # fmt: skip
     assert_found(found, true)
 
 

@@ -18,8 +18,9 @@ from verify import arithmetic
 from verify.arithmetic.number_system import ESCAPE_BITS
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import ASKED, CLOSED_FORM, run
-from verify.scenes.results.core import RunResult
+from verify.runs.run import run
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import CLOSED_FORM, REPORTED
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
@@ -203,8 +204,8 @@ def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
 
 @pytest.mark.parametrize("name", arithmetic.names())
 def test_points_do_not_change_the_values(name: str) -> None:
-    plain = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=ASKED)
-    thinned = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=ASKED, points=40)
+    plain = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=REPORTED)
+    thinned = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=REPORTED, points=40)
     assert plain.values == thinned.values
     assert (plain.series, len(thinned.series)) == ((), 40)
 
@@ -222,7 +223,7 @@ OWN_NAMES = [
 def named(parameter: str, name: str) -> RunResult:
     text = f"p**2/2 + {parameter}*q**2/2 + q**4/4 - cos(q)"
     return run(Hamiltonian.parse(text, {parameter: "7/3"}), "lie2", q=1, p=0, step_size="0.1",
-               steps=20, arithmetic=name, observables=ASKED, points=3)  # fmt: skip
+               steps=20, arithmetic=name, observables=REPORTED, points=3)  # fmt: skip
 
 
 @cache
@@ -308,6 +309,6 @@ def test_a_map_that_is_not_defined_at_the_step_size_leaves_the_range_at_once(nam
 
 
 def test_the_observables_asked_for_are_those_that_come_back() -> None:
-    for asked in ((), ("mse",), ("lambda", "mse"), CLOSED_FORM, ASKED):
+    for asked in ((), ("mse",), ("lambda", "mse"), CLOSED_FORM, REPORTED):
         found = duffing_run("float64", 10, q=1, p=0, h=Fraction(1, 10), observables=asked)
         assert set(found.values) == {"p", "q", *asked}

@@ -12,17 +12,18 @@ from verify.claims.report import make_report
 from verify.errors import InputError
 from verify.execution import execute
 from verify.execution.executors import HERE
-from verify.runs.run import MAX_STEPS
+from verify.scenes.frozen import Frozen
 from verify.scenes.results import core as results
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
 from verify.scenes.results import stability as stability_results
 from verify.scenes.results import work_precision as work_precision_results
-from verify.scenes.results.core import Frozen, RunResult
 from verify.scenes.results.exploration import GalleryScene
 from verify.scenes.results.report import Report, SceneResult
+from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import RatioResult
 from verify.scenes.scene import Scene, load_scene
+from verify.scenes.values import MAX_STEPS
 
 PAPER = Path(__file__).parents[2] / "reports" / "paper"
 H = "p**2/2 + q**4/4"

@@ -13,7 +13,8 @@ from verify.errors import InputError
 from verify.execution.execute import perform
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import Proof, prove
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, Substep

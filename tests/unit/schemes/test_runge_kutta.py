@@ -18,7 +18,8 @@ from verify import arithmetic, schemes
 from verify.algebra.enclosure import enclose
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Writer
-from verify.proof.order import Proof, prove
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.runs.derivatives import Derivatives
 from verify.runs.run import run
 from verify.schemes.runge_kutta import Tableau, runge_kutta_map

@@ -22,7 +22,8 @@ from tests.helpers.random_formulas import (
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import Proof, prove
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 

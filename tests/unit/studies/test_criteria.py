@@ -9,9 +9,10 @@ import pytest
 
 from tests.helpers.constructed_runs import STEP_SIZES, Given, made_proof, made_run
 from verify.execution.perform import perform
-from verify.scenes.results.core import ProofResult, RunResult
-from verify.scenes.tasks import ProofTask
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.run import RunResult
 from verify.studies.criteria import judge, measured_slopes
+from verify.studies.proofs.one import ProofTask
 from verify.verdict import Verdict
 
 PROVED, MEASURED, REFUTED, UNDECIDED = (

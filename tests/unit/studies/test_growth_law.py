@@ -11,8 +11,9 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import NoLawError, growth_law
 from verify.runs.run import run
-from verify.scenes.results.core import AverageResult, RunResult
-from verify.studies.growth_law import average_of, predictions
+from verify.scenes.results.growth import AverageResult
+from verify.scenes.results.run import RunResult
+from verify.studies.growth.prediction import average_of, predictions
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 SKEW = Hamiltonian.parse("p**2/2 + q**2/2 + q**3/5 + p*q**2/4 + p**4/8")

@@ -10,13 +10,16 @@ import pytest
 from tests.unit.scenes.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
 from verify.execution.perform import KINDS, perform
+from verify.execution.plan import Plan
+from verify.execution.task import Task
 from verify.reference.make.scene_plan import plan_references
-from verify.runs.run import CLOSED_FORM
-from verify.scenes.plan import Plan
-from verify.scenes.results.core import ProofResult
+from verify.runs.task import RunTask
+from verify.scenes.results.proof import ProofResult
 from verify.scenes.scene import load_scene
-from verify.scenes.tasks import GrowthTask, ProofTask, RunTask, Task, key
+from verify.scenes.values import CLOSED_FORM
+from verify.studies.growth.task import GrowthTask
 from verify.studies.plan import plan_scenes
+from verify.studies.proofs.one import ProofTask
 
 
 def runs_of(plan: Plan) -> list[RunTask]:
@@ -50,8 +53,8 @@ def test_tasks_that_differ_in_anything_have_different_keys(tmp_path: Path) -> No
         "arithmetic": "mpmath", "digits": 18, "observables": ("mse",), "points": 3,
     }  # fmt: skip
     assert set(changes) | {"kind"} == set(RunTask.model_fields)
-    keys = [key(base.model_copy(update={n: v})) for n, v in changes.items()]
-    assert len({key(base), *keys}) == len(changes) + 1
+    keys = [base.model_copy(update={n: v}).key for n, v in changes.items()]
+    assert len({base.key, *keys}) == len(changes) + 1
 
 
 def test_what_is_not_needed_is_left_out_and_the_plan_says_why(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from verify.integrators.others.tableau import (
 )
 from verify.integrators.others.tableau_repair import repair
 from verify.integrators.results import Finding
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 _Found = tuple[Verdict, str, tuple[tuple[str, ...], ...]]

@@ -14,7 +14,7 @@ from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import Subject
 from verify.integrators.others.measured import FAILURES
 from verify.integrators.step import last_line, quiet
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Provenance, Report
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from verify.pages.figures.axes import decades, grid_lines, line_style, mark_places
 from verify.pages.figures.figures import Line, canvas, plot_line
 from verify.pages.figures.logarithm import lg
+from verify.pages.figures.separation_caption import WAYS, short, ways_of
 from verify.pages.figures.svg import drawn
-from verify.pages.sections.separation_caption import WAYS, short, ways_of
 from verify.pages.text.typography import NBSP
-from verify.scenes.results.core import SeparationGrid
+from verify.scenes.results.separation import SeparationGrid
 
 _HEIGHT = 350
 _ROOM = 0.45  # of the axes: what a mark's label takes

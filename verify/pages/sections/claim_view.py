@@ -2,13 +2,12 @@
 
 import re
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
 
-from verify.scenes.results.core import ClaimResult
+from verify.scenes.results.claim import ClaimResult
 
 if TYPE_CHECKING:
-    from verify.pages.figures.plots import Plot
+    from verify.pages.figures.plot import Plot
 
 _PRINTED = "printed"  # how the printed row of a table claim's details begins
 
@@ -56,13 +55,6 @@ class ClaimView:
         """Each step size with what is printed for it and, in the order of `computed`, computed."""
         columns = zip(self.printed, *(row[1:] for row in self.computed), strict=True)
         return list(zip(self.step_sizes, columns, strict=True))
-
-
-def is_decimal(text: str) -> bool:
-    try:
-        return Decimal(text).is_finite()
-    except InvalidOperation:
-        return False
 
 
 class Anchors:

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.plots import Plot
+from verify.pages.figures.plot import Plot
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.sections.scene_view import SceneView
 from verify.pages.text.typography import listed, superscript, whole
 from verify.pages.text.words import counts_of
-from verify.scenes.results.core import ProofResult
+from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.stability import KINDS, Kind, StabilityResult
 from verify.verdict import Verdict

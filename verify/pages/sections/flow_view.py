@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.figures.plots import Plot
+from verify.pages.figures.plot import Plot
 from verify.pages.sections.flow_finding import IS, finding, findings, region_of
 from verify.pages.text.typography import listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult

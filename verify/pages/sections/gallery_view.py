@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.plots import Plot
+from verify.pages.figures.plot import Plot
 from verify.pages.sections.gallery_finding import in_short, lambda_of, run_beyond, told
 from verify.pages.text import mathml
 from verify.pages.text.typography import NBSP, start, step, whole

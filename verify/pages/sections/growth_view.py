@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.plots import Plot, few
+from verify.pages.figures.plot import Plot, few
 from verify.pages.text import mathml
 from verify.pages.text.typography import NBSP, listed, number, start, step, superscript, whole
-from verify.scenes.results.core import AverageResult, GrowthLawResult, PredictionResult, Value
+from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
+from verify.scenes.results.value import Value
 
 if TYPE_CHECKING:
     from verify.pages.figures.growth_figure import Orbit

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures import plots
-from verify.pages.figures.plots import Plot
+from verify.pages.figures.plot import Plot
+from verify.pages.sections import plots
+from verify.pages.sections.run_table import RunTable, run_table
 from verify.pages.text import mathml
-from verify.pages.text.run_table import RunTable, run_table
 from verify.pages.text.typography import listed, prose, sentence, whole
-from verify.scenes.results.core import CriterionResult, EveryResult, ProofResult
+from verify.scenes.results.claim import CriterionResult
+from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.studies.criteria import NAMES
 

@@ -12,9 +12,9 @@ from math import isfinite
 from markupsafe import Markup
 
 from verify.pages.figures.logarithm import lg
-from verify.pages.sections.separation_caption import PLAIN, WAYS
+from verify.pages.figures.separation_caption import PLAIN, WAYS
 from verify.pages.text.typography import listed, whole
-from verify.scenes.results.core import EvaluationResult, SeparationResult
+from verify.scenes.results.separation import EvaluationResult, SeparationResult
 
 PARTS = ("input", "trajectory", "determinant", "product")
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from markupsafe import Markup
 
-from verify.pages.figures.plots import Plot, few
-from verify.pages.sections.separation_caption import WAYS, caption, end_of
+from verify.pages.figures.plot import Plot, few
+from verify.pages.figures.separation_caption import WAYS, caption, end_of
 from verify.pages.sections.separation_finding import (
     PARTS,
     computed,
@@ -18,13 +18,13 @@ from verify.pages.sections.separation_finding import (
     growth_finding,
 )
 from verify.pages.text.typography import NBSP, number, start, step, whole
-from verify.scenes.results.core import (
+from verify.scenes.results.separation import (
     EvaluationResult,
     GrowthResult,
     SeparationGrid,
     SeparationResult,
-    Value,
 )
+from verify.scenes.results.value import Value
 
 MOST_ROWS = 600
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures import plots
-from verify.pages.figures.plots import Plot
+from verify.pages.figures.plot import Plot
+from verify.pages.sections import plots
 from verify.pages.sections.claim_view import Anchors, ClaimView
 from verify.pages.sections.first_screen import FirstScreen, first_screen
 from verify.pages.sections.paper_figure_view import PaperFigureView, paper_figure_views

@@ -6,12 +6,15 @@ A number keeps exactly the digits it comes with.
 
 import re
 from collections.abc import Callable, Iterable
-from decimal import Decimal
+from decimal import Decimal, InvalidOperation
 
 from markupsafe import Markup, escape
 
 from verify.pages.text import mathml
-from verify.scenes.results.core import AverageResult, RunResult, SeparationResult, Value
+from verify.scenes.results.growth import AverageResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.value import Value
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
 NBSP = "\u00a0"
@@ -243,3 +246,11 @@ def _longest(text: str, at: int) -> tuple[int, int]:
         if not operand_next and depth == 0:
             end = position
     return start, end
+
+
+def is_decimal(text: str) -> bool:
+    """Whether the text is a finite decimal."""
+    try:
+        return Decimal(text).is_finite()
+    except InvalidOperation:
+        return False

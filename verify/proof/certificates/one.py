@@ -16,7 +16,7 @@ from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.proof.certificates.every import map_of, terms
 from verify.proof.certificates.file import FORMAT
-from verify.proof.order import Proof
+from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential
 from verify.verdict import Verdict
 

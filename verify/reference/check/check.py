@@ -19,10 +19,10 @@ from verify.errors import InputError
 from verify.execution.executors import ANYWHERE, HERE, Call, Where, opened, performed
 from verify.execution.keeping import versions
 from verify.reference.check import consistency
+from verify.reference.check.difference import Difference, Found
 from verify.reference.check.recompute import recomputed
-from verify.reference.compare.difference import Difference, Found
-from verify.reference.compare.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
 from verify.reference.make.models import Data, Manifest
+from verify.reference.make.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
 from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
     MANIFEST,

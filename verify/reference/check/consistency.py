@@ -15,10 +15,10 @@ from typing import Any
 from verify.algebra.formula import parse
 from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
-from verify.reference.compare.difference import Difference
-from verify.reference.compare.reading import rows_of, text_of
+from verify.reference.check.difference import Difference
 from verify.reference.make.correct_rounding import correctly_rounded
 from verify.reference.make.models import Data, Flow, Run
+from verify.reference.make.reading import rows_of, text_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import Row, csv_text
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded

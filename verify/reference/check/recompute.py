@@ -13,12 +13,12 @@ import flint
 
 from verify.arithmetic.exact import magnitude
 from verify.reference.check.consistency import flow_label, run_label
+from verify.reference.check.difference import Difference, Found
 from verify.reference.check.exact_flow import BlowsUpError, State, states_at
 from verify.reference.check.recompute_proof import proof_again, shown
 from verify.reference.check.tape import NotReadError
 from verify.reference.check.taylor import Number, number
 from verify.reference.check.textbook import Field, Step, UnknownSchemeError, step_of
-from verify.reference.compare.difference import Difference, Found
 from verify.reference.make.models import Data, Flow, Run
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 

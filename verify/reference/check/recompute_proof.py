@@ -8,9 +8,9 @@ from typing import Any
 
 import flint
 
+from verify.reference.check.difference import Difference, Found
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, flow_series, step_of
-from verify.reference.compare.difference import Difference, Found
 from verify.reference.make.models import Data, Proof
 
 _MOST_ORDER = 12  # to which a map is looked at that agrees with another

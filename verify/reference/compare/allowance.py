@@ -15,9 +15,10 @@ from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.balls import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.computation import step_map_of
+from verify.kernels.orbit import Orbit
 from verify.reference.compare.findings import DOUBLE, SINGLE
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Case, Known
+from verify.reference.compare.setting import Known
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _FEW = 4  # roundings of p and q in a step
@@ -38,10 +39,10 @@ class Allowed:
 
 
 class Allowance:
-    """Of one case, for one unit roundoff."""
+    """Of one orbit, for one unit roundoff."""
 
-    def __init__(self, case: Case, unit: Fraction, scatters: Scatters) -> None:
-        self.case, self.unit, self._scatters = case, unit, scatters
+    def __init__(self, orbit: Orbit, unit: Fraction, scatters: Scatters) -> None:
+        self.orbit, self.unit, self._scatters = orbit, unit, scatters
         self._entries: dict[int, Fraction] = {}
         self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
 
@@ -62,7 +63,7 @@ class Allowance:
     def of(self, name: str, step: int, known: dict[str, Known]) -> Allowed | None:
         """What may be with all that earlier steps have left; None where that may be everything."""
         least = self.at_once(name, step, known)
-        spreads = self._scatters.at(self.case, step)
+        spreads = self._scatters.at(self.orbit, step)
         if spreads is None:
             return None
         found = spreads.get(name)
@@ -75,18 +76,18 @@ class Allowance:
     def _one(self, step: int, known: dict[str, Known]) -> Fraction:
         """The rounding of one determinant, at the largest entries that were met so far."""
         if step not in self._entries and "p" in known and "q" in known:
-            self._entries[step] = products(self.case, known["p"], known["q"])
+            self._entries[step] = products(self.orbit, known["p"], known["q"])
         most = max((x for n, x in self._entries.items() if n <= step), default=Fraction(1))
         return _PRODUCTS * self.unit * most
 
 
-def products(case: Case, p: Known, q: Known) -> Fraction:
+def products(orbit: Orbit, p: Known, q: Known) -> Fraction:
     """A bound of |a d| + |b c| over the step's substeps, at least 1: what det J is the rest of."""
-    step_map = step_map_of(case.hamiltonian, case.scheme)
+    step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     if step_map.solved:
         return Fraction(1)
     with working_precision(_BITS):
-        box = {"p": around(*p), "q": around(*q), "h": rational_ball(case.step_size)}
+        box = {"p": around(*p), "q": around(*q), "h": rational_ball(orbit.step_size)}
         whole = [flint.arb(x) for x in (1, 0, 0, 1)]  # the entries' sizes, of all substeps so far
         for step in step_map.substeps:
             own = enclose_all(step.ring, [*step.jacobian, step.p_next, step.q_next], box)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from verify.errors import InputError
+from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import Printing, printing
 from verify.reference.compare.diagnosis import Diagnosis
 from verify.reference.compare.findings import Judged, Named, Verdict
@@ -12,9 +13,9 @@ from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import OurRun, Ours
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Case, Points, Setting
+from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import Theirs
-from verify.scenes.results.core import SeparationResult
+from verify.scenes.results.separation import SeparationResult
 from verify.studies.separation.separate import separate
 
 _MOST_SEARCHES = 3  # in vain: a mistake that they all had would have been found
@@ -90,15 +91,15 @@ def compare(
     search = _Search()
     asked = {step for _, rows in theirs.runs.values() for step in rows}
     marks = {max(0, step + late) for step in asked for late in (-1, 0, 1)}
-    scatters = Scatters([run.case for run, _ in theirs.runs.values()], sorted(marks))
-    points = Points({own.case: (own.run.digits, own.rows) for own in ours.runs()})
+    scatters = Scatters([run.orbit for run, _ in theirs.runs.values()], sorted(marks))
+    points = Points({own.orbit: (own.run.digits, own.rows) for own in ours.runs()})
     for count, (run, rows) in enumerate(theirs.runs.values(), start=1):
         judge = Judge(run, rows, how, scatters, points)
         if judge.cells:
             each = judge.judged()
             if search.explain(judge, each):
                 rest = [run for run, _ in list(theirs.runs.values())[count:]]
-                scatters.expect(_cases(rest, points, search.known))
+                scatters.expect(_orbits(rest, points, search.known))
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
@@ -134,10 +135,10 @@ def _separated(off: list[_Off]) -> Separated | None:
     if not off:
         return None
     _, apart, step, run = max(off, key=lambda x: x[:2])
-    case = run.case
+    orbit = run.orbit
     result = separate(
-        case.hamiltonian, case.scheme, q=case.q, p=case.p,
-        step_size=case.step_size, steps=step, digits=_SEPARATED_DIGITS,
+        orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
+        step_size=orbit.step_size, steps=step, digits=_SEPARATED_DIGITS,
     )  # fmt: skip
     return Separated(run.label, step, apart, result) if result.plain else None
 
@@ -170,12 +171,12 @@ class _Search:
         return len(self.known) > before
 
 
-def _cases(runs: Iterable[OurRun], points: Points, names: Container[str]) -> Iterator[Case]:
+def _orbits(runs: Iterable[OurRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
     """What runs with one of these mistakes would be."""
     for run in runs:
-        for mistake in of_states(Setting(run.case, points)):
+        for mistake in of_states(Setting(run.orbit, points)):
             if mistake.name in names:
-                yield mistake.setting.case
+                yield mistake.setting.orbit
 
 
 def _column(name: str, judged: Iterable[Judged]) -> Column:

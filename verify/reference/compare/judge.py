@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from verify.reference.check.overflow import may_overflow
 from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance import Allowance
 from verify.reference.compare.findings import DOUBLE, Fit, Judged, Of, Verdict
+from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import OurRun
 from verify.reference.compare.readings import Foretold, value_of
 from verify.reference.compare.scatter import Scatters
@@ -43,7 +43,7 @@ class Judge:
                 self.cells[step, name] = cell
         names = {name for _, name in self.cells}
         self.names = tuple(n for n in (*STATE, *AREA) if n in names)
-        self.right = Setting(ours.case, points)
+        self.right = Setting(ours.orbit, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
         for name, text in row.cells.items():
@@ -94,7 +94,7 @@ class Judge:
 
         `read` gives what a column is foretold to hold, where that is not the setting's own.
         """
-        allowance = Allowance(setting.case, unit, self._scatters)
+        allowance = Allowance(setting.orbit, unit, self._scatters)
         names = tuple(names)
         found = Fit(dict.fromkeys(names, Verdict.AGREES))
         for (step, name), cell in self.cells.items():
@@ -103,7 +103,7 @@ class Judge:
             known = self.known(setting, step, unit)
             there = {setting.inner(n): x for n, x in known.items()}
             inner, after = setting.inner(name), step + setting.late
-            if cell.theirs is None and may_overflow(setting.case, after, there):
+            if cell.theirs is None and may_overflow(setting.orbit, after, there):
                 found.overflow_from = step if found.overflow_from is None else found.overflow_from
                 found.verdicts[name] = max(found.verdicts[name], Verdict.ROUNDING)
                 continue

@@ -15,7 +15,8 @@ from verify import schemes
 from verify.algebra.formula import to_text
 from verify.arithmetic.exact import short
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.reference.compare.setting import Case, Setting
+from verify.kernels.orbit import Orbit
+from verify.reference.compare.setting import Setting
 from verify.schemes.splitting_conditions import Part, Splitting
 
 _MOST_INEXACT = 4  # inputs of which all subsets are tried
@@ -38,9 +39,9 @@ class Mistake:
 
 def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
-    case = right.case
+    orbit = right.orbit
     doubles = {
-        "h": case.step_size, "q0": case.q, "p0": case.p, **dict(case.hamiltonian.values),
+        "h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values),
     }  # fmt: skip
     inexact = [n for n, x in doubles.items() if _double(x) not in (x, None)]
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
@@ -49,7 +50,7 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
         shown = " and ".join(f"{n} is the double nearest to {_text(doubles[n])}" for n in names)
         says = f"your {shown}, and not exactly that"
         name = f"double-{'-'.join(names)}"
-        yield Mistake(name, says, replace(right, case=_with(case, changed)))
+        yield Mistake(name, says, replace(right, orbit=_with(orbit, changed)))
 
 
 def of_states(right: Setting) -> Iterator[Mistake]:
@@ -61,44 +62,44 @@ def of_states(right: Setting) -> Iterator[Mistake]:
 
 
 def _of_columns(right: Setting) -> Iterator[Mistake]:
-    case = right.case
-    exchanged = replace(case, q=case.p, p=case.q)
+    orbit = right.orbit
+    exchanged = replace(orbit, q=orbit.p, p=orbit.q)
     yield Mistake("swapped-columns", "your columns p and q are swapped",
                   replace(right, swapped=True))  # fmt: skip
     yield Mistake("swapped-start", "your initial p and q are swapped",
-                  replace(right, case=exchanged))  # fmt: skip
+                  replace(right, orbit=exchanged))  # fmt: skip
     yield Mistake("swapped-throughout", "p and q are swapped, in your columns and at the start",
-                  replace(right, case=exchanged, swapped=True))  # fmt: skip
+                  replace(right, orbit=exchanged, swapped=True))  # fmt: skip
     yield Mistake("negated-p", "your p has the other sign", replace(right, negated=True))
     yield Mistake("negated-start", "your initial p has the other sign",
-                  replace(right, case=replace(case, p=-case.p)))  # fmt: skip
-    backwards = Hamiltonian(-case.hamiltonian.expression, case.hamiltonian.values)
+                  replace(right, orbit=replace(orbit, p=-orbit.p)))  # fmt: skip
+    backwards = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
     yield Mistake("backwards", "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p",
-                  replace(right, case=replace(case, hamiltonian=backwards)))  # fmt: skip
+                  replace(right, orbit=replace(orbit, hamiltonian=backwards)))  # fmt: skip
     for late, says in ((1, "too low"), (-1, "too high")):
         yield Mistake(f"late{late:+d}", f"your step index is {says} by one",
                       replace(right, late=late))  # fmt: skip
 
 
 def _of_step(right: Setting) -> Iterator[Mistake]:
-    case, h = right.case, right.case.step_size
+    orbit, h = right.orbit, right.orbit.step_size
     for name, factor, says in (("half", Fraction(1, 2), "half"), ("double", Fraction(2), "twice")):
         yield Mistake(f"{name}-step", f"your h is {says} what it should be",
-                      replace(right, case=replace(case, step_size=factor * h)))  # fmt: skip
+                      replace(right, orbit=replace(orbit, step_size=factor * h)))  # fmt: skip
     single = {"h": _single(h)}
     if single["h"] not in (None, h):
         yield Mistake("single-h", "your h is the single-precision number nearest to it",
-                      replace(right, case=_with(case, single)))  # fmt: skip
-    for name, value in case.hamiltonian.values:
+                      replace(right, orbit=_with(orbit, single)))  # fmt: skip
+    for name, value in orbit.hamiltonian.values:
         for what, other in (("minus", -value), ("no", Fraction(0))):
             if other != value:
                 yield Mistake(f"{what}-{name}", f"your {name} is {_text(other)}",
-                              replace(right, case=_with(case, {name: other})))  # fmt: skip
+                              replace(right, orbit=_with(orbit, {name: other})))  # fmt: skip
 
 
 def _of_scheme(right: Setting) -> Iterator[Mistake]:
     """Its relatives by name, then all other schemes."""
-    mine = right.case.scheme
+    mine = right.orbit.scheme
     said = dict(_relatives(mine))
     known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
     for name in known:
@@ -106,7 +107,7 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
     said.pop(mine, None)
     for name, says in said.items():
         yield Mistake(
-            f"{_OF_SCHEME}{name}", says, replace(right, case=replace(right.case, scheme=name))
+            f"{_OF_SCHEME}{name}", says, replace(right, orbit=replace(right.orbit, scheme=name))
         )
 
 
@@ -115,7 +116,7 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
 
     That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
     """
-    generic = schemes.get(right.case.scheme).generic
+    generic = schemes.get(right.orbit.scheme).generic
     parts = generic.parts if isinstance(generic, Splitting) else ()
     if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
         return
@@ -123,17 +124,17 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
     name = "p" if first == "kick" else "q"
     both = ((first, 2 * half), (second, whole))
     for sign, order, says in ((1, both[::-1], "ahead"), (-1, both, "behind")):
-        case = replace(right.case, scheme=_named(order))
+        orbit = replace(right.orbit, scheme=_named(order))
         start = _a_part_on(right, name, _named(both), sign)
         if start is not None:
             yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
-                          replace(right, case=_with(case, {f"{name}0": start})))  # fmt: skip
+                          replace(right, orbit=_with(orbit, {f"{name}0": start})))  # fmt: skip
 
 
 def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
     """The initial `name` after half of the scheme's first part, which changes it alone."""
-    start = getattr(right.case, name)
-    after = replace(right, case=replace(right.case, scheme=scheme)).state(1, _SHARP)
+    start = getattr(right.orbit, name)
+    after = replace(right, orbit=replace(right.orbit, scheme=scheme)).state(1, _SHARP)
     return start + sign * (after[name][0] - start) / 2 if after else None
 
 
@@ -142,10 +143,10 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
     found: dict[object, Mistake] = {}
     for mistake in mistakes:
         setting, (q, p, h) = mistake.setting, _ELSEWHERE
-        there = replace(setting.case, q=q, p=p, step_size=h)
+        there = replace(setting.orbit, q=q, p=p, step_size=h)
         state = None
         if mistake.name.startswith(_OF_SCHEME):
-            known = replace(setting, case=there).state(1, _SHARP)
+            known = replace(setting, orbit=there).state(1, _SHARP)
             state = known and (known["p"][0], known["q"][0])
         first = found.setdefault(state or mistake.name, mistake)
         if first is not mistake and first.says.startswith(_OTHER):
@@ -191,12 +192,12 @@ def _ones(names: list[str]) -> list[tuple[str, ...]]:
     return [(name,) for name in names]
 
 
-def _with(case: Case, changed: dict[str, Fraction | None]) -> Case:
+def _with(orbit: Orbit, changed: dict[str, Fraction | None]) -> Orbit:
     new = {n: x for n, x in changed.items() if x is not None}
-    h, q, p = new.pop("h", case.step_size), new.pop("q0", case.q), new.pop("p0", case.p)
-    values = {**dict(case.hamiltonian.values), **new}
-    hamiltonian = Hamiltonian(case.hamiltonian.expression).with_values(values)
-    return Case(hamiltonian, case.scheme, h, q, p)
+    h, q, p = new.pop("h", orbit.step_size), new.pop("q0", orbit.q), new.pop("p0", orbit.p)
+    values = {**dict(orbit.hamiltonian.values), **new}
+    hamiltonian = Hamiltonian(orbit.hamiltonian.expression).with_values(values)
+    return Orbit(hamiltonian, orbit.scheme, h, q, p)
 
 
 def _double(x: Fraction) -> Fraction | None:

@@ -12,10 +12,10 @@ from pydantic import ValidationError
 from verify.arithmetic.exact import rational
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.orbit import Orbit
 from verify.kernels.tangent_map import number as double
-from verify.reference.compare.reading import content_of, json_of
-from verify.reference.compare.setting import Case
 from verify.reference.make.models import Data, Run
+from verify.reference.make.reading import content_of, json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitPoint
 
@@ -48,10 +48,10 @@ class OurRun:
         return f"{self.scene}: {run.scheme}, h = {run.step_size}, (q, p) = ({run.q}, {run.p})"
 
     @cached_property
-    def case(self) -> Case:
+    def orbit(self) -> Orbit:
         """What was run."""
         h, q, p = self.exact
-        return Case(self.hamiltonian, self.run.scheme, h, q, p)
+        return Orbit(self.hamiltonian, self.run.scheme, h, q, p)
 
     @cached_property
     def rows(self) -> dict[int, OrbitPoint]:

@@ -20,8 +20,8 @@ from verify.arithmetic.float_context import WIDE
 from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation_of_many import arrays
 from verify.kernels.kernel import kernel_for
-from verify.kernels.stepping import Job
-from verify.reference.compare.setting import Case
+from verify.kernels.orbit import Orbit
+from verify.kernels.stepping import KernelRun
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
 _COPIES = 16  # of each kind
@@ -29,7 +29,7 @@ _ALL = 2 * _COPIES + 1  # and one in the middle that is not pushed
 _MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go on growing
 _LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is said
 _BLOCK = 64  # steps whose random numbers are drawn at once
-_TOGETHER = 64  # cases
+_TOGETHER = 64  # orbits
 
 
 @dataclass(frozen=True)
@@ -44,21 +44,21 @@ Spreads = Mapping[str, Spread]
 
 
 class Scatter:
-    """The copies of some cases of one scheme and one H (whose parameters may differ), which step
+    """The copies of some orbits of one scheme and one H (whose parameters may differ), which step
     on together as they are asked to; what is known at `marks` on the way is kept."""
 
-    def __init__(self, cases: Sequence[Case], marks: Sequence[int] = ()) -> None:
+    def __init__(self, orbits: Sequence[Orbit], marks: Sequence[int] = ()) -> None:
         """Raises UnsupportedError for a scheme that solves equations."""
-        jobs = [job_of(case) for case in cases]
-        if jobs[0].solved:
+        runs = [run_of(orbit) for orbit in orbits]
+        if runs[0].solved:
             raise UnsupportedError("equations are not solved for many points at once")
         self._random = np.random.default_rng(0)
-        kernel = kernel_for(jobs[0].generic, cases[0].scheme, arrays(), jobs[0].observables, False)
+        kernel = kernel_for(runs[0].generic, orbits[0].scheme, arrays(), runs[0].observables, False)
         self._names, self._function = kernel.carried, kernel.function
-        self._shape = len(cases), _ALL
-        inputs = [list(job.inputs(kernel, 0).values()) for job in jobs]
+        self._shape = len(orbits), _ALL
+        inputs = [list(run.inputs(kernel, 0).values()) for run in runs]
         self._given = [self._off(column) for column in zip(*inputs, strict=True)]
-        self._state = {"p": self._off([c.p for c in cases]), "q": self._off([c.q for c in cases])}
+        self._state = {"p": self._off([c.p for c in orbits]), "q": self._off([c.q for c in orbits])}
         rest = zip(self._names[2:], kernel.start, strict=True)
         self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
         self._biased = self._draw(())
@@ -66,15 +66,15 @@ class Scatter:
         self._done, self._marks = 0, frozenset(marks)
         self._known: dict[int, list[Spreads | None]] = {}
 
-    def at(self, case: int, step: int) -> Spreads | None:
-        """Of a case, after so many steps; None where its copies leave every range, or are far apart
+    def at(self, orbit: int, step: int) -> Spreads | None:
+        """Of an orbit, after so many steps; None where its copies leave every range, or are far apart
         by then. ValueError for a step that was passed, and is no mark."""
         if step not in self._known:
             if self._done > min(step, _MOST_STEPS):
                 raise ValueError(step)
             with np.errstate(all="ignore"):
                 self._go_to(step)
-        return self._known[step][case]
+        return self._known[step][orbit]
 
     def _go_to(self, step: int) -> None:
         while self._done < min(step, _MOST_STEPS):
@@ -133,36 +133,36 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def job_of(case: Case) -> Job:
-    """One step of the case, with MSE and Λ."""
-    start = {"p": case.p, "q": case.q, "h": case.step_size}
-    return Job(case.hamiltonian, case.scheme, start, 1, frozenset({"mse", "lambda"}), 0)
+def run_of(orbit: Orbit) -> KernelRun:
+    """One step of the orbit, with MSE and Λ."""
+    start = {"p": orbit.p, "q": orbit.q, "h": orbit.step_size}
+    return KernelRun(orbit.hamiltonian, orbit.scheme, start, 1, frozenset({"mse", "lambda"}), 0)
 
 
 class Scatters:
-    """The scatters of a table's cases, each made when it is first needed, with others of its kind;
-    other cases have one of their own."""
+    """The scatters of a table's orbits, each made when it is first needed, with others of its kind;
+    other orbits have one of their own."""
 
-    def __init__(self, cases: Iterable[Case] = (), marks: Sequence[int] = ()) -> None:
-        self._place: dict[Case, tuple[tuple[Case, ...], int]] = {}
+    def __init__(self, orbits: Iterable[Orbit] = (), marks: Sequence[int] = ()) -> None:
+        self._place: dict[Orbit, tuple[tuple[Orbit, ...], int]] = {}
         self._marks = marks
-        self._made: dict[tuple[Case, ...], Scatter] = {}
-        self.expect(cases)
+        self._made: dict[tuple[Orbit, ...], Scatter] = {}
+        self.expect(orbits)
 
-    def expect(self, cases: Iterable[Case]) -> None:
+    def expect(self, orbits: Iterable[Orbit]) -> None:
         """They may be asked for, too; so those of a kind that are new step together."""
-        kinds: dict[object, list[Case]] = {}
-        for case in dict.fromkeys(cases):
-            if case not in self._place:
-                kinds.setdefault((case.hamiltonian.expression, case.scheme), []).append(case)
+        kinds: dict[object, list[Orbit]] = {}
+        for orbit in dict.fromkeys(orbits):
+            if orbit not in self._place:
+                kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
         for kind in kinds.values():
             for first in range(0, len(kind), _TOGETHER):
                 together = tuple(kind[first : first + _TOGETHER])
-                self._place |= {case: (together, k) for k, case in enumerate(together)}
+                self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
-    def at(self, case: Case, step: int) -> Spreads | None:
+    def at(self, orbit: Orbit, step: int) -> Spreads | None:
         """As `Scatter.at`, in any order; of no number where the scheme solves equations."""
-        together, k = self._place.get(case, ((case,), 0))
+        together, k = self._place.get(orbit, ((orbit,), 0))
         try:
             if together not in self._made:
                 self._made[together] = Scatter(together, self._marks)
@@ -170,6 +170,6 @@ class Scatters:
         except (UnsupportedError, OverflowError):  # OverflowError: of an input that is no double
             return {}
         except ValueError:  # it was passed
-            self._place[case] = (case,), 0
-            self._made[(case,)] = Scatter([case], self._marks)
-            return self._made[(case,)].at(0, step)
+            self._place[orbit] = (orbit,), 0
+            self._made[(orbit,)] = Scatter([orbit], self._marks)
+            return self._made[(orbit,)].at(0, step)

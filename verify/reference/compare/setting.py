@@ -9,25 +9,13 @@ from fractions import Fraction
 
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.reference.make.orbit_points import orbit
+from verify.kernels.orbit import Orbit
+from verify.reference.make.orbit_points import orbit_points
 from verify.scenes.results.reference import OrbitPoint
-from verify.scenes.tasks import OrbitTask
 
 _MOST_KEPT = 4096
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
 Known = tuple[Fraction, Fraction]  # a value and its radius
-
-
-@dataclass(frozen=True)
-class Case:
-    """A scheme's run for an H whose parameters have values."""
-
-    hamiltonian: Hamiltonian
-    scheme: str
-    step_size: Fraction
-    q: Fraction
-    p: Fraction
 
 
 def known_of(point: OrbitPoint | None, name: str) -> Known | None:
@@ -39,18 +27,18 @@ def known_of(point: OrbitPoint | None, name: str) -> Known | None:
 class Points:
     """Cases after some steps: from the reference data where they have them, else by a run."""
 
-    def __init__(self, known: Mapping[Case, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
-        """`known`: of a case its digits, and its points by step."""
+    def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
+        """`known`: of an orbit its digits, and its points by step."""
         self._known = known
-        self._run: dict[tuple[Case, int, int], OrbitPoint | None] = {}
+        self._run: dict[tuple[Orbit, int, int], OrbitPoint | None] = {}
 
-    def at(self, case: Case, step: int, digits: int) -> OrbitPoint | None:
+    def at(self, orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
         """To so many digits and no fewer; None where there is no such state."""
-        have, rows = self._known.get(case, (0, {}))
+        have, rows = self._known.get(orbit, (0, {}))
         if have >= digits and step in rows:
             point = rows[step]
             return point if point.status == "finished" else None
-        key = case, step, digits
+        key = orbit, step, digits
         if key not in self._run:
             if len(self._run) > _MOST_KEPT:
                 self._run.clear()
@@ -63,7 +51,7 @@ class Setting:
     """A run; row N holds what it is after N + `late` steps, the columns perhaps `swapped`, and p
     perhaps `negated`. `points` knows what it is."""
 
-    case: Case
+    orbit: Orbit
     points: Points = field(compare=False)
     late: int = 0
     swapped: bool = False
@@ -87,19 +75,14 @@ class Setting:
     def point(self, step: int, digits: int) -> OrbitPoint | None:
         """What is known of the run where row `step` is of it."""
         after = step + self.late
-        return None if after < 0 else self.points.at(self.case, after, digits)
+        return None if after < 0 else self.points.at(self.orbit, after, digits)
 
 
-def _run_at(case: Case, step: int, digits: int) -> OrbitPoint | None:
+def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
     if step > _MOST_STEPS:
         return None
-    given = case.hamiltonian.written
     try:
-        task = OrbitTask(
-            **given, scheme=case.scheme, q=case.q, p=case.p,
-            step_size=case.step_size, steps=(step,), digits=digits,
-        )  # fmt: skip
-        point = orbit(case.hamiltonian, task).points[0]
+        point = orbit_points(orbit, steps=(step,), digits=digits).points[0]
     except (InputError, UnsupportedError, ArithmeticError):
         return None
     return point if point.status == "finished" else None

@@ -10,8 +10,6 @@ from verify.arithmetic.exact import text
 from verify.content import content
 from verify.errors import InputError
 from verify.execution.keeping import versions, write_atomically
-from verify.execution.perform import Result
-from verify.reference.compare.reading import MOST_BYTES
 from verify.reference.make.models import (
     DATA_FORMAT,
     MANIFEST_FORMAT,
@@ -22,6 +20,7 @@ from verify.reference.make.models import (
     Run,
     SceneFile,
 )
+from verify.reference.make.reading import MOST_BYTES
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,
@@ -34,10 +33,10 @@ from verify.reference.make.writing import (
     schema_text,
     tables,
 )
-from verify.scenes.results.core import ProofResult
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.scene import Scene, load_scene
-from verify.scenes.tasks import key
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
 SCENES = content("reference", "scenes")
@@ -77,21 +76,21 @@ def committed_scenes() -> list[Path]:
     return sorted(SCENES.glob("*.toml"))
 
 
-def data_of(scene: Scene, results: Mapping[str, Result]) -> Data:
+def data_of(scene: Scene, results: Mapping[str, Frozen]) -> Data:
     """A scene's data from the results of its tasks."""
     proofs, runs, flows = [], [], []
     for proof in proof_tasks(scene):
-        known = results[key(proof)]
+        known = results[proof.key]
         assert isinstance(known, ProofResult)  # noqa: S101 - the key is such a task's
         proofs.append(Proof(**{name: getattr(known, name) for name in Proof.model_fields}))
     for orbit in orbit_tasks(scene):
-        found = results[key(orbit)]
+        found = results[orbit.key]
         assert isinstance(found, OrbitResult)  # noqa: S101 - the key is such a task's
         given = {"step_size": text(orbit.step_size), "q": text(orbit.q), "p": text(orbit.p)}
         run = Run(**given, scheme=orbit.scheme, digits=orbit.digits, rows=found.points)
         runs.append(run)
     for solution in solution_tasks(scene):
-        solved = results[key(solution)]
+        solved = results[solution.key]
         assert isinstance(solved, SolutionResult)  # noqa: S101 - the key is such a task's
         h, q, p = text(solution.step_size), text(solution.q), text(solution.p)
         flows.append(Flow(step_size=h, q=q, p=p, digits=solution.digits, rows=solved.points))
@@ -138,7 +137,7 @@ def manifest_of(asked: Sequence[Asked], files: Mapping[str, bytes], command: str
         scenes=tuple(
             SceneFile(name=x.scene.name, toml=x.toml, sha256=digest(x.toml.encode())) for x in asked
         ),
-        files=tuple(listed(name, content) for name, content in files.items()),
+        files=tuple(listed(name, raw) for name, raw in files.items()),
     )
 
 
@@ -154,6 +153,6 @@ def write(folder: Path, files: Mapping[str, bytes], manifest: Manifest) -> None:
     An old manifest goes first: an interruption leaves no manifest of other files behind.
     """
     (folder / MANIFEST).unlink(missing_ok=True)
-    for name, content in files.items():
-        write_atomically(folder / name, content)
+    for name, raw in files.items():
+        write_atomically(folder / name, raw)
     write_atomically(folder / MANIFEST, json_text(manifest))

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import FlowPoint, OrbitPoint
 from verify.verdict import Verdict
 

@@ -5,6 +5,7 @@ reports, with a rigorous bound wherever one can be had. ΔJ at the state is encl
 all states within that bound. More digits are asked for until all numbers round to one decimal.
 """
 
+from collections.abc import Sequence
 from contextlib import suppress
 from fractions import Fraction
 from typing import Literal
@@ -20,9 +21,9 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import Solution, exact_solution, leaves_by_algebra
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.computation import step_map_of
+from verify.kernels.orbit import Orbit
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
-from verify.runs.run import AUTO, run
-from verify.scenes.results.core import RunResult
+from verify.runs.run import run
 from verify.scenes.results.reference import (
     FlowPoint,
     Kind,
@@ -31,7 +32,8 @@ from verify.scenes.results.reference import (
     Rounded,
     SolutionResult,
 )
-from verify.scenes.tasks import OrbitTask, SolutionTask
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import AUTO
 from verify.schemes.step_map import StepMap
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
@@ -41,17 +43,17 @@ _ENCLOSED: Kind = "enclosed"
 Known = tuple[Fraction, Fraction]  # a value and its bound
 
 
-def orbit(hamiltonian: Hamiltonian, task: OrbitTask) -> OrbitResult:
-    """The orbit after each of the task's steps."""
-    step_map = step_map_of(hamiltonian, task.scheme)
-    return OrbitResult(points=tuple(_point(hamiltonian, step_map, task, n) for n in task.steps))
+def orbit_points(orbit: Orbit, *, steps: Sequence[int], digits: int) -> OrbitResult:
+    """The orbit after each of these numbers of steps, every number to so many digits."""
+    return OrbitResult(points=tuple(_point(orbit, n, digits) for n in steps))
 
 
-def _point(hamiltonian: Hamiltonian, step_map: StepMap, task: OrbitTask, step: int) -> OrbitPoint:
+def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
+    step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     for guard in _GUARDS:
-        known, kind = _start(task), _ENCLOSED
+        known, kind = _at_start(orbit), _ENCLOSED
         if step > 0:
-            found = _run(hamiltonian, task, step, task.digits + guard)
+            found = _run(orbit, step, digits + guard)
             if found.status == "left range":
                 return _without(step, "left range", found.failed_step)
             if found.status == "unresolved":
@@ -59,28 +61,30 @@ def _point(hamiltonian: Hamiltonian, step_map: StepMap, task: OrbitTask, step: i
             kind = found.error_kind
             known = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in found.values.items()}
         at = known["p"], known["q"]
-        change = delta_j_at(step_map, *at, task.step_size, task.digits + guard)
+        change = delta_j_at(step_map, *at, orbit.step_size, digits + guard)
         if change is not None:
             known["delta_j"] = change
         last = guard == _GUARDS[-1]
-        values = {n: _rounded(x, task.digits, last, _size(task, n)) for n, x in known.items()}
+        values = {
+            n: _rounded(x, digits, last, _size(orbit.q, orbit.p, n)) for n, x in known.items()
+        }
         if all(values.values()):
             names = {n: values.get(n) for n in ("p", "q", "delta_j", "mse", "lambda")}
             return OrbitPoint(step=step, status="finished", failed_step=None, kind=kind, **names)
     return _without(step, "unresolved", None)
 
 
-def _start(task: OrbitTask) -> dict[str, Known]:
-    return {"p": (task.p, Fraction(0)), "q": (task.q, Fraction(0)), "lambda": _ZERO}
+def _at_start(orbit: Orbit) -> dict[str, Known]:
+    return {"p": (orbit.p, Fraction(0)), "q": (orbit.q, Fraction(0)), "lambda": _ZERO}
 
 
-def _run(hamiltonian: Hamiltonian, task: OrbitTask, steps: int, digits: int) -> RunResult:
+def _run(orbit: Orbit, steps: int, digits: int) -> RunResult:
     return run(
-        hamiltonian,
-        task.scheme,
-        q=task.q,
-        p=task.p,
-        step_size=task.step_size,
+        orbit.hamiltonian,
+        orbit.scheme,
+        q=orbit.q,
+        p=orbit.p,
+        step_size=orbit.step_size,
         steps=steps,
         arithmetic=AUTO,
         digits=digits,
@@ -88,14 +92,14 @@ def _run(hamiltonian: Hamiltonian, task: OrbitTask, steps: int, digits: int) -> 
     )
 
 
+def _size(q: Fraction, p: Fraction, name: str = "p") -> Fraction:
+    """What a number of that name is small against: p and q against the initial value."""
+    return max(abs(p), abs(q)) if name in ("p", "q") else Fraction(1)
+
+
 def _rounded(known: Known, digits: int, last: bool, size: Fraction) -> Rounded | None:
     rounded = correctly_rounded(*known, digits)
     return rounded or (near_zero(*known, digits, size) if last else None)
-
-
-def _size(task: OrbitTask | SolutionTask, name: str) -> Fraction:
-    """What a number of that name is small against: p and q against the initial value."""
-    return max(abs(task.p), abs(task.q)) if name in ("p", "q") else Fraction(1)
 
 
 def _without(step: int, status: str, failed_step: int | None) -> OrbitPoint:
@@ -130,23 +134,33 @@ def delta_j_at(step_map: StepMap, p: Known, q: Known, h: Fraction, digits: int) 
 # -- the exact flow ----------------------------------------------------------------------------
 
 
-def solution(hamiltonian: Hamiltonian, task: SolutionTask) -> SolutionResult:
-    """The exact flow at the times N·h of the task's steps."""
-    return SolutionResult(points=tuple(_flow_point(hamiltonian, task, n) for n in task.steps))
+def solution_points(
+    hamiltonian: Hamiltonian,
+    *,
+    q: Fraction,
+    p: Fraction,
+    step_size: Fraction,
+    steps: Sequence[int],
+    digits: int,
+) -> SolutionResult:
+    """The exact flow from (q, p) at the times N·h for each of these N, to so many digits."""
+    times = [(n, n * step_size) for n in steps]
+    points = (_flow_point(hamiltonian, {"q": q, "p": p}, *at, digits) for at in times)
+    return SolutionResult(points=tuple(points))
 
 
-def _flow_point(hamiltonian: Hamiltonian, task: SolutionTask, step: int) -> FlowPoint:
-    time, start = step * task.step_size, {"p": task.p, "q": task.q}
+def _flow_point(
+    hamiltonian: Hamiltonian, start: dict[str, Fraction], step: int, time: Fraction, digits: int
+) -> FlowPoint:
     try:
         for guard in _GUARDS:
-            digits = task.digits + guard
             if step == 0:  # the initial value itself, also where H is not defined
-                at = Solution(task.p, task.q, Fraction(0), "the initial value itself")
+                at = Solution(start["p"], start["q"], Fraction(0), "the initial value itself")
             else:
-                at = exact_solution(hamiltonian, **start, time=time, digits=digits)
+                at = exact_solution(hamiltonian, **start, time=time, digits=digits + guard)
             last = guard == _GUARDS[-1]
-            size = _size(task, "p")
-            p, q = (_rounded((x, at.bound), task.digits, last, size) for x in (at.p, at.q))
+            size = _size(start["q"], start["p"])
+            p, q = (_rounded((x, at.bound), digits, last, size) for x in (at.p, at.q))
             if p and q:
                 kind: Kind = "estimated" if at.bound else "enclosed"
                 return FlowPoint(step=step, time=text(time), status="finished", kind=kind, p=p, q=q)

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from verify.scenes.plan import Plan
+from verify.execution.plan import Plan
+from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.reference_sections import Reference
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import OrbitTask, ProofTask, SolutionTask
 from verify.studies.plan import proof_task
+from verify.studies.proofs.one import ProofTask
 
 
 def plan_references(scenes: Sequence[Scene]) -> Plan:

@@ -1,6 +1,7 @@
 """What an exploration found, and its report."""
 
-from verify.scenes.results.core import Frozen, Real, SeparationResult
+from verify.scenes.frozen import Frozen, Real
+from verify.scenes.results.separation import SeparationResult
 
 
 class Failure(Frozen):

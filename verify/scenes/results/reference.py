@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 
 _DECIMAL = r"^-?[0-9](\.[0-9]+)?(e[+-][0-9]{2,})?$"
 Decimal = Annotated[str, Field(pattern=_DECIMAL)]

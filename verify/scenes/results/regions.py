@@ -1,6 +1,6 @@
 """What was found of regions that are carried by maps: areas, their changes, and curves to draw."""
 
-from verify.scenes.results.core import Frozen, Seconds
+from verify.scenes.frozen import Frozen, Seconds
 
 EXACT_FLOW = "exact flow"
 

@@ -1,21 +1,18 @@
 """What was found for a scene, and a whole report: results of all kinds put together."""
 
+from verify.notebook import html_table
+from verify.scenes.frozen import Frozen, Seconds
 from verify.scenes.paper_figures import PaperFigure
-from verify.scenes.results.core import (
-    ClaimResult,
-    CriterionResult,
-    EveryResult,
-    Frozen,
-    GrowthLawResult,
-    ProofResult,
-    RunResult,
-    Seconds,
-    SeparationGrid,
-)
+from verify.scenes.results.claim import ClaimResult, CriterionResult
 from verify.scenes.results.exploration import Gallery
+from verify.scenes.results.growth import GrowthLawResult
+from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
+from verify.verdict import Verdict
 
 
 class SceneResult(Frozen):
@@ -79,6 +76,20 @@ class Report(Frozen):
     provenance: Provenance
 
     def _repr_html_(self) -> str:
-        from verify.notebook import report_html
+        return _report_html(self)
 
-        return report_html(self)
+
+def _report_html(report: Report) -> str:
+    """How many claims have which verdict, then each claim, the refuted ones first."""
+    if not report.claims:
+        rows = [
+            (scene.title, proof.scheme, str(proof.verdict), proof.reason)
+            for scene in report.scenes
+            for proof in scene.proofs
+        ]
+        return html_table(report.title, ("scene", "scheme", "verdict", "reason"), rows)
+    claims = sorted(report.claims, key=lambda claim: claim.verdict is not Verdict.REFUTED)
+    counts = ((v, sum(c.verdict is v for c in claims)) for v in Verdict)
+    rows = [(str(c.verdict), c.source, c.id, c.evidence) for c in claims]
+    foot = ", ".join(f"{n} {v.lower()}" for v, n in counts if n)
+    return html_table(report.title, ("verdict", "source", "claim", "evidence"), rows, foot)

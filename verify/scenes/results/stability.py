@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.scenes.results.core import Frozen
+from verify.scenes.frozen import Frozen
 
 Kind = Literal[
     "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",

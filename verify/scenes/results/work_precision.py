@@ -2,7 +2,8 @@
 
 from typing import Literal
 
-from verify.scenes.results.core import Frozen, Seconds, Value
+from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.results.value import Value
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
 

@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from math import isfinite
 from typing import Any
 
@@ -23,7 +24,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import LeftError
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.scenes.shapes.outline import Outline, Shape
-from verify.scenes.tasks import FlowTask
 from verify.schemes import get
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
 from verify.studies.regions.hausdorff import FARTHEST, hausdorff
@@ -63,28 +63,61 @@ class _Carried:
     after: list[tuple[np.ndarray, np.ndarray]]
 
 
-def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
-    """The image of the task's shape; `problem` says why where there is none."""
+@dataclass(frozen=True)
+class _Carrying:
+    """A map, the name of a scheme or EXACT_FLOW, that is applied so many times."""
+
+    hamiltonian: Hamiltonian
+    map: str
+    step_size: Fraction
+    steps: int
+
+    @property
+    def time(self) -> Fraction:
+        return self.step_size * self.steps
+
+    @cached_property
+    def preserves_area(self) -> bool:
+        if self.map == EXACT_FLOW:
+            return True
+        return get(self.map).step_map(self.hamiltonian).preserves_area
+
+
+def carry(
+    hamiltonian: Hamiltonian,
+    map_name: str,
+    shape: Shape,
+    *,
+    step_size: Fraction,
+    steps: int,
+    digits: int,
+    mean_lambda: bool,
+    distance: bool,
+) -> FlowImage:
+    """The image of the shape by so many steps of a scheme, or by the exact flow (EXACT_FLOW).
+
+    At least so many digits are worked with. `mean_lambda`: the mean of Λ over the region, too;
+    `distance`: how far its outlines are from the exact ones. `problem` says why there is no image.
+    """
     begun = time.perf_counter()
-    span = task.step_size * task.steps
-    exact = task.map == EXACT_FLOW
-    preserves = True if exact else get(task.map).step_map(hamiltonian).preserves_area
+    by = _Carrying(hamiltonian, map_name, step_size, steps)
+    preserves = by.preserves_area
     found: dict[str, Any] = {}
     try:
         with np.errstate(all="ignore"):  # what is not finite is looked for
-            carried, plane = _measured(hamiltonian, task, preserves)
+            carried, plane = _measured(by, shape, digits)
             found = _areas(carried, plane, preserves)
-            if task.mean_lambda and not preserves and not found["problem"]:
-                found |= _mean(hamiltonian, task, carried[0])
-            if task.distance:
+            if mean_lambda and not preserves and not found["problem"]:
+                found |= _mean(by, carried[0])
+            if distance:
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
-                    found |= _distance(hamiltonian, span, carried)
+                    found |= _distance(hamiltonian, by.time, carried)
     except (LeftError, NoFlowError, NoAreaError) as error:
         found = {"problem": str(error)}
     return FlowImage(
-        map=task.map,
-        steps=task.steps,
-        time=text(span),
+        map=map_name,
+        steps=steps,
+        time=text(by.time),
         area_preserving=preserves,
         seconds=time.perf_counter() - begun,
         **found,
@@ -95,23 +128,22 @@ def carry(hamiltonian: Hamiltonian, task: FlowTask) -> FlowImage:
 
 
 def _measured(
-    hamiltonian: Hamiltonian, task: FlowTask, preserves: bool
+    by: _Carrying, shape: Shape, digits: int
 ) -> tuple[list[_Carried], SchemePlane | ExactPlane]:
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
-    shape = task.shape.made()
-    smaller = smaller_than_one(shape.outlines[0])
-    if task.map == EXACT_FLOW:
-        exact = ExactPlane(hamiltonian, task.step_size * task.steps, smaller)
+    smaller, preserves = smaller_than_one(shape.outlines[0]), by.preserves_area
+    if by.map == EXACT_FLOW:
+        exact = ExactPlane(by.hamiltonian, by.time, smaller)
         return _all(shape, exact, _UNCHANGED), exact
-    given = hamiltonian, task.map, task.step_size, task.steps
-    if task.digits <= _FLOAT_DIGITS:
+    given = by.hamiltonian, by.map, by.step_size, by.steps
+    if digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
             floats = FloatPlane(*given, smaller)
             carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
             measured = carried[0].measured
             if preserves or _is_sharp(measured) or _is_unresolved(measured):
                 return carried, floats
-    digits = max(task.digits, _MORE_DIGITS)
+    digits = max(digits, _MORE_DIGITS)
     goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
     for name in WIDE[:-1]:
         with contextlib.suppress(UnsupportedError, LeftError):
@@ -209,11 +241,11 @@ def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
 # -- beside the areas -----------------------------------------------------------------------------
 
 
-def _mean(hamiltonian: Hamiltonian, task: FlowTask, region: _Carried) -> dict[str, Any]:
+def _mean(by: _Carrying, region: _Carried) -> dict[str, Any]:
     """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
     # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
     x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
-    made = RegionMean(hamiltonian, task.map, task.step_size, task.steps)
+    made = RegionMean(by.hamiltonian, by.map, by.step_size, by.steps)
     try:
         found: Mean = made.of(region.outline, (float(x), float(y)))
     except LeftError:

@@ -4,22 +4,21 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from verify.arithmetic.exact import text
-from verify.execution.perform import Result
+from verify.scenes.frozen import Frozen
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import DrawnOutline, FlowImage, FlowResult
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import key
 from verify.studies.regions.plan import flow_tasks
 
 
-def flows_of(scene: Scene, results: Mapping[str, Result]) -> tuple[FlowResult, ...]:
+def flows_of(scene: Scene, results: Mapping[str, Frozen]) -> tuple[FlowResult, ...]:
     """One a section of the scene that was computed."""
     found = (_flow(scene, flow, results) for flow in scene.flow)
     return tuple(each for each in found if each.images)
 
 
-def _flow(scene: Scene, flow: Flow, results: Mapping[str, Result]) -> FlowResult:
-    images = (results.get(key(task)) for task in flow_tasks(scene, flow))
+def _flow(scene: Scene, flow: Flow, results: Mapping[str, Frozen]) -> FlowResult:
+    images = (results.get(task.key) for task in flow_tasks(scene, flow))
     return FlowResult(
         shape=flow.shape or ("polygon" if flow.polygon else "path"),
         centre=(text(flow.centre.q), text(flow.centre.p)),

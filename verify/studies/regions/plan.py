@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from verify.scenes.plan import Plan
+from verify.execution.plan import Plan
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import FlowTask
 from verify.schemes import get
+from verify.studies.regions.task import FlowTask
 
 
 def plan_flows(scenes: Sequence[Scene]) -> Plan:

@@ -19,7 +19,7 @@ from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.computation import step_map_of
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import working_digits
 from verify.runs.run import proved
@@ -131,7 +131,9 @@ class Separation:
         steps: int,
         keeper: Keeper = NOTHING,
     ) -> None:
-        self.job = Job(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
+        self.kernel_run = KernelRun(
+            hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper
+        )
         self.map = step_map_of(hamiltonian, scheme)
 
     def chains(
@@ -144,8 +146,8 @@ class Separation:
         """
         begun = time.perf_counter()
         if arithmetic == AUTO:
-            arithmetic = choose(self.job, digits + _CANCELLED)
-        links = _Links(self.job, self.map, arithmetic, digits + _CANCELLED, advance)
+            arithmetic = choose(self.kernel_run, digits + _CANCELLED)
+        links = _Links(self.kernel_run, self.map, arithmetic, digits + _CANCELLED, advance)
         for _ in range(_ATTEMPTS):
             plain, closed = links.chains()
             lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
@@ -158,15 +160,23 @@ class _Links:
     """The links of a separation, each made when it is asked for, at its own number of digits."""
 
     def __init__(
-        self, job: Job, step_map: StepMap, arithmetic: str, digits: int, advance: Advance
+        self,
+        kernel_run: KernelRun,
+        step_map: StepMap,
+        arithmetic: str,
+        digits: int,
+        advance: Advance,
     ) -> None:
-        self.job, self.arithmetic, self.advance = job, arithmetic, advance
-        self.marks = marks_of(job.steps)
+        self.kernel_run, self.arithmetic, self.advance = kernel_run, arithmetic, advance
+        self.marks = marks_of(kernel_run.steps)
         self.digits = {"first": digits, "second": digits, "beside": digits}
-        self.inputs = rounded_inputs(job)
-        self.rounded = _rounded(job, self.inputs)
-        self.same = self.rounded.start == job.start and self.rounded.parameters == job.parameters
-        self.proved = _proved(step_map, job, digits)
+        self.inputs = rounded_inputs(kernel_run)
+        self.rounded = _rounded(kernel_run, self.inputs)
+        self.same = (
+            self.rounded.start == kernel_run.start
+            and self.rounded.parameters == kernel_run.parameters
+        )
+        self.proved = _proved(step_map, kernel_run, digits)
         self.constant = _proved(_rounded_map(step_map, self.rounded), self.rounded, digits)
         self.made: dict[str, Link] = {}
         self.working: Working | None = None
@@ -175,7 +185,7 @@ class _Links:
         """The chain of the plain way and that of the closed form."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
         working = self.working = self.working or self._beside()
-        first = self.proved or self._reference(self.job, "first")
+        first = self.proved or self._reference(self.kernel_run, "first")
         second = first if self.same else self.constant or self._reference(self.rounded, "second")
         third = working.trajectory or second
         plain = Chain(self.marks, (first, second, third, working.determinant, working.plain))
@@ -205,18 +215,20 @@ class _Links:
 
     def _beside(self) -> Working:
         """The float64 run with exact arithmetic beside it, in mpfr where another cannot follow."""
-        run = WorkingRun(self.job, self.inputs, self.constant is None and self.job.steps > 1)
-        digits = working_digits(self.digits["beside"], self.job.steps)
+        run = WorkingRun(
+            self.kernel_run, self.inputs, self.constant is None and self.kernel_run.steps > 1
+        )
+        digits = working_digits(self.digits["beside"], self.kernel_run.steps)
         name = self._name(digits) if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
         try:
             return run.go(number_systems.get(name, digits), self.advance)
         except UnsupportedError:
             return run.go(number_systems.get(_INTERPRETED, digits), self.advance)
 
-    def _reference(self, job: Job, name: str) -> Link:
+    def _reference(self, kernel_run: KernelRun, name: str) -> Link:
         if name not in self.made:
             digits = self.digits[name]
-            self.made[name] = _reference(job, self._name(digits), digits, self.advance)
+            self.made[name] = _reference(kernel_run, self._name(digits), digits, self.advance)
         return self.made[name]
 
     def _name(self, digits: int) -> str:
@@ -224,9 +236,13 @@ class _Links:
         return _INTERPRETED if self.arithmetic == "fixed" and digits > _WIDEST else self.arithmetic
 
 
-def _proved(step_map: StepMap | None, job: Job, digits: int) -> Link | None:
+def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Link | None:
     """Λ at every checkpoint where a proof gives it, which is where ΔJ is a constant."""
-    h, marks, digits = job.start["h"], marks_of(job.steps), digits + len(str(job.steps))
+    h, marks, digits = (
+        kernel_run.start["h"],
+        marks_of(kernel_run.steps),
+        digits + len(str(kernel_run.steps)),
+    )
     if step_map is None or "lambda" not in proved(step_map, h, 1, digits):
         return None
     if step_map.preserves_area:
@@ -236,16 +252,16 @@ def _proved(step_map: StepMap | None, job: Job, digits: int) -> Link | None:
     return Link(tuple(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
 
 
-def _rounded(job: Job, inputs: dict[str, float]) -> Job:
-    """The same job from the rounded inputs; parameters that the kernel has inside stay exact."""
-    rounded = copy.copy(job)
-    rounded.start = {n: Fraction(inputs[n]) for n in job.start}
-    parameters = {n: Fraction(inputs[n]) for n in job.generic.parameters}
-    rounded.parameters = {**job.parameters, **parameters}
+def _rounded(kernel_run: KernelRun, inputs: dict[str, float]) -> KernelRun:
+    """The same run from the rounded inputs; parameters that the kernel has inside stay exact."""
+    rounded = copy.copy(kernel_run)
+    rounded.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
+    parameters = {n: Fraction(inputs[n]) for n in kernel_run.generic.parameters}
+    rounded.parameters = {**kernel_run.parameters, **parameters}
     return rounded
 
 
-def _rounded_map(exact: StepMap, rounded: Job) -> StepMap | None:
+def _rounded_map(exact: StepMap, rounded: KernelRun) -> StepMap | None:
     """The step map for the rounded parameters; None where H is not defined for them."""
     values = {n: rounded.parameters[n] for n in rounded.generic.parameters}
     if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
@@ -256,7 +272,7 @@ def _rounded_map(exact: StepMap, rounded: Job) -> StepMap | None:
         return None
 
 
-def _reference(job: Job, arithmetic: str, digits: int, advance: Advance) -> Link:
+def _reference(kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance) -> Link:
     """Λ in exact arithmetic's stead, to so many digits; Stopped where a run cannot give it."""
     last = 0
 
@@ -265,7 +281,7 @@ def _reference(job: Job, arithmetic: str, digits: int, advance: Advance) -> Link
         advance(max(done - last, 0))
         last = max(done, last)
 
-    measured = measure(job, arithmetic, digits, progress)
+    measured = measure(kernel_run, arithmetic, digits, progress)
     found, run = measured.bounds, measured.outcome
     if found.status != "finished":
         reason = f"in exact arithmetic: {found.method}"
@@ -273,12 +289,12 @@ def _reference(job: Job, arithmetic: str, digits: int, advance: Advance) -> Link
     value, bound = found.values["lambda"]
     # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may be
     # that of a run with more digits; the checkpoints must be those of a run that agrees with it.
-    more = working_digits(digits, job.steps)
+    more = working_digits(digits, kernel_run.steps)
     for _ in range(_DOUBLINGS):
-        if run.done == job.steps and abs(run.values["lambda"] - value) <= bound:
+        if run.done == kernel_run.steps and abs(run.values["lambda"] - value) <= bound:
             trail = (*(x["lambda"] for x in run.trail[:-1]), value)
             kind: Kind = "enclosed" if found.rigorous else "estimated"
             return Link(trail, bound, kind, found.method)
         more *= 2
-        run = job.go(number_systems.get(_INTERPRETED, more))
+        run = kernel_run.go(number_systems.get(_INTERPRETED, more))
     raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

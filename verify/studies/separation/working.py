@@ -29,7 +29,7 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.reach import limits
 from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.studies.separation.kernel import MixedKernel, mixed_kernel
 
 Kind = Literal["enclosed", "estimated"]
@@ -85,18 +85,18 @@ def marks_of(steps: int) -> tuple[int, ...]:
 
 
 class WorkingRun:
-    """The float64 run of a job, with exact arithmetic beside it.
+    """The float64 run of a run, with exact arithmetic beside it.
 
     `inputs`: h, p, q and the kernel's parameters, as the float64 numbers that they are rounded to.
     """
 
-    def __init__(self, job: Job, inputs: dict[str, float], follow: bool) -> None:
-        self.job, self.inputs, self.follow = job, inputs, follow
-        self.marks = marks_of(job.steps)
+    def __init__(self, run: KernelRun, inputs: dict[str, float], follow: bool) -> None:
+        self.run, self.inputs, self.follow = run, inputs, follow
+        self.marks = marks_of(run.steps)
 
     def go(self, arithmetic: Arithmetic, advance: Advance) -> Working:
         """All steps; raises Stopped where float64 leaves its range."""
-        kernel = mixed_kernel(self.job.generic, self.job.scheme, arithmetic, self.follow)
+        kernel = mixed_kernel(self.run.generic, self.run.scheme, arithmetic, self.follow)
         states = self._states(kernel, arithmetic, advance)
         bounds = self._bounds(kernel, arithmetic, states[-1])
         kind: Kind = "enclosed"
@@ -127,7 +127,7 @@ class WorkingRun:
         return Working(link("trajectory"), determinant, plain, link("closed"), closed)
 
     def _kernel(self, arithmetic: Arithmetic) -> MixedKernel:
-        return mixed_kernel(self.job.generic, self.job.scheme, arithmetic, self.follow)
+        return mixed_kernel(self.run.generic, self.run.scheme, arithmetic, self.follow)
 
     # -- stepping -----------------------------------------------------------------------------
 
@@ -153,11 +153,11 @@ class WorkingRun:
                 done += count
                 advance(count)
             found.append(state)
-            if self.job.keeper.due(label):
+            if self.run.keeper.due(label):
                 texts = [
                     {n: fraction_text(_exact(arithmetic, x)) for n, x in s.items()} for s in found
                 ]
-                self.job.keeper.save(label, {"found": texts})
+                self.run.keeper.save(label, {"found": texts})
         return found
 
     def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
@@ -171,7 +171,7 @@ class WorkingRun:
 
     def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
         """The checkpoints that an interrupted run has left."""
-        kept = self.job.keeper.load(label) or {"found": []}
+        kept = self.run.keeper.load(label) or {"found": []}
         return [
             {n: _number(arithmetic, n, fraction_of(x)) for n, x in state.items()}
             for state in kept["found"]
@@ -205,7 +205,7 @@ class WorkingRun:
                 if name == "trajectory":
                     own = self._of_delta_j(kernel, arithmetic, last)
                 top = arithmetic.exact(last[f"w_{name}_top"])
-                found[name] = _accumulated(self.job.steps, top, own, arithmetic)
+                found[name] = _accumulated(self.run.steps, top, own, arithmetic)
         return found
 
     def _of_delta_j(
@@ -237,9 +237,9 @@ def _exact(arithmetic: Arithmetic, x: Any) -> Fraction:
     return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
 
 
-def rounded_inputs(job: Job) -> dict[str, float]:
+def rounded_inputs(run: KernelRun) -> dict[str, float]:
     """h, p, q and the parameters that the kernel takes, as float64; Stopped where one is not."""
-    exact = {**job.start, **{n: job.parameters[n] for n in job.generic.parameters}}
+    exact = {**run.start, **{n: run.parameters[n] for n in run.generic.parameters}}
     number = number_systems.get("float64", 17).number
     found: dict[str, float] = {name: number(value) for name, value in exact.items()}
     for name, value in found.items():

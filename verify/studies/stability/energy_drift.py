@@ -12,8 +12,8 @@ from itertools import pairwise
 from math import ceil, sqrt
 from statistics import fmean, pstdev
 
-from verify.studies.stability.case_motion import CaseMotion
-from verify.studies.stability.trail import MOST_INTERPRETED, Case, Trail, follow, follow_precisely
+from verify.studies.stability.run_motion import RunMotion
+from verify.studies.stability.trail import MOST_INTERPRETED, Run, Trail, follow, follow_precisely
 
 _STRETCHES = 8
 _LONGER = 4
@@ -24,21 +24,21 @@ _SURE = 4.0  # standard errors of a mean
 _SLOWER = 16.0  # times less, at most, in the longer run
 
 
-def drift_of(motion: CaseMotion) -> Fraction | None:
+def drift_of(motion: RunMotion) -> Fraction | None:
     """The energy's change in a unit of time, in parts of its scale; None where none is seen.
 
     Of a motion that has died away within the time, over all of it.
     """
-    case, (trail, _), period = motion.case, motion.precise, motion.orbit.period
+    run, (trail, _), period = motion.run, motion.precise, motion.orbit.period
     if period is None or too_short(motion):
         return None
     errors = _errors(motion, trail)
     if errors and errors[-1] and _died(motion, trail, period):
-        return Fraction(errors[-1] / float(case.time))
-    first = _rate(motion, case, trail)
+        return Fraction(errors[-1] / float(run.time))
+    first = _rate(motion, run, trail)
     if first is None:
         return None
-    longer = replace(case, steps=_LONGER * trail.asked)
+    longer = replace(run, steps=_LONGER * trail.asked)
     if longer.steps <= MOST_INTERPRETED:
         again, _ = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
@@ -48,7 +48,7 @@ def drift_of(motion: CaseMotion) -> Fraction | None:
     return Fraction(first)
 
 
-def too_short(motion: CaseMotion) -> bool:
+def too_short(motion: RunMotion) -> bool:
     """Whether the energy has not swung often enough to be told from a drift.
 
     Of an orbit that does not come back within the time there is only that one way.
@@ -56,31 +56,31 @@ def too_short(motion: CaseMotion) -> bool:
     orbit, (trail, _) = motion.orbit, motion.precise
     if orbit.period is None:
         return orbit.kind == "open"
-    return _LONGER * trail.asked * motion.case.step_size < _PERIODS * orbit.period
+    return _LONGER * trail.asked * motion.run.step_size < _PERIODS * orbit.period
 
 
-def _died(motion: CaseMotion, trail: Trail, period: Fraction) -> bool:
+def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
     """Whether at its end the run moves by a hundredth of the exact orbit's reach at most.
 
     Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
     """
     last = trail.points[-1]
-    steps = min(_MOST_LOOKED_AT, ceil(period / motion.case.step_size))
-    onwards = replace(motion.case, p=last.p, q=last.q, steps=max(2, steps))
+    steps = min(_MOST_LOOKED_AT, ceil(period / motion.run.step_size))
+    onwards = replace(motion.run, p=last.p, q=last.q, steps=max(2, steps))
     seen = follow(onwards, motion.precise[1]).points
     ends = [[getattr(point, name) for point in seen] for name in ("p", "q")]
     swings = zip(ends, motion.orbit.reach, motion.orbit.turns, strict=True)
     return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
 
 
-def _errors(motion: CaseMotion, trail: Trail) -> list[float]:
+def _errors(motion: RunMotion, trail: Trail) -> list[float]:
     """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
     found = motion.energy_errors(trail)
     known = [float(x) for x in found if x is not None]
     return known if motion.orbit.scale and len(known) == len(found) else []
 
 
-def _rate(motion: CaseMotion, case: Case, trail: Trail) -> float | None:
+def _rate(motion: RunMotion, run: Run, trail: Trail) -> float | None:
     errors = _errors(motion, trail)
     if len(errors) < 4 * _STRETCHES:
         return None
@@ -93,7 +93,7 @@ def _rate(motion: CaseMotion, case: Case, trail: Trail) -> float | None:
         return None
     if abs(moved) < _SURE * _uncertain(errors, length):
         return None
-    stretch = trail.points[length].step * float(case.step_size)
+    stretch = trail.points[length].step * float(run.step_size)
     return float(moved / (stretch * (_STRETCHES - 1)))
 
 

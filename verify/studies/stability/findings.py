@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from verify.execution.perform import Result
+from verify.scenes.frozen import Frozen
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import key
 from verify.studies.stability.plan import largest_step_tasks, stability_map_tasks, stability_tasks
 
 
@@ -15,45 +14,44 @@ from verify.studies.stability.plan import largest_step_tasks, stability_map_task
 class StabilityFindings:
     """All that was found for some scenes."""
 
-    cases: tuple[StabilityResult, ...]
+    runs: tuple[StabilityResult, ...]
     largest_steps: tuple[LargestStepResult, ...]
     maps: tuple[StabilityMapResult, ...]
 
     def as_json(self) -> dict[str, Any]:
         return {
             "cases": [
-                {"id": case.id, "verdict": case.verdict}
-                | case.model_dump(mode="json", exclude={"id"})
-                for case in self.cases
+                {"id": run.id, "verdict": run.verdict} | run.model_dump(mode="json", exclude={"id"})
+                for run in self.runs
             ],
             "largest_steps": [x.model_dump(mode="json") for x in self.largest_steps],
             "maps": [x.model_dump(mode="json") for x in self.maps],
         }
 
 
-def findings_of(scenes: Sequence[Scene], results: Mapping[str, Result]) -> StabilityFindings:
+def findings_of(scenes: Sequence[Scene], results: Mapping[str, Frozen]) -> StabilityFindings:
     return StabilityFindings(
-        tuple(case for scene in scenes for case in judged_cases(scene, results)),
+        tuple(run for scene in scenes for run in judged_cases(scene, results)),
         tuple(step for scene in scenes for step in largest_steps(scene, results)),
         tuple(over for scene in scenes for over in stability_maps(scene, results)),
     )
 
 
-def judged_cases(scene: Scene, results: Mapping[str, Result]) -> tuple[StabilityResult, ...]:
-    """The scene's cases, each with its name."""
+def judged_cases(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityResult, ...]:
+    """The scene's runs, each with its name."""
     found = []
     for name, task in stability_tasks(scene):
-        result = results.get(key(task))
+        result = results.get(task.key)
         if isinstance(result, StabilityResult):
             found.append(result.model_copy(update={"id": name}))
     return tuple(found)
 
 
-def largest_steps(scene: Scene, results: Mapping[str, Result]) -> tuple[LargestStepResult, ...]:
-    found = (results.get(key(task)) for task in largest_step_tasks(scene))
+def largest_steps(scene: Scene, results: Mapping[str, Frozen]) -> tuple[LargestStepResult, ...]:
+    found = (results.get(task.key) for task in largest_step_tasks(scene))
     return tuple(r for r in found if isinstance(r, LargestStepResult))
 
 
-def stability_maps(scene: Scene, results: Mapping[str, Result]) -> tuple[StabilityMapResult, ...]:
-    found = (results.get(key(task)) for task in stability_map_tasks(scene))
+def stability_maps(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityMapResult, ...]:
+    found = (results.get(task.key) for task in stability_map_tasks(scene))
     return tuple(r for r in found if isinstance(r, StabilityMapResult))

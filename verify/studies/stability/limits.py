@@ -2,7 +2,7 @@
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
 `verify.studies.stability.linear`), ω² being the greatest det Hess H on the exact orbit, where that is
-stiffest. What bounded motion is, is told in `verify.studies.stability.case_motion`.
+stiffest. What bounded motion is, is told in `verify.studies.stability.run_motion`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -16,7 +16,7 @@ from verify.errors import InputError
 from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.linear import linear_stability
-from verify.studies.stability.trail import Case
+from verify.studies.stability.trail import Run
 from verify.studies.stability.verdict_on_run import Judgement, bounded, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
@@ -74,7 +74,7 @@ def largest_step(
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and bounded(Case(hamiltonian, scheme, h, steps, p, q))
+        return steps >= 1 and bounded(Run(hamiltonian, scheme, h, steps, p, q))
 
     middle = linear or (1 / omega if omega else time / 100)
     good, bad = _bracket(stays, min(middle, time / 2), time)
@@ -133,6 +133,6 @@ def stability_map(
         own = hamiltonian.with_values(given | {parameter: value})
         longest = max(step_sizes) * steps
         omega = frequency(exact_orbit(own, p, q, longest))
-        case = Case(own, scheme, step_sizes[0], steps, p, q)
-        row = [judge(replace(case, step_size=h)) for h in step_sizes]
+        run = Run(own, scheme, step_sizes[0], steps, p, q)
+        row = [judge(replace(run, step_size=h)) for h in step_sizes]
         yield (limit / omega if limit is not None and omega else None), row

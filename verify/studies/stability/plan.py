@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from verify.arithmetic.exact import short
-from verify.scenes.plan import Plan
+from verify.execution.plan import Plan
 from verify.scenes.scene import Scene
-from verify.scenes.tasks import LargestStepTask, StabilityMapTask, StabilityTask
+from verify.studies.stability.tasks import LargestStepTask, StabilityMapTask, StabilityTask
 
 
 def plan_stability(scenes: list[Scene]) -> Plan:
@@ -19,8 +19,8 @@ def plan_stability(scenes: list[Scene]) -> Plan:
 def need_stability(plan: Plan, scene: Scene) -> None:
     """Adds what the scene asks for of stability."""
     name = scene.name or scene.title or "scene"
-    for case, judged in stability_tasks(scene):
-        plan.need(judged, f"{case}: is it stable, and whose fault is it if not")
+    for run, judged in stability_tasks(scene):
+        plan.need(judged, f"{run}: is it stable, and whose fault is it if not")
     for largest in largest_step_tasks(scene):
         plan.need(largest, f"{name}: the largest step with bounded motion")
     for over in stability_map_tasks(scene):
@@ -28,7 +28,7 @@ def need_stability(plan: Plan, scene: Scene) -> None:
 
 
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
-    """Each case with its name: scene, section, scheme, step size and which initial value."""
+    """Each run with its name: scene, section, scheme, step size and which initial value."""
     given = scene.given() if scene.stability else {}
     for section in scene.stability:
         for scheme in section.schemes or scene.schemes:

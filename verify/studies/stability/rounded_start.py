@@ -4,38 +4,38 @@ from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import functions_at
-from verify.studies.stability.trail import Case
+from verify.studies.stability.trail import Run
 
 _DIGITS = 120
 _NEWTON = 12
 _NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
 
 
-def told_of_rounded_start(case: Case) -> str:
+def told_of_rounded_start(run: Run) -> str:
     """How float64 rounds the initial value, and what it cannot tell it from; may be empty."""
     told = ""
     for name in ("q", "p"):
-        given = getattr(case, name)
+        given = getattr(run, name)
         gap = abs(Fraction(float(given)) - given)
         if gap:
             told += f"; it rounds {name}0 by {float(gap):.1e}"
-    rest = equilibrium_near(case)
+    rest = equilibrium_near(run)
     if rest is not None and all(
-        float(x) == float(y) for x, y in zip(rest, (case.p, case.q), strict=True)
+        float(x) == float(y) for x, y in zip(rest, (run.p, run.q), strict=True)
     ):
-        apart = max(abs(x - y) for x, y in zip(rest, (case.p, case.q), strict=True))
+        apart = max(abs(x - y) for x, y in zip(rest, (run.p, run.q), strict=True))
         told += f" and cannot tell z0 from an equilibrium, which is {float(apart):.1e} away"
     return told
 
 
-def equilibrium_near(case: Case) -> tuple[Fraction, Fraction] | None:
+def equilibrium_near(run: Run) -> tuple[Fraction, Fraction] | None:
     """A zero (p, q) of H's gradient very near to the initial value, by Newton's method."""
-    field, _ = case.hamiltonian.field()
+    field, _ = run.hamiltonian.field()
     ring, arithmetic = field.ring, mpfr.make(_DIGITS)
     gradient = (field.h_p, field.h_q)
     hessian = [ring.diff(x, name) for x in gradient for name in ("p", "q")]
     at = functions_at(arithmetic, [(ring, x) for x in (*gradient, *hessian)])
-    start = arithmetic.number(case.p), arithmetic.number(case.q)
+    start = arithmetic.number(run.p), arithmetic.number(run.q)
     near = arithmetic.number(_NEAR)
     try:
         with arithmetic.context():

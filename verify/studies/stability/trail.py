@@ -15,7 +15,7 @@ from sympy import isprime
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import WORTH_COMPILING
 
 _SECTIONS = 128, 512  # of a trail, at least and at most
@@ -25,7 +25,7 @@ MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
 @dataclass(frozen=True)
-class Case:
+class Run:
     """One run: N steps of one scheme from (p, q)."""
 
     hamiltonian: Hamiltonian
@@ -62,17 +62,17 @@ class Trail:
         return self.done == self.asked
 
 
-def follow(case: Case, arithmetic: Arithmetic) -> Trail:
-    """The case in this arithmetic. Raises UnsupportedError where that lacks a function."""
-    start = {"p": case.p, "q": case.q, "h": case.step_size}
-    sections = _sections(case.steps)
-    asked = case.hamiltonian, case.scheme, start, case.steps, frozenset[str](), 0
-    outcome = Job(*asked, sections=sections).go(arithmetic)
-    section = -(-case.steps // sections)
-    points = [Point(0, case.p, case.q)]
+def follow(run: Run, arithmetic: Arithmetic) -> Trail:
+    """The run in this arithmetic. Raises UnsupportedError where that lacks a function."""
+    start = {"p": run.p, "q": run.q, "h": run.step_size}
+    sections = _sections(run.steps)
+    asked = run.hamiltonian, run.scheme, start, run.steps, frozenset[str](), 0
+    outcome = KernelRun(*asked, sections=sections).go(arithmetic)
+    section = -(-run.steps // sections)
+    points = [Point(0, run.p, run.q)]
     for k, state in enumerate(outcome.trail, start=1):
-        points.append(Point(min(k * section, case.steps), state["p"], state["q"]))
-    return Trail(tuple(points), outcome.done, case.steps)
+        points.append(Point(min(k * section, run.steps), state["p"], state["q"]))
+    return Trail(tuple(points), outcome.done, run.steps)
 
 
 def _sections(steps: int) -> int:
@@ -85,26 +85,26 @@ def _sections(steps: int) -> int:
     return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
 
 
-def follow_precisely(case: Case, digits: int) -> tuple[Trail, Arithmetic]:
-    """The case to so many digits, compiled where that repays; with what it was run in.
+def follow_precisely(run: Run, digits: int) -> tuple[Trail, Arithmetic]:
+    """The run to so many digits, compiled where that repays; with what it was run in.
 
     Without a compiler only the first 300 000 of its steps are done, and `asked` says so.
     """
-    if case.steps >= WORTH_COMPILING:
+    if run.steps >= WORTH_COMPILING:
         compiled = number_systems.get("fixed", digits)
         try:
-            trail = follow(case, compiled)
+            trail = follow(run, compiled)
         except UnsupportedError:
             pass
         else:
             if trail.finished:
                 return trail, compiled
     wide = number_systems.get("mpfr", digits)
-    return follow(replace(case, steps=min(case.steps, MOST_INTERPRETED)), wide), wide
+    return follow(replace(run, steps=min(run.steps, MOST_INTERPRETED)), wide), wide
 
 
 def first_step(
-    case: Case, trail: Trail, arithmetic: Arithmetic, happens: Callable[[Point], bool]
+    run: Run, trail: Trail, arithmetic: Arithmetic, happens: Callable[[Point], bool]
 ) -> int | None:
     """The first step after which it happens, seen at the trail's points and then between them.
 
@@ -115,32 +115,32 @@ def first_step(
     for point in trail.points[1:]:
         if happens(point):
             length = point.step - before.step
-            found = _first_from(before, length, case, arithmetic, happens) if length > 1 else None
+            found = _first_from(before, length, run, arithmetic, happens) if length > 1 else None
             return point.step if found is None else found
         before = point
     if trail.finished:
         return None
     rest = trail.done - before.step
-    found = _first_from(before, rest, case, arithmetic, happens) if rest else None
+    found = _first_from(before, rest, run, arithmetic, happens) if rest else None
     return trail.done + 1 if found is None else found
 
 
 def _first_from(
-    before: Point, steps: int, case: Case, arithmetic: Arithmetic, happens: Callable[[Point], bool]
+    before: Point, steps: int, run: Run, arithmetic: Arithmetic, happens: Callable[[Point], bool]
 ) -> int | None:
     """The same for so many steps from a point on the way."""
-    stretch = replace(case, p=before.p, q=before.q, steps=steps)
+    stretch = replace(run, p=before.p, q=before.q, steps=steps)
     found = first_step(stretch, follow(stretch, arithmetic), arithmetic, happens)
     return None if found is None else before.step + found
 
 
 def first_apart(
-    one: tuple[Case, Trail, Arithmetic],
-    other: tuple[Case, Trail, Arithmetic],
+    one: tuple[Run, Trail, Arithmetic],
+    other: tuple[Run, Trail, Arithmetic],
     apart: Callable[[Point, Point], bool],
 ) -> int | None:
-    """The first step after which two runs of one case are apart; None where none is seen."""
-    (case, trail, arithmetic), (second, second_trail, second_arithmetic) = one, other
+    """The first step after which two runs of one run are apart; None where none is seen."""
+    (run, trail, arithmetic), (second, second_trail, second_arithmetic) = one, other
     offset = 0
     while True:
         pairs = list(zip(trail.points, second_trail.points, strict=False))
@@ -154,6 +154,6 @@ def first_apart(
         if length == 1:
             return offset + step
         offset += x.step
-        case = replace(case, p=x.p, q=x.q, steps=length)
+        run = replace(run, p=x.p, q=x.q, steps=length)
         second = replace(second, p=y.p, q=y.q, steps=length)
-        trail, second_trail = follow(case, arithmetic), follow(second, second_arithmetic)
+        trail, second_trail = follow(run, arithmetic), follow(second, second_arithmetic)

@@ -13,7 +13,7 @@ is to blame:
 
 High precision is believed where twice as many digits say the same. What is bounded is `stable`, or
 `drifts` (see `verify.studies.stability.energy_drift`). What bounds are, and when runs are apart, is told in
-`verify.studies.stability.case_motion`.
+`verify.studies.stability.run_motion`.
 """
 
 from dataclasses import dataclass, replace
@@ -24,11 +24,11 @@ from verify.arithmetic.systems import mpfr
 from verify.flows.orbit import ExactOrbit
 from verify.scenes.results.stability import Kind
 from verify.schemes import get
-from verify.studies.stability.case_motion import CaseMotion, float64
 from verify.studies.stability.energy_drift import drift_of, too_short
 from verify.studies.stability.rounded_start import told_of_rounded_start
+from verify.studies.stability.run_motion import RunMotion, float64
 from verify.studies.stability.trail import (
-    Case,
+    Run,
     Trail,
     first_apart,
     first_step,
@@ -57,9 +57,9 @@ class Judgement:
     energy_error: Fraction | None = None
 
 
-def judge(case: Case) -> Judgement:
-    """The verdict on one case."""
-    motion = CaseMotion(case)
+def judge(run: Run) -> Judgement:
+    """The verdict on one run."""
+    motion = RunMotion(run)
     if motion.orbit.kind == "escapes":
         return Judgement("escapes", f"the exact solution {motion.orbit.told}", motion.orbit)
     precise, _ = motion.precise
@@ -82,20 +82,20 @@ def judge(case: Case) -> Judgement:
     return _bounded(motion)
 
 
-def bounded(case: Case) -> bool:
+def bounded(run: Run) -> bool:
     """Whether the float64 run stays within the exact orbit's bounds."""
-    motion = CaseMotion(case)
+    motion = RunMotion(run)
     return motion.stays(motion.float64)
 
 
-def _scheme(motion: CaseMotion) -> Judgement:
+def _scheme(motion: RunMotion) -> Judgement:
     digits = 2 * motion.digits
-    again, arithmetic = follow_precisely(motion.case, digits)
-    step = first_step(motion.case, again, arithmetic, motion.beyond)
+    again, arithmetic = follow_precisely(motion.run, digits)
+    step = first_step(motion.run, again, arithmetic, motion.beyond)
     if step is None:
         told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
         return Judgement("undecided", told, motion.orbit)
-    solved = get(motion.case.scheme).step_map(motion.case.hamiltonian).solved
+    solved = get(motion.run.scheme).step_map(motion.run.hamiltonian).solved
     unsolved = solved and not again.finished and step == again.done + 1
     does = "finds no solution of its equations" if unsolved else "leaves the bounds"
     told = f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits"
@@ -105,55 +105,55 @@ def _scheme(motion: CaseMotion) -> Judgement:
     return Judgement("unstable: scheme", told, motion.orbit, step=step)
 
 
-def _not_the_scheme(motion: CaseMotion) -> Judgement:
+def _not_the_scheme(motion: RunMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
     precise, _ = motion.precise
-    case, here = replace(motion.case, steps=precise.asked), motion.as_far
-    confirmed = _confirmed(motion, case, precise)
+    run, here = replace(motion.run, steps=precise.asked), motion.as_far
+    confirmed = _confirmed(motion, run, precise)
     if confirmed is None:
         told = f"up to {_MOST_DIGITS} digits no two precisions give the same orbit"
         return Judgement("undecided", told, motion.orbit)
     digits, precise, arithmetic = confirmed
     if not motion.stays(precise):  # fewer digits did, by rounding
-        step = first_step(case, precise, arithmetic, motion.beyond)
+        step = first_step(run, precise, arithmetic, motion.beyond)
         told = f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits"
         return Judgement("unstable: scheme", told, motion.orbit, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
-    step = first_apart((case, here, float64()), (case, precise, arithmetic), motion.apart)
+    step = first_apart((run, here, float64()), (run, precise, arithmetic), motion.apart)
     at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
     told = f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits"
-    told += told_of_rounded_start(motion.case)
+    told += told_of_rounded_start(motion.run)
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
 
-def _confirmed(motion: CaseMotion, case: Case, precise: Trail) -> _Precise | None:
+def _confirmed(motion: RunMotion, run: Run, precise: Trail) -> _Precise | None:
     """The digits with which the run in high precision comes out the same again, and that run."""
     digits, last = motion.digits, precise
     while digits <= _MOST_DIGITS:
         digits *= 2
-        again, arithmetic = follow_precisely(case, digits)
+        again, arithmetic = follow_precisely(run, digits)
         if again.asked == last.asked and motion.together(again, last):
             return digits, again, arithmetic
         last = again
     return None
 
 
-def _range_alone(motion: CaseMotion) -> bool:
+def _range_alone(motion: RunMotion) -> bool:
     """Whether any exponent does as high precision does, where float64 does not.
 
     In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
     """
     steps = min(motion.precise[0].asked, _RANGE_STEPS, motion.as_far.done + 1)
-    case = replace(motion.case, steps=steps)
-    precise = follow(case, motion.precise[1])
-    if motion.together(follow(case, float64()), precise):
+    run = replace(motion.run, steps=steps)
+    precise = follow(run, motion.precise[1])
+    if motion.together(follow(run, float64()), precise):
         return False
-    wide = (follow(case, mpfr.at_bits(bits)) for bits in (_FLOAT_BITS, _FEWER_BITS))
+    wide = (follow(run, mpfr.at_bits(bits)) for bits in (_FLOAT_BITS, _FEWER_BITS))
     return all(motion.together(run, precise) for run in wide)
 
 
-def _out_of_range(motion: CaseMotion, here: Trail) -> Judgement:
+def _out_of_range(motion: RunMotion, here: Trail) -> Judgement:
     if here.finished:
         told = _vanished(motion) or "numbers vanish in float64 that wider exponents keep"
         return Judgement("underflow", told, motion.orbit)
@@ -164,7 +164,7 @@ def _out_of_range(motion: CaseMotion, here: Trail) -> Judgement:
     return Judgement("overflow", told, motion.orbit, step=here.done + 1)
 
 
-def _vanished(motion: CaseMotion) -> str:
+def _vanished(motion: RunMotion) -> str:
     """What underflow has taken of a bounded run; empty where that is nothing.
 
     p or q as a whole, either of which may be small beside the other one.
@@ -172,8 +172,8 @@ def _vanished(motion: CaseMotion) -> str:
     seen = [abs(x) for point in motion.float64.points for x in (point.p, point.q)]
     if min((x for x in (*seen, *motion.orbit.reach) if x), default=_SMALL) >= _SMALL:
         return ""
-    case = replace(motion.case, steps=min(motion.case.steps, _RANGE_STEPS))
-    wide, own = follow(case, mpfr.at_bits(_FLOAT_BITS)), follow(case, float64())
+    run = replace(motion.run, steps=min(motion.run.steps, _RANGE_STEPS))
+    wide, own = follow(run, mpfr.at_bits(_FLOAT_BITS)), follow(run, float64())
     for name in ("q", "p"):
         true = [getattr(point, name) for point in wide.points]
         kept = [getattr(point, name) for point in own.points]
@@ -185,11 +185,11 @@ def _vanished(motion: CaseMotion) -> str:
     return ""
 
 
-def _bounded(motion: CaseMotion) -> Judgement:
+def _bounded(motion: RunMotion) -> Judgement:
     precise, _ = motion.precise
     rate = drift_of(motion)
-    told = f"bounded over all {motion.case.steps} steps"
-    if precise.asked < motion.case.steps:
+    told = f"bounded over all {motion.run.steps} steps"
+    if precise.asked < motion.run.steps:
         told += f", of which {precise.asked} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"
     if rate is None and too_short(motion):

@@ -16,7 +16,7 @@ from decimal import Decimal
 from itertools import combinations, pairwise
 
 from verify.arithmetic.balls import slope
-from verify.scenes.results.core import Value
+from verify.scenes.results.value import Value
 from verify.scenes.results.work_precision import (
     ComparisonResult,
     CostResult,

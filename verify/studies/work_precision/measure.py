@@ -5,11 +5,11 @@ run times can be compared; nothing else of this program runs meanwhile. What the
 in `verify.studies.work_precision.runs`, what is made of the points in `verify.studies.work_precision.lines`.
 """
 
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from statistics import median
+from time import perf_counter
 
 from verify.arithmetic.exact import text, upper
 from verify.arithmetic.systems import float64
@@ -19,21 +19,21 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
-from verify.scenes.results.core import RunResult
+from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import (
     SystemPoint,
     WorkLine,
     WorkPoint,
     WorkPrecisionResult,
 )
-from verify.scenes.tasks import WorkPrecisionTask
-from verify.studies.work_precision import peers
+from verify.studies.work_precision import peers as peer_catalogue
 from verify.studies.work_precision.lines import comparisons, lg, line
 from verify.studies.work_precision.peer import Answer, InitialValueProblem, PeerError, Solver
 from verify.studies.work_precision.runs import (
     ROUNDING_SHARE,
     Ladder,
     Problem,
+    State,
     distance,
     failed,
     finished,
@@ -54,17 +54,42 @@ class _Timing:
     blank: Callable[[], object] = nothing
 
 
+@dataclass(frozen=True)
+class NumberSystems:
+    """Which number systems are timed, with how many digits, on one scheme at one step size."""
+
+    names: Sequence[str]
+    digits: Sequence[int]
+    scheme: str
+    step_size: Fraction
+
+
 def work_precision(
-    hamiltonian: Hamiltonian, task: WorkPrecisionTask, advance: Advance = lambda _: None
+    hamiltonian: Hamiltonian,
+    *,
+    q: Fraction,
+    p: Fraction,
+    time: Fraction,
+    schemes: Sequence[str],
+    step_sizes: Sequence[Fraction],
+    repeats: int,
+    systems: NumberSystems,
+    peers: Sequence[str] = (),
+    left_out: Sequence[tuple[str, str]] = (),
+    advance: Advance = lambda _: None,
 ) -> WorkPrecisionResult:
-    """What the task asks for. InputError where the exact solution does not reach the time."""
-    begun = time.perf_counter()
-    problem = _problem(hamiltonian, task)
+    """Errors and run times over [0, time] from (q, p): of each scheme with each step size, of
+    peers, and of number systems. `left_out`: other peers, each with the reason, for the result.
+
+    Raises InputError where the exact solution does not reach the time.
+    """
+    begun = perf_counter()
+    problem = _problem(hamiltonian, (p, q), time)
     _wake_compiler()
-    ladders = [Ladder(problem, name) for name in task.schemes]
-    own = [[_scheme_point(ladder, h, advance) for h in task.step_sizes] for ladder in ladders]
-    others = [_peer(problem, name, advance) for name in task.peers]
-    overhead = _time([*own, *(timings for timings, _ in others)], task.repeats)
+    ladders = [Ladder(problem, name) for name in schemes]
+    own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
+    others = [_peer(problem, name, advance) for name in peers]
+    overhead = _time([*own, *(timings for timings, _ in others)], repeats)
     lines = [
         line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
              ladder.compile_seconds, problem.scale)
@@ -72,14 +97,14 @@ def work_precision(
     ]  # fmt: skip
     drawn = [
         _peer_line(name, timings, compiled)
-        for name, (timings, compiled) in zip(task.peers, others, strict=True)
+        for name, (timings, compiled) in zip(peers, others, strict=True)
     ]
     return WorkPrecisionResult(
         **hamiltonian.written,
-        time=text(task.time),
-        q=text(task.q),
-        p=text(task.p),
-        repeats=task.repeats,
+        time=text(time),
+        q=text(q),
+        p=text(p),
+        repeats=repeats,
         clock=clock()[1],
         overhead=overhead,
         rounding_share=text(ROUNDING_SHARE),
@@ -89,21 +114,21 @@ def work_precision(
         machine=machine(),
         lines=(*lines, *drawn),
         comparisons=comparisons(lines, problem.scale),
-        systems=tuple(_systems(problem, task)),
-        systems_scheme=task.number_systems_scheme,
-        systems_step_size=text(task.number_systems_step_size),
-        left_out=task.peers_left_out,
-        seconds=time.perf_counter() - begun,
+        systems=tuple(_system_points(problem, systems, repeats)),
+        systems_scheme=systems.scheme,
+        systems_step_size=text(systems.step_size),
+        left_out=tuple(left_out),
+        seconds=perf_counter() - begun,
     )
 
 
-def _problem(hamiltonian: Hamiltonian, task: WorkPrecisionTask) -> Problem:
-    p, q = task.p, task.q
+def _problem(hamiltonian: Hamiltonian, start: State, time: Fraction) -> Problem:
+    p, q = start
     try:
-        exact = exact_solution(hamiltonian, p=p, q=q, time=task.time, digits=_REFERENCE_DIGITS)
+        exact = exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS)
     except NoFlowError as error:
-        raise InputError("work_precision.time", text(task.time), str(error)) from None
-    return Problem(hamiltonian, (p, q), task.time, exact)
+        raise InputError("work_precision.time", text(time), str(error)) from None
+    return Problem(hamiltonian, start, time, exact)
 
 
 def _wake_compiler() -> None:
@@ -148,7 +173,7 @@ def _peer(problem: Problem, name: str, advance: Advance) -> tuple[list[_Timing],
     """Its points over its tolerances, and what making it ready took the first time."""
     p, q = problem.start
     given = InitialValueProblem(problem.hamiltonian, p, q, problem.time)
-    module, timings, compiled = peers.get(name), [], 0.0
+    module, timings, compiled = peer_catalogue.get(name), [], 0.0
     for tolerance in module.TOLERANCES:
         try:
             solver: Solver = module.make(given, tolerance)
@@ -186,37 +211,37 @@ def _peer_line(name: str, timings: list[_Timing], compiled: float) -> WorkLine:
 # -- number systems -------------------------------------------------------------------------------
 
 
-def _systems(problem: Problem, task: WorkPrecisionTask) -> list[SystemPoint]:
+def _system_points(problem: Problem, asked: NumberSystems, repeats: int) -> list[SystemPoint]:
     """Certified digits of the end state against run time, of one scheme at one step size."""
-    h = task.number_systems_step_size
+    h = asked.step_size
     p, q = problem.start
 
     def go(name: str, digits: int) -> RunResult:
         return run(
-            problem.hamiltonian, task.number_systems_scheme, q=q, p=p, step_size=h,
+            problem.hamiltonian, asked.scheme, q=q, p=p, step_size=h,
             steps=int(problem.time / h), arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 
-    asked = [
+    pairs = [
         (name, digits)
-        for name in task.number_systems
-        for digits in (task.digits if name != "float64" else (17,))
+        for name in asked.names
+        for digits in (asked.digits if name != "float64" else (17,))
     ]
-    first = [go(*each) for each in asked]
-    rounds = [[go(*each) for each in asked] for _ in range(task.repeats)]
+    first = [go(*each) for each in pairs]
+    rounds = [[go(*each) for each in pairs] for _ in range(repeats)]
     points = []
-    for k, ((name, digits), result) in enumerate(zip(asked, first, strict=True)):
+    for k, ((name, digits), result) in enumerate(zip(pairs, first, strict=True)):
         taken = [each[k].seconds for each in rounds]
         timed: Timed | None = Timed(min(taken), median(taken))
         if name == "float64":  # compiled, as it is in the other figures
-            timed = _compiled_float(problem, task)
+            timed = _compiled_float(problem, asked, repeats)
         points.append(_system_point(name, digits, result, timed))
     return points
 
 
-def _compiled_float(problem: Problem, task: WorkPrecisionTask) -> Timed | None:
-    ladder, h = Ladder(problem, task.number_systems_scheme), task.number_systems_step_size
-    taken, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], task.repeats)
+def _compiled_float(problem: Problem, asked: NumberSystems, repeats: int) -> Timed | None:
+    ladder, h = Ladder(problem, asked.scheme), asked.step_size
+    taken, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], repeats)
     return above(taken, blank)
 
 

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from verify.errors import InputError
 from verify.scenes.scene import Scene
 from verify.scenes.sections import WorkPrecision
-from verify.scenes.tasks import WorkPrecisionTask
+from verify.studies.work_precision.task import WorkPrecisionTask
 
 
 def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTask:

@@ -22,12 +22,12 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
 from verify.flows.solution import Solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.chunked_loop import Walk
+from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
-from verify.scenes.results.core import Value
+from verify.scenes.results.value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
 from verify.studies.work_precision.step_cost import cost
@@ -88,7 +88,7 @@ class Ladder:
         step_map = self.scheme.step_map(problem.hamiltonian)
         self.preserves_area = step_map.preserves_area
         self.arithmetic: Arithmetic = float64.compiled_at_once()
-        generic = self.scheme.step_map(self._job(problem.time, frozenset()).generic)
+        generic = self.scheme.step_map(self._kernel_run(problem.time, frozenset()).generic)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(generic, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()
@@ -102,32 +102,32 @@ class Ladder:
         p, q = self.problem.start
         return {"p": p, "q": q, "h": h}
 
-    def _job(self, h: Fraction, observables: frozenset[str]) -> Job:
+    def _kernel_run(self, h: Fraction, observables: frozenset[str]) -> KernelRun:
         steps = int(self.problem.time / h)
-        return Job(
+        return KernelRun(
             self.problem.hamiltonian, self.name, self._inputs(h), steps, observables, points=0
         )
 
     def call(self, h: Fraction, *, blank: bool = False) -> Callable[[], object]:
         """The loop over all steps, or over none, which is what a call takes by itself."""
-        job = self._job(h, frozenset())
-        walk = Walk(job, self.kernel, self.arithmetic, (), 0)
-        count = 0 if blank else job.steps
-        return partial(self.kernel.function, count, *walk.fixed, *walk.state)
+        kernel_run = self._kernel_run(h, frozenset())
+        loop = ChunkedLoop(kernel_run, self.kernel, self.arithmetic, (), 0)
+        count = 0 if blank else kernel_run.steps
+        return partial(self.kernel.function, count, *loop.fixed, *loop.state)
 
     def point(self, h: Fraction) -> WorkPoint:
         """The run with this step size, not yet timed."""
-        job = self._job(h, frozenset())
-        walk = Walk(job, self.kernel, self.arithmetic, (), 0)
-        for _ in walk.chunks():
+        kernel_run = self._kernel_run(h, frozenset())
+        loop = ChunkedLoop(kernel_run, self.kernel, self.arithmetic, (), 0)
+        for _ in loop.chunks():
             pass
-        if walk.done < job.steps:
+        if loop.done < kernel_run.steps:
             return failed(
-                self.name, step_size=text(h), steps=job.steps, failed_step=walk.done + 1,
+                self.name, step_size=text(h), steps=kernel_run.steps, failed_step=loop.done + 1,
                 reason="left the range of float64",
             )  # fmt: skip
-        last = walk.trail[-1]["p"], walk.trail[-1]["q"]
-        return self._finished(h, job.steps, last)
+        last = loop.trail[-1]["p"], loop.trail[-1]["q"]
+        return self._finished(h, kernel_run.steps, last)
 
     def _finished(self, h: Fraction, steps: int, last: State) -> WorkPoint:
         error = self.problem.error(last)
@@ -162,17 +162,19 @@ class Ladder:
 
     def _exactly(self, h: Fraction) -> Bounds:
         """The same steps in high precision, from the exact inputs."""
-        job = self._job(h, frozenset() if self.preserves_area else frozenset({"lambda"}))
-        return measure(job, choose(job, EXACT_DIGITS), EXACT_DIGITS).bounds
+        kernel_run = self._kernel_run(
+            h, frozenset() if self.preserves_area else frozenset({"lambda"})
+        )
+        return measure(kernel_run, choose(kernel_run, EXACT_DIGITS), EXACT_DIGITS).bounds
 
     def _area(
         self, h: Fraction, exact: Bounds
     ) -> tuple[Value | None, Value | None, LimitedBy | None]:
         """Λ by the plain product, by its closed form, and what limits the latter."""
         asked = {"lambda_plain"} | (set() if self.preserves_area else {"lambda"})
-        job = self._job(h, frozenset(asked))
-        run = job.go(float64.make(17))
-        if run.done < job.steps:
+        kernel_run = self._kernel_run(h, frozenset(asked))
+        run = kernel_run.go(float64.make(17))
+        if run.done < kernel_run.steps:
             return None, None, "failed"
         plain = printed(run.values["lambda_plain"], Fraction(0))
         if self.preserves_area:  # proved; what the product shows is rounding

@@ -25,7 +25,7 @@ from tests.helpers.random_separations import (
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import QUANTITIES, Chain, Separation
 from verify.studies.separation.kernel import WORKING
 from verify.studies.separation.separate import separate
@@ -92,8 +92,10 @@ def test_every_part_is_known_to_the_digits_asked_for_and_within_its_bound(
 def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     text: str, eta: int, p: Fraction, q: Fraction, h: Fraction, steps: int
 ) -> None:
-    job = Job(Hamiltonian.parse(text), f"lie{eta}", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
-    working = WorkingRun(job, rounded_inputs(job), follow=True)
+    run = KernelRun(
+        Hamiltonian.parse(text), f"lie{eta}", {"p": p, "q": q, "h": h}, steps, WORKING, 10
+    )
+    working = WorkingRun(run, rounded_inputs(run), follow=True)
     coarse_, fine_ = number_systems.get("mpfr", 17), number_systems.get("mpfr", 90)
     try:
         coarse, fine = (working.go(x, lambda _: None) for x in (coarse_, fine_))
@@ -132,8 +134,8 @@ def test_fixed_point_beside_float64_is_within_its_bound(
     delta: Fraction, p: Fraction, q: Fraction, h: Fraction, steps: int
 ) -> None:
     hamiltonian = Hamiltonian.parse(QUARTIC, {"delta": delta})
-    job = Job(hamiltonian, "lie2", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
-    working = WorkingRun(job, rounded_inputs(job), follow=True)
+    run = KernelRun(hamiltonian, "lie2", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
+    working = WorkingRun(run, rounded_inputs(run), follow=True)
     coarse, fine = (working.go(x, lambda _: None) for x in (FIXED, number_systems.get("mpfr", 90)))
     for name in ("trajectory", "determinant", "closed_delta_j"):
         x, y = getattr(coarse, name), getattr(fine, name)

@@ -10,7 +10,7 @@ from tests.helpers.exact_separation import links
 from tests.helpers.random_separations import KNOWN, SHORT, bent, separated, starts, step_sizes
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import QUANTITIES, Chain
 from verify.studies.separation.kernel import WORKING, mixed_kernel
 from verify.studies.separation.working import Stopped, WorkingRun, rounded_inputs
@@ -32,9 +32,9 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
     text: str, scheme: str, p: Fraction, q: Fraction, h: Fraction, steps: int, follow: bool
 ) -> None:
     """And the greatest |Λ| is that of a step: a checkpoint is made at each."""
-    job = Job(Hamiltonian.parse(text), scheme, {"p": p, "q": q, "h": h}, steps, WORKING, 10)
-    working, exact = WorkingRun(job, rounded_inputs(job), follow), number_systems.get("mpfr", 25)
-    kernel = mixed_kernel(job.generic, job.scheme, exact, follow)
+    run = KernelRun(Hamiltonian.parse(text), scheme, {"p": p, "q": q, "h": h}, steps, WORKING, 10)
+    working, exact = WorkingRun(run, rounded_inputs(run), follow), number_systems.get("mpfr", 25)
+    kernel = mixed_kernel(run.generic, run.scheme, exact, follow)
     try:
         states = [working._first_state(kernel, exact)]
         states += working._states(kernel, exact, lambda _: None)

@@ -19,7 +19,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.run import run
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Separation
 from verify.studies.separation.kernel import WORKING
@@ -57,7 +57,7 @@ def test_a_constant_delta_j_has_a_closed_truncation_and_no_trajectory_part(
     assert found.plain.final("trajectory") == (0, 0)
     assert found.plain.links[0].method == "ΔJ is constant"
     assert sum(advanced) == steps, "the float64 run alone"
-    assert work.job.steps == steps
+    assert work.kernel_run.steps == steps
 
 
 @few
@@ -242,8 +242,8 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
             raise KeyboardInterrupt
 
     def working(of: Keeper) -> WorkingRun:
-        job = Job(Hamiltonian.parse(text), "lie2", start, steps, WORKING, 10, of)
-        return WorkingRun(job, rounded_inputs(job), follow=True)
+        kernel_run = KernelRun(Hamiltonian.parse(text), "lie2", start, steps, WORKING, 10, of)
+        return WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
 
     once = working(Keeper(None, "")).go(made, lambda _: None)
     if after < steps:

@@ -24,15 +24,16 @@ from verify.arithmetic.balls import middle_and_radius
 from verify.arithmetic.systems import ball
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs import enclosed as ball_bounds
-from verify.runs.run import ASKED, CLOSED_FORM, run
-from verify.scenes.results.core import RunResult
+from verify.runs.run import run
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import CLOSED_FORM, REPORTED
 
 VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
-VALUES = (*ASKED, "q", "p")
+VALUES = (*REPORTED, "q", "p")
 
 
 def unit_of(value: str) -> Fraction:
@@ -57,7 +58,7 @@ def test_the_vectors_are_enclosed_with_the_digits_asked_for(
 ) -> None:
     found = run(Hamiltonian.parse(case["hamiltonian"], case["parameters"]), case["scheme"],
                 q=case["q0"], p=case["p0"], step_size=case["step_size"], steps=case["steps"],
-                arithmetic="ball", digits=digits, observables=ASKED)  # fmt: skip
+                arithmetic="ball", digits=digits, observables=REPORTED)  # fmt: skip
     assert (found.status, found.error_kind) == ("finished", "enclosed")
     for name in VALUES:
         true = case["lambda" if name == "lambda_plain" else name]
@@ -80,8 +81,8 @@ rationals = st.fractions(-2, 2, max_denominator=1000)
 def test_balls_hold_the_exact_values_however_few_bits_they_have(
     q: Fraction, p: Fraction, h: Fraction, steps: int, bits: int
 ) -> None:
-    job = Job(DUFFING, "lie2", {"q": q, "p": p, "h": h}, steps, frozenset(ASKED), 0)
-    found = job.go(ball.at_bits(bits))
+    kernel_run = KernelRun(DUFFING, "lie2", {"q": q, "p": p, "h": h}, steps, frozenset(REPORTED), 0)
+    found = kernel_run.go(ball.at_bits(bits))
     if found.done < steps:
         return  # so few bits that nothing is known, which is said
     orbit = list(islice(duffing_steps(q, p, h), steps))
@@ -175,7 +176,7 @@ def test_a_run_that_is_given_up_early_costs_no_more_than_its_digits_last() -> No
 
 def test_a_product_that_may_be_exactly_one_is_known_by_how_near_it_is() -> None:
     found = run(PENDULUM, "symplectic-euler", q=1, p=0, step_size="0.1", steps=100,
-                arithmetic="ball", digits=30, observables=ASKED)  # fmt: skip
+                arithmetic="ball", digits=30, observables=REPORTED)  # fmt: skip
     assert found.values["lambda_plain"].value == "0"
     assert 0 < Fraction(found.values["lambda_plain"].bound) < Fraction(1, 10**30)
     assert found.values["lambda"].bound == "0", "this one is proved"

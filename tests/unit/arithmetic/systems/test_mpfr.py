@@ -15,10 +15,11 @@ from tests.examples import drawn
 from verify import arithmetic
 from verify.arithmetic.systems import mpfr, mpmath
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import measure
 from verify.runs.float64 import bounded
-from verify.runs.run import ASKED, run
+from verify.runs.run import run
+from verify.scenes.values import REPORTED
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + 7*q**4/12")
 DIVIDING = Hamiltonian.parse("p**2/2 + 1/(q**2 + a) + q/(3 + p**2)", {"a": "2/7"})
@@ -31,11 +32,13 @@ JOBS = [
 ]
 
 
-def job(h: Hamiltonian, scheme: str, q: Fraction, p: Fraction, steps: int, size: Fraction) -> Job:
-    return Job(h, scheme, {"q": q, "p": p, "h": size}, steps, frozenset(ASKED), 0)
+def kernel_run(
+    h: Hamiltonian, scheme: str, q: Fraction, p: Fraction, steps: int, size: Fraction
+) -> KernelRun:
+    return KernelRun(h, scheme, {"q": q, "p": p, "h": size}, steps, frozenset(REPORTED), 0)
 
 
-def assert_the_same_bits(of: Job, bits: int) -> None:
+def assert_the_same_bits(of: KernelRun, bits: int) -> None:
     ours, theirs = of.go(mpfr.at_bits(bits)), of.go(mpmath.at_bits(bits))
     assert ours.done == theirs.done
     assert ours.trail == theirs.trail
@@ -46,7 +49,7 @@ def assert_the_same_bits(of: Job, bits: int) -> None:
 def test_a_rational_step_has_the_bits_that_mpmath_has(
     h: Hamiltonian, scheme: str, bits: int
 ) -> None:
-    of = job(h, scheme, Fraction(3, 2), Fraction(1, 3), 1500, Fraction(1, 70))
+    of = kernel_run(h, scheme, Fraction(3, 2), Fraction(1, 3), 1500, Fraction(1, 70))
     assert len(of.go(mpfr.at_bits(bits)).trail) > 10, "the whole state, at points on the way too"
     assert_the_same_bits(of, bits)
 
@@ -62,7 +65,7 @@ def test_a_rational_step_has_the_bits_that_mpmath_has(
 def test_the_bits_are_the_same_from_anywhere_at_any_precision(
     q: Fraction, p: Fraction, size: Fraction, bits: int, at: Any
 ) -> None:
-    assert_the_same_bits(job(*at.values, q, p, 40, size), bits)
+    assert_the_same_bits(kernel_run(*at.values, q, p, 40, size), bits)
 
 
 @pytest.mark.parametrize("digits", [1, 2, 15, 17, 50, 333])
@@ -72,7 +75,7 @@ def test_as_many_digits_are_as_many_bits_as_in_mpmath(digits: int) -> None:
 
 def test_one_bit_less_is_seen() -> None:
     """The twin of the tests above: they can tell a last bit."""
-    of = job(DUFFING, "lie2", Fraction(3, 2), Fraction(0), 100, Fraction(1, 70))
+    of = kernel_run(DUFFING, "lie2", Fraction(3, 2), Fraction(0), 100, Fraction(1, 70))
     assert of.go(mpfr.at_bits(112)).values != of.go(mpmath.at_bits(113)).values
 
 
@@ -128,7 +131,9 @@ def test_a_context_is_its_own_whatever_the_threads_context_is() -> None:
 
 @pytest.mark.parametrize("text", ["p**2/2 + q**2/2 + 7*q**4/12", "p**2/2 - cos(q)"])
 def test_the_bounds_of_float64_are_those_that_mpmath_would_give(text: str) -> None:
-    of = job(Hamiltonian.parse(text), "lie2", Fraction(3, 2), Fraction(0), 500, Fraction(1, 70))
+    of = kernel_run(
+        Hamiltonian.parse(text), "lie2", Fraction(3, 2), Fraction(0), 500, Fraction(1, 70)
+    )
     first = of.go(arithmetic.get("float64", 17))
     found = bounded(of, first, {})
     assert found.rigorous

@@ -28,7 +28,8 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.commands import main as cli
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import ASKED, run
+from verify.runs.run import run
+from verify.scenes.values import REPORTED
 
 DIGITS = {"fixed": (17, 36)}  # to compile it for more takes long; tests/property has all widths
 
@@ -186,7 +187,7 @@ ESCAPING = Hamiltonian.parse("p**2/2 + q**4/4 + log(q + 9)")
 
 def small_run(h: Hamiltonian, scheme: str, name: str, digits: int) -> dict[str, Any]:
     made = run(h, scheme, q="0.5", p="1/3", step_size="1/70", steps=40, arithmetic=name,
-               digits=digits, observables=ASKED, points=7)  # fmt: skip
+               digits=digits, observables=REPORTED, points=7)  # fmt: skip
     return made.model_dump(exclude={"seconds"})
 
 

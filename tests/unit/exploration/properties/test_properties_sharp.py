@@ -24,7 +24,7 @@ from verify.exploration.sample import Example
 from verify.kernels.kernel import kernel_for
 from verify.proof import growth_law as growth
 from verify.proof.growth_law import GrowthLaw
-from verify.proof.order import Proof
+from verify.proof.order_proof import Proof
 from verify.schemes.substep import Substep
 from verify.studies.separation.chain import Chain
 

@@ -13,7 +13,7 @@ from tests.unit.pages.test_page import page_of, real
 from verify.pages.figures.axes import decades
 from verify.pages.figures.figures import merged
 from verify.pages.page import render
-from verify.scenes.results.core import SeriesPoint
+from verify.scenes.results.run import SeriesPoint
 
 
 def figures(page: str) -> list[Any]:

@@ -15,8 +15,8 @@ from tests.helpers.constructed_stability import MAP
 from tests.helpers.constructed_work import ladder, result
 from tests.unit.pages.test_page import claim, real, run
 from verify.errors import InputError
-from verify.pages.figures import plotting
-from verify.scenes.results.core import SeparationGrid
+from verify.pages import plotting
+from verify.scenes.results.separation import SeparationGrid
 from verify.studies.separation.separate import as_grid
 
 SCENE = real().scenes[0]

@@ -16,9 +16,9 @@ from tests.unit.pages.text.test_markdown import (
     strange,
 )
 from verify.pages.figures.gallery_figure import marks
+from verify.pages.markdown.page import render as render_text
 from verify.pages.page import render
 from verify.pages.sections.gallery_finding import power, told
-from verify.pages.text.markdown import render as render_text
 from verify.scenes.results.exploration import Gallery, GalleryScene
 
 

@@ -9,7 +9,7 @@ from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, Reader, proof, report, run, scene
 from verify.pages.page import render
-from verify.scenes.results.core import GrowthLawResult
+from verify.scenes.results.growth import GrowthLawResult
 
 
 def page_of(*laws: GrowthLawResult, **changes: Any) -> str:

@@ -21,11 +21,11 @@ from tests.helpers.constructed_stability import MAP, case
 from tests.helpers.constructed_work import ladder, result
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
+from verify.pages.markdown.page import render, write
+from verify.pages.markdown.text import Markdown, escaped, markdown, table
 from verify.pages.page import render as page_as_html
 from verify.pages.sections.views import page_view
 from verify.pages.text import mathml
-from verify.pages.text.markdown import render, write
-from verify.pages.text.markdown_text import Markdown, escaped, markdown, table
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 
@@ -290,7 +290,7 @@ def test_figures_of_an_earlier_report_do_not_stay(tmp_path: Path) -> None:
 
 
 def test_a_proof_is_written_without_matplotlib() -> None:
-    code = "from verify.pages.text.markdown import render; render(REPORTS['proof only']())"
+    code = "from verify.pages.markdown.page import render; render(REPORTS['proof only']())"
     assert not {"matplotlib", "verify.pages.figures.figures"} & imported_by(code)
 
 

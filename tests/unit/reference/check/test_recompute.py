@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed_reference import changed, made
+from verify.reference.check.difference import Difference, Found
 from verify.reference.check.recompute import recomputed
-from verify.reference.compare.difference import Difference, Found
 from verify.reference.make.models import Data
 
 KINDS = {"proof": "proofs", "run": "runs", "flow": "flow"}

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from verify.errors import InputError
-from verify.reference.check.overflow import may_overflow
 from verify.reference.compare.agreement import is_single, number
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
+from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import OurRun, load
 from verify.reference.compare.scatter import Scatter
 from verify.reference.compare.submitted import read

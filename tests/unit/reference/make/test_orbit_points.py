@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.reference.make.orbit_points import orbit, solution
+from verify.reference.make.orbit_points import orbit_points, solution_points
+from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.results.reference import OrbitPoint, Rounded
-from verify.scenes.tasks import OrbitTask, SolutionTask
 
 H = Fraction(1, 10)
 QUARTIC = "p**2/2 + q**4/4"
@@ -40,7 +40,7 @@ def task(scheme: str = "lie2", formula: str = QUARTIC, **more: object) -> OrbitT
 
 
 def points(asked: OrbitTask) -> tuple[OrbitPoint, ...]:
-    return orbit(Hamiltonian.parse(asked.hamiltonian, asked.parameters), asked).points
+    return orbit_points(Hamiltonian.parse(asked.hamiltonian, asked.parameters), asked).points
 
 
 def holds(cell: Rounded | None, value: Fraction) -> bool:
@@ -101,7 +101,7 @@ def test_an_orbit_at_rest_is_zero_to_twice_the_digits() -> None:
 def flow(formula: str, **more: object) -> list[tuple[str, str | None]]:
     given = {"q": 1, "p": 0, "step_size": H, "steps": (0, 5, 30), "digits": 20}
     asked = SolutionTask.model_validate({"hamiltonian": formula, "parameters": {}} | given | more)
-    found = solution(Hamiltonian.parse(formula), asked).points
+    found = solution_points(Hamiltonian.parse(formula), asked).points
     return [(x.status, x.q.value if x.q else None) for x in found]
 
 

@@ -12,7 +12,8 @@ from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import Proof, prove
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict

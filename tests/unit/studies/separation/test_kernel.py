@@ -12,7 +12,7 @@ from verify import arithmetic
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, Writer
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.schemes import get
 from verify.studies.separation.kernel import WORKING, MixedKernel, mixed_kernel
 from verify.studies.separation.working import WorkingRun, marks_of, rounded_inputs
@@ -64,10 +64,10 @@ def states(
     hamiltonian: Hamiltonian, scheme: str, start: dict[str, Fraction], steps: int, name: str
 ) -> dict[int, dict[str, Any]]:
     """What the mixed kernel carries, by the number of steps."""
-    job = Job(hamiltonian, scheme, start, steps, WORKING, 10)
+    run = KernelRun(hamiltonian, scheme, start, steps, WORKING, 10)
     made = arithmetic.get(name, 50)
-    working = WorkingRun(job, rounded_inputs(job), follow=False)
-    kernel = mixed_kernel(job.generic, scheme, made, follow=False)
+    working = WorkingRun(run, rounded_inputs(run), follow=False)
+    kernel = mixed_kernel(run.generic, scheme, made, follow=False)
     found = working._states(kernel, made, lambda _: None)
     return dict(zip(marks_of(steps), found, strict=True))
 

@@ -9,7 +9,7 @@ import pytest
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
-from verify.scenes.results.core import SeparationGrid, SeparationResult
+from verify.scenes.results.separation import SeparationGrid, SeparationResult
 from verify.studies.separation.separate import grid, separate, separate_grid
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})

@@ -13,7 +13,7 @@ import pytest
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.runs.run import run
 from verify.studies.separation import kernel as separation_kernel
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Separation
@@ -175,8 +175,8 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     hamiltonian: Hamiltonian, made: Arithmetic
 ) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 50)}
-    job = Job(hamiltonian, "lie2", start, 2000, WORKING, 10)
-    working = WorkingRun(job, rounded_inputs(job), follow=True)
+    kernel_run = KernelRun(hamiltonian, "lie2", start, 2000, WORKING, 10)
+    working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
     coarse, fine = (working.go(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
     for name in ("trajectory", "determinant", "closed_delta_j"):
         x, y = getattr(coarse, name), getattr(fine, name)

@@ -9,8 +9,8 @@ from verify import arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.trail import (
-    Case,
     Point,
+    Run,
     first_apart,
     first_step,
     follow,
@@ -18,12 +18,12 @@ from verify.studies.stability.trail import (
 )
 
 FLOAT = arithmetic.get("float64", 17)
-GROWING = Case(
+GROWING = Run(
     Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), 3000, Fraction(0), Fraction(1)
 )
 
 
-def stepped(case: Case, steps: int) -> tuple[float, float]:
+def stepped(case: Run, steps: int) -> tuple[float, float]:
     """lie1 on the harmonic oscillator, in float64."""
     p, q, h = float(case.p), float(case.q), float(case.step_size)
     for _ in range(steps):
@@ -97,7 +97,7 @@ def test_two_runs_that_stay_together_part_nowhere() -> None:
 
 def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so() -> None:
     hamiltonian = Hamiltonian.parse("p**2/2 + q*atan(q)")  # which fixed has not
-    case = Case(hamiltonian, "lie1", Fraction(1, 10**6), 400_000, Fraction(0), Fraction(1))
+    case = Run(hamiltonian, "lie1", Fraction(1, 10**6), 400_000, Fraction(0), Fraction(1))
     trail, wide = follow_precisely(case, 30)
     assert wide.name == "mpfr"
     assert trail.finished

@@ -9,7 +9,7 @@ from verify.arithmetic.exact import rational
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability import verdict_on_run as blame
 from verify.studies.stability.rounded_start import equilibrium_near
-from verify.studies.stability.trail import Case, follow_precisely
+from verify.studies.stability.trail import Run, follow_precisely
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
 HARMONIC = "p**2/2 + q**2/2"
@@ -21,9 +21,9 @@ EXPONENTIAL = "p**2/2 + exp(q) + exp(-q)"
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620")
 
 
-def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0") -> Case:
+def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0") -> Run:
     at = q if isinstance(q, Fraction) else rational(q)
-    return Case(Hamiltonian.parse(text), scheme, rational(h), steps, rational(p), at)
+    return Run(Hamiltonian.parse(text), scheme, rational(h), steps, rational(p), at)
 
 
 def judged(*given: object) -> Judgement:
@@ -234,7 +234,7 @@ def test_what_more_digits_agree_on_is_held_against_the_bounds_too(
     top = PENDULUM, "stormer-verlet", "0.02", 6000, PI - Fraction(1, 10**16)
     assert judged(*top).kind == "unstable: arithmetic"
 
-    def elsewhere(case: Case, digits: int) -> object:
+    def elsewhere(case: Run, digits: int) -> object:
         return follow_precisely(replace(case, q=1000 * case.q), digits)
 
     monkeypatch.setattr(blame, "follow_precisely", elsewhere)  # 80 digits and more

@@ -17,10 +17,10 @@ from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
 from verify.scenes.results.work_precision import WorkPoint, WorkPrecisionResult
-from verify.scenes.tasks import WorkPrecisionTask
 from verify.studies.work_precision.lines import error_slope, lambda_slope, lg
 from verify.studies.work_precision.measure import _digits_of_state
 from verify.studies.work_precision.runs import ROUNDING_SHARE, Ladder, Problem
+from verify.studies.work_precision.task import WorkPrecisionTask
 
 HARMONIC = Hamiltonian.parse("p**2/2 + q**2/2")
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})

@@ -15,10 +15,11 @@ from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import Store, execute
 from verify.execution.executors import HERE
-from verify.execution.perform import Result
-from verify.scenes.tasks import RunTask, WorkPrecisionTask
+from verify.runs.task import RunTask
+from verify.scenes.frozen import Frozen
 from verify.studies.plan import Plan, plan_scenes
 from verify.studies.work_precision import plan as section_plan
+from verify.studies.work_precision.task import WorkPrecisionTask
 
 START = "initial_value = { q = 1, p = 0 }"
 SECTION = f"[work_precision]\ntime = 1\nstep_sizes = [0.01, 0.005]\n{START}\n"
@@ -142,7 +143,7 @@ def test_what_is_timed_runs_when_all_else_is_done(
     seen: list[Any] = []
     perform = execution.perform
 
-    def noting(task: Any, *more: Any) -> Result:
+    def noting(task: Any, *more: Any) -> Frozen:
         seen.append(task)
         return perform(task, *more)
 

@@ -6,7 +6,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal
 from verify.exploration.property import Violation
 from verify.exploration.sample import Example
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 
 _DIGITS = 50
 _KNOWN = Fraction(1, 10**30)
@@ -35,8 +35,8 @@ def holds(example: Example) -> bool:
 def _run(example: Example, start: dict[str, Fraction], steps: int) -> dict[str, Fraction] | None:
     """p, q and Λ after the steps; None where they leave the range in which digits are kept."""
     wanted = frozenset({"lambda"})
-    job = Job(example.hamiltonian, example.scheme.name, start, steps, wanted, 0)
-    found = job.go(number_systems.get("mpfr", _DIGITS))
+    run = KernelRun(example.hamiltonian, example.scheme.name, start, steps, wanted, 0)
+    found = run.go(number_systems.get("mpfr", _DIGITS))
     if found.done < steps or max(abs(x) for x in found.values.values()) > 10**6:
         return None
     return found.values

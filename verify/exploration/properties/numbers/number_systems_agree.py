@@ -18,7 +18,8 @@ from verify.exploration.ball_steps import BITS, BallState, ball_steps
 from verify.exploration.property import Violation
 from verify.exploration.sample import Example
 from verify.runs.run import run
-from verify.scenes.results.core import RunResult, Value
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.value import Value
 
 _IN, _AFTER = 2, 1  # one in so many examples, and not those that are taken apart
 _DIGITS = 30

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from verify.exploration.property import Violation
 from verify.exploration.sample import Example
-from verify.scenes.results.core import Parts
+from verify.scenes.results.separation import Parts
 from verify.studies.separation.chain import PARTS
 from verify.studies.separation.separate import separate
 

@@ -14,7 +14,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps
 from verify.exploration.property import Violation
 from verify.exploration.sample import Example
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.chain import PARTS, Chain, Separation
 from verify.studies.separation.kernel import WORKING
@@ -39,8 +39,8 @@ def holds(example: Example) -> bool:
             _must_reach("the truncation part is", truncation, bound, exact)
             both = truncation + inputs, bound + more
             _must_reach("truncation and input together are", *both, rounded)
-    job = Job(*example.given, WORKING, 0)
-    bare = job.go(number_systems.get("float64", 17)).values["lambda_plain"]
+    run = KernelRun(*example.given, WORKING, 0)
+    bare = run.go(number_systems.get("float64", 17)).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
     alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
     if alone != other:

@@ -6,7 +6,7 @@ from verify.exploration.property import Violation
 from verify.exploration.sample import Example
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.proof.order import Proof
+from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
 from verify.verdict import Verdict
 

@@ -12,7 +12,7 @@ from verify.arithmetic.exact import decimal
 from verify.exploration.ball_steps import ball_steps, unlike
 from verify.exploration.property import Violation
 from verify.exploration.sample import Example
-from verify.kernels.stepping import Job
+from verify.kernels.stepping import KernelRun
 
 _DIGITS, _STEPS = 80, 2
 _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
@@ -48,8 +48,8 @@ def _by_a_run(example: Example) -> bool:
 
 def _run(example: Example, digits: int) -> dict[str, Fraction] | None:
     wanted = frozenset({"lambda_plain"})
-    job = Job(example.hamiltonian, example.scheme.name, example.start, _STEPS, wanted, 0)
-    found = job.go(number_systems.get("mpfr", digits))
+    run = KernelRun(example.hamiltonian, example.scheme.name, example.start, _STEPS, wanted, 0)
+    found = run.go(number_systems.get("mpfr", digits))
     return found.values if found.done == _STEPS else None
 
 

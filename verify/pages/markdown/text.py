@@ -9,8 +9,8 @@ from collections.abc import Iterable, Sequence
 
 from markupsafe import escape
 
-from verify.pages.text.markup import Node, tree
-from verify.pages.text.tex import tex
+from verify.pages.markdown.markup import Node, tree
+from verify.pages.markdown.tex import tex
 from verify.pages.text.typography import prose
 
 _MARKS = re.compile(r"[\\`*_\[\]|~#]")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from verify.scenes.tasks import Task, key
+from verify.execution.task import Task
 
 
 @dataclass
@@ -15,7 +15,7 @@ class Plan:
     left_out: list[tuple[str, str]] = field(default_factory=list)
 
     def need(self, task: Task, reason: str) -> None:
-        name = key(task)
+        name = task.key
         self.tasks.setdefault(name, task)
         reasons = self.reasons.setdefault(name, [])
         if reason not in reasons:

@@ -4,11 +4,11 @@ no rows of headings inside."""
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from verify.pages.markdown.text import Markdown, escaped, table
 from verify.pages.sections.claim_view import ClaimView
-from verify.pages.text.markdown_text import Markdown, escaped, table
-from verify.pages.text.run_table import RunTable
+from verify.pages.sections.run_table import RunTable
 from verify.pages.text.typography import cell, sentence
-from verify.scenes.results.core import CriterionResult
+from verify.scenes.results.claim import CriterionResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:

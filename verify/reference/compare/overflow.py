@@ -13,34 +13,35 @@ import numpy as np
 from verify.arithmetic.float_context import FLOAT
 from verify.flows.extrapolation_of_many import arrays
 from verify.kernels.kernel import kernel_for
+from verify.kernels.orbit import Orbit
 from verify.reference.compare.allowance import products
-from verify.reference.compare.scatter import job_of
-from verify.reference.compare.setting import Case, Known
+from verify.reference.compare.scatter import run_of
+from verify.reference.compare.setting import Known
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
 _MOST_STEPS = 20_000  # stepped
 
 
-def may_overflow(case: Case, step: int, known: dict[str, Known]) -> bool:
+def may_overflow(orbit: Orbit, step: int, known: dict[str, Known]) -> bool:
     """Within so many steps and the next; `known` are the run's numbers then, p and q among them
     unless it has left the reference data's range, too."""
     if "p" not in known or "q" not in known:
-        return _overflows(case, step)
+        return _overflows(orbit, step)
     if any(abs(value) > _LARGE for value, _ in known.values()):
         return True
-    return products(case, known["p"], known["q"]) > _LARGE or _overflows(case, step)
+    return products(orbit, known["p"], known["q"]) > _LARGE or _overflows(orbit, step)
 
 
 @lru_cache(maxsize=4096)
-def _overflows(case: Case, step: int) -> bool:
-    job = job_of(case)
-    if job.solved:
+def _overflows(orbit: Orbit, step: int) -> bool:
+    run = run_of(orbit)
+    if run.solved:
         return False
     arithmetic = replace(arrays(), bits=FLOAT.prec, number=FLOAT.rational)
     try:
-        kernel = kernel_for(job.generic, case.scheme, arithmetic, job.observables, False)
-        given = [FLOAT.rational(x) for x in job.inputs(kernel, 0).values()]
-        state = [FLOAT.rational(Fraction(x)) for x in (case.p, case.q, *kernel.start)]
+        kernel = kernel_for(run.generic, orbit.scheme, arithmetic, run.observables, False)
+        given = [FLOAT.rational(x) for x in run.inputs(kernel, 0).values()]
+        state = [FLOAT.rational(Fraction(x)) for x in (orbit.p, orbit.q, *kernel.start)]
     except OverflowError:  # what is given is no double
         return True
     with np.errstate(all="ignore"):

@@ -28,7 +28,9 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
-from verify.scenes.results.core import AverageResult, PredictionResult, RunResult, Value
+from verify.scenes.results.growth import AverageResult, PredictionResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.value import Value
 
 ENCLOSED = "ball arithmetic at the equilibrium"
 ESTIMATED = "computed again with ten digits more and other points"

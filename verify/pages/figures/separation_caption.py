@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import text
 from verify.pages.text.typography import NBSP, number, step, whole
-from verify.scenes.results.core import CrossoverResult, SeparationGrid, SeparationResult
+from verify.scenes.results.separation import CrossoverResult, SeparationGrid, SeparationResult
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
 _NONE = "none in this range: "  # how a crossover's reason begins where there is none

@@ -20,13 +20,16 @@ from verify.pages.figures import (
     stability_figure,
 )
 from verify.pages.figures import work_precision_figure as work_figure
-from verify.pages.figures.plots import rows_of
 from verify.pages.figures.svg import styled
 from verify.pages.figures.work_precision_plots import error_panels
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.sections.growth_view import orbits
-from verify.scenes.results.core import ClaimResult, GrowthLawResult, RunResult, SeparationGrid
+from verify.pages.sections.plots import rows_of
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.growth import GrowthLawResult
 from verify.scenes.results.regions import FlowResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import StabilityMapResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures import plots
+from verify.pages.figures.plot import computed
 from verify.pages.text.typography import number, start, value, whole
-from verify.scenes.results.core import RunResult
+from verify.scenes.results.run import RunResult
 
 MOST_ROWS = 600  # of a table of runs; the others are in results.json
 _COLUMNS = {
@@ -50,7 +50,7 @@ def run_table(runs: Sequence[RunResult]) -> RunTable | None:
         groups=tuple(_groups(shown, names)),
         count=len(runs),
         shown=len(shown),
-        computed=plots.computed(runs),
+        computed=computed(runs),
         certainty=_certainty(runs),
         fallbacks=tuple(_fallbacks(runs)),
         proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),

@@ -6,7 +6,7 @@ never taken for a command: its letters are set one by one or as upright text.
 
 import re
 
-from verify.pages.text.markup import Node
+from verify.pages.markdown.markup import Node
 
 _GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "varepsilon", "ζ": "zeta",

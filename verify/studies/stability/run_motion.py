@@ -1,4 +1,4 @@
-"""The motion in one case: in float64 and in high precision, and the bounds it is held to.
+"""The motion in one run: in float64 and in high precision, and the bounds it is held to.
 
 Bounds: ten times the exact orbit's reach in p and in q, and a hundred times its energy scale (see
 `verify.flows.orbit`). Two runs are apart where they differ by a tenth of the reach.
@@ -16,7 +16,7 @@ from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import functions_at
 from verify.flows.orbit import exact_orbit, written_digits
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.stability.trail import Case, Point, Trail, follow, follow_precisely
+from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
 
 _BEYOND = 10  # times the reach
 _ENERGY = 100  # times the energy scale
@@ -32,41 +32,41 @@ def float64() -> Arithmetic:
 def _energy(
     hamiltonian: Hamiltonian, digits: int
 ) -> tuple[Arithmetic, Callable[..., tuple[Any, ...]]]:
-    """H as a function of (p, q), and what to evaluate it in; the cases of one H share it."""
+    """H as a function of (p, q), and what to evaluate it in; the runs of one H share it."""
     arithmetic = mpfr.make(digits)
     field, _ = hamiltonian.field()
     return arithmetic, functions_at(arithmetic, [(field.ring, field.energy)])
 
 
-class CaseMotion:
-    """What is seen of one case; each thing is made when it is looked at."""
+class RunMotion:
+    """What is seen of one run; each thing is made when it is looked at."""
 
-    def __init__(self, case: Case) -> None:
-        self.case = case
-        self.orbit = exact_orbit(case.hamiltonian, case.p, case.q, case.time)
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time)
         # More where the initial value is written with more.
-        self.digits = _DIGITS + written_digits((case.p, case.q))
+        self.digits = _DIGITS + written_digits((run.p, run.q))
         self._errors: dict[int, tuple[Trail, list[Fraction | None]]] = {}
 
     @cached_property
     def float64(self) -> Trail:
-        return follow(self.case, float64())
+        return follow(self.run, float64())
 
     @cached_property
     def precise(self) -> tuple[Trail, Arithmetic]:
-        return follow_precisely(self.case, self.digits)
+        return follow_precisely(self.run, self.digits)
 
     @cached_property
     def as_far(self) -> Trail:
         """The float64 run for as many steps as were done in high precision."""
         asked = self.precise[0].asked
-        if asked == self.case.steps:
+        if asked == self.run.steps:
             return self.float64
-        return follow(replace(self.case, steps=asked), float64())
+        return follow(replace(self.run, steps=asked), float64())
 
     def energy(self, point: Point) -> Fraction | None:
         """H at a point; None where it is not defined there or too large."""
-        arithmetic, at = _energy(self.case.hamiltonian, 2 * self.digits)
+        arithmetic, at = _energy(self.run.hamiltonian, 2 * self.digits)
         try:
             with arithmetic.context():
                 (found,) = at(arithmetic.number(point.p), arithmetic.number(point.q))
@@ -76,7 +76,7 @@ class CaseMotion:
 
     @cached_property
     def _first_energy(self) -> Fraction | None:
-        return self.energy(Point(0, self.case.p, self.case.q))
+        return self.energy(Point(0, self.run.p, self.run.q))
 
     def energy_error(self, point: Point) -> Fraction | None:
         """H − H(z₀) in parts of the orbit's scale."""

@@ -1,0 +1,243 @@
+"""A differential ring: polynomials in variables and generators, with relations and derivatives.
+
+What it is for, and how zero is decided in it, is told in `verify.algebra.ring`.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import flint
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.algebra.generator import Generator, Poly
+
+_SPARE = 6  # generators that later calls to `inverse` may still add
+
+
+def _occurring(x: Poly) -> list[int]:
+    return [index for index, power in enumerate(x.degrees()) if power > 0]
+
+
+class RingFullError(Exception):
+    """More generators are needed than the ring was made for."""
+
+
+class DifferentialRing:
+    """Polynomials in the given variables, with room for `room` generators.
+
+    `verify.algebra.ring.Ring` is the one that is used: it decides, divides and writes too.
+    """
+
+    def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE) -> None:
+        self.variables = tuple(variables)
+        self.room = room + spare
+        names = [f"_{k}" for k in range(self.room)]  # no parameter's name begins so
+        # Lexicographic with the newest generator first: relations then reduce to older ones.
+        self.context = flint.fmpq_mpoly_ctx.get([*names, *self.variables], flint.Ordering.lex)
+        self._gens = self.context.gens()
+        self.generators: list[Generator] = [
+            Generator(self.room + k, "variable", symbol(name))
+            for k, name in enumerate(self.variables)
+        ]
+        self._by_index = {g.index: g for g in self.generators}
+        self.places = {name: self.room + k for k, name in enumerate(self.variables)}
+        self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
+        self._gradients: dict[int, dict[str, Poly]] = {}
+        self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
+        self._inside: dict[int, list[int]] = {}
+        self._rules: dict[int, Callable[[str], Poly]] = {}
+        # Of equations, by their unknowns; see `verify.algebra.implicit_unknowns`.
+        self.systems: dict[int, Any] = {}
+        self.expressions: dict[int, sympy.Expr] = {}  # of generators, by `verify.algebra.ring_text`
+
+    # -- elements -----------------------------------------------------------------------------
+
+    @property
+    def zero(self) -> Poly:
+        return self.context.constant(0)
+
+    @property
+    def one(self) -> Poly:
+        return self.context.constant(1)
+
+    def constant(self, value: Fraction) -> Poly:
+        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
+
+    def variable(self, name: str) -> Poly:
+        return self._gens[self.places[name]]
+
+    def reduce(self, x: Poly) -> Poly:
+        """The normal form of x modulo the relations, newest generator first."""
+        if self.relations:
+            degrees = x.degrees()
+            for index, power, relation in reversed(self.relations):
+                if degrees[index] >= power:
+                    x = divmod(x, relation)[1]
+                    degrees = x.degrees()
+        return x
+
+    def multiply(self, x: Poly, y: Poly) -> Poly:
+        return self.reduce(x * y)
+
+    def diff(self, x: Poly, name: str) -> Poly:
+        """∂x/∂name in normal form, by the chain rule over the generators."""
+        total = x.derivative(self.places[name])
+        for index in self._functions_in(x):
+            total += x.derivative(index) * self._partial(index, name)
+        return self.reduce(total)
+
+    def _functions_in(self, x: Poly) -> list[int]:
+        """The generators in x that are no variables, arguments apart."""
+        if len(self.generators) == len(self.variables):
+            return []
+        return [index for index, power in enumerate(x.degrees()[: self.room]) if power > 0]
+
+    def in_variables(self, x: Poly) -> bool:
+        """Whether x is a polynomial in the variables alone."""
+        return not self._functions_in(x)
+
+    def _partial(self, index: int, name: str) -> Poly:
+        """The partial derivative of a generator; that of a stage has a name of its own, too."""
+        known = self._gradients.setdefault(index, {})
+        if name not in known and index in self._rules:
+            known[name] = self._rules[index](name)
+        if name not in known and index in self._chains:
+            terms = (outer * self.diff(inner, name) for outer, inner in self._chains[index])
+            total = self.reduce(sum(terms, self.zero))
+            known[name] = self.named(total) if self._by_index[index].kind == "stage" else total
+        return known.get(name, self.zero)
+
+    def terms_of_diff(self, x: Poly, name: str) -> int:
+        """A bound of the number of terms of ∂x/∂name, without making it."""
+        total = len(x)
+        for index in self._functions_in(x):
+            total += len(x.derivative(index)) * len(self._partial(index, name))
+        return total
+
+    def used(self, *elements: Poly, solved: bool = True) -> list[Generator]:
+        """The generators that the elements depend on, arguments included, oldest first.
+
+        `solved`: those in the equations of unknowns, too.
+        """
+        seen: set[int] = set()
+        stack = [index for x in elements for index in _occurring(x)]
+        while stack:
+            index = stack.pop()
+            if index not in seen:
+                seen.add(index)
+                if solved or self._by_index[index].kind != "solved":
+                    stack += self._inside_of(index)
+        return [g for g in self.generators if g.index in seen]
+
+    def _inside_of(self, index: int) -> list[int]:
+        """The generators in a generator's argument."""
+        if index not in self._inside:
+            argument = self._by_index[index].argument
+            self._inside[index] = [] if argument is None else _occurring(argument)
+        return self._inside[index]
+
+    def depends(self, x: Poly, name: str) -> bool:
+        """Whether the variable is in x, or in an argument of its generators."""
+        place, seen, stack = self.places.get(name), set[int](), _occurring(x)
+        while stack:
+            index = stack.pop()
+            if index == place:
+                return True
+            if index not in seen:
+                seen.add(index)
+                stack += self._inside_of(index)
+        return False
+
+    def powers(self, x: Poly, name: str) -> dict[int, Poly]:
+        """x as a polynomial in one variable: {power: coefficient}, the coefficients non-zero.
+
+        The caller sees to it that no generator in x depends on that variable.
+        """
+        return self.split(x, self.places[name])
+
+    def split(self, x: Poly, at: int) -> dict[int, Poly]:
+        """x as a polynomial in the generator of that index; `powers` for a variable.
+
+        By Taylor's theorem at 0, so that no term passes through Python.
+        """
+        found = {}
+        for power in range(x.degrees()[at] + 1):
+            part = x.subs({at: 0})
+            if part != 0:
+                found[power] = part / math.factorial(power)
+            x = x.derivative(at)
+        return found
+
+    # -- generators ---------------------------------------------------------------------------
+
+    def add(
+        self,
+        kind: str,
+        expression: sympy.Expr | None,
+        argument: Poly = None,
+        degree: int = 1,
+    ) -> Poly:
+        """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
+        count = len(self.generators) - len(self.variables)
+        if count >= self.room:
+            raise RingFullError(f"more than {self.room} functions and denominators are needed")
+        index = self.room - 1 - count
+        generator = Generator(index, kind, expression, argument, degree)
+        self.generators.append(generator)
+        self._by_index[index] = generator
+        return self._gens[index]
+
+    def find(self, kind: str, argument: Poly, degree: int = 1) -> Poly | None:
+        """The generator of that kind for that argument, where there is one."""
+        for g in self.generators:
+            if g.kind == kind and g.degree == degree and g.argument == argument:
+                return self._gens[g.index]
+        return None
+
+    def relate(self, generator: Poly, power: int, relation: Poly) -> None:
+        """relation = 0, used where `generator` occurs with at least that power."""
+        self.relations.append((self._gens.index(generator), power, relation))
+
+    def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
+        """d generator = outer · d inner."""
+        partials = ((name, self.diff(inner, name)) for name in self.variables)
+        gradient = {name: self.multiply(outer, part) for name, part in partials if part != 0}
+        self._gradients[self._gens.index(generator)] = gradient
+
+    def gradient(self, index: int) -> dict[str, Poly]:
+        """The partial derivatives of a generator that has a gradient, by the variables' names."""
+        return self._gradients.get(index, {})
+
+    def set_chain(self, generator: Poly, chain: Sequence[tuple[Poly, Poly]]) -> None:
+        """d generator = Σ outer · d inner over the pairs, worked out when it is asked for."""
+        self._chains[self._gens.index(generator)] = chain
+
+    def define(self, unknown: Poly, residual: Poly, rule: Callable[[str], Poly]) -> Generator:
+        """The unknown is where the residual is 0; `rule` gives its partial derivatives by name."""
+        index = self._gens.index(unknown)
+        at = next(k for k, g in enumerate(self.generators) if g.index == index)
+        self.generators[at] = replace(self.generators[at], argument=residual)
+        self._by_index[index] = self.generators[at]
+        self._inside.pop(index, None)
+        self._rules[index] = rule
+        return self.generators[at]
+
+    def named(self, x: Poly) -> Poly:
+        """x as a generator of its own; x itself where that is as short, or there is no room.
+
+        What is made from named parts is evaluated, and differentiated, part by part.
+        """
+        if len(x) < 2 or not any(self.depends(x, name) for name in ("p", "q")):
+            return x
+        known = self.find("stage", x)
+        if known is not None:
+            return known
+        if len(self.generators) - len(self.variables) >= self.room:
+            return x
+        name = self.add("stage", None, x)
+        self.set_chain(name, [(self.one, x)])
+        return name

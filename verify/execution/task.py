@@ -1,0 +1,75 @@
+"""A task: all that a result depends on, what it is worth, and how it is performed.
+
+A kind of task is one class, in a file of the study that performs it.
+"""
+
+import hashlib
+import json
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import ClassVar
+
+from verify.execution.keeping import Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.frozen import Frozen
+from verify.scenes.values import AUTO, Number
+
+# About how many float64 steps one step in a number system is worth.
+STEP_COST: Mapping[str, int] = {"float64": 1, "fixed": 40, AUTO: 40, "mpfr": 700, "mpmath": 3000}
+
+
+class Task(Frozen):
+    """What is to be computed; two tasks of equal content are one.
+
+    `alone`: it measures run times, so that nothing else may run beside it. `result`: the model of
+    what `perform` returns.
+    """
+
+    alone: ClassVar[bool] = False
+    result: ClassVar[type[Frozen]]
+    kind: str
+
+    @property
+    def cost(self) -> int:
+        """About how many float64 steps the task is worth."""
+        return 1
+
+    @abstractmethod
+    def perform(self, keeper: Keeper) -> Frozen:
+        """Do it; a run goes on from the checkpoint that the keeper may have."""
+
+    @property
+    def key(self) -> str:
+        """A name for the task by its content."""
+        content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
+        return hashlib.sha256(content.encode()).hexdigest()[:24]
+
+    @property
+    def description(self) -> str:
+        """The task in some words, for an error."""
+        content = self.model_dump(mode="json", exclude={"kind"})
+        words = [f"{k}={v}" for k, v in content.items() if isinstance(v, str | int)]
+        return f"{self.kind} of {', '.join(words)}"
+
+
+class HamiltonianTask(Task):
+    """A task on H, which is given by its formula, with its parameter values."""
+
+    hamiltonian: str
+    parameters: dict[str, Number]
+
+    def exact_hamiltonian(self) -> Hamiltonian:
+        return Hamiltonian.parse(self.hamiltonian, self.parameters)
+
+
+class SchemeTask(HamiltonianTask):
+    """A task on one scheme for one H."""
+
+    scheme: str
+
+
+class InitialValueTask(SchemeTask):
+    """A task on one scheme from one initial value."""
+
+    q: Number
+    p: Number

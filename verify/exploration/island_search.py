@@ -1,0 +1,178 @@
+"""One island of a hunt: searched with hypothesis's `target`, then refined one number at a time.
+
+What is kept was measured twice, the second time with twice the digits.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from fractions import Fraction
+from tomllib import loads
+
+import sympy
+from hypothesis import HealthCheck, Phase, given, settings, target
+from hypothesis import seed as seeded
+from hypothesis import strategies as st
+from hypothesis.errors import Unsatisfiable
+
+from verify import strategies
+from verify.exploration.measures import DIGITS, MEASURES, Measure
+from verify.exploration.neighbouring_scenes import neighbours
+from verify.exploration.sample import Example
+from verify.exploration.sample_space import SampleSpace
+from verify.scenes.results.exploration import HuntResult, Worst
+from verify.scenes.scene import Scene, scene_from
+from verify.scenes.toml_text import scene_text
+from verify.scenes.values import InitialValue
+from verify.strategies.schemes import separable_for
+
+REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
+_THOUSANDTHS = (100, 50, 20, 10, 5, 2, 1, 80, 60, 40, 30, 25, 15, 8, 6, 4, 3)  # of drawn step sizes
+SIZE = 7  # of the coefficients' numerators and denominators: the greatest that is drawn
+COEFFICIENTS = Fraction(1, SIZE), Fraction(SIZE)
+MOST_EXAMPLES = 10**7  # of a hunt, so that no two islands of two seeds draw the same
+KEPT = 6
+_DIRECTED = Fraction(3, 5)  # of the scenes, by hypothesis; the others are neighbours of the worst
+_TENTHS = 20
+_NUMBERS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")  # but exponents
+_AGREEMENT = 0.01  # of lg of a measure, with twice the digits
+
+
+def search_island(
+    measure: str, space: SampleSpace, seed: int, island: int, *, count: int, steps: int
+) -> HuntResult:
+    """The worst scenes among `count` that the island looks at, of so many steps each."""
+    look = Look(MEASURES[measure], count)
+    chance = seed * MOST_EXAMPLES + island
+    _directed(look, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED)))
+    _refined(look)
+    return HuntResult(worst=tuple(_confirmed(look)), examples=len(look.seen))
+
+
+class Look:
+    """Measures scenes, at most so many, and remembers what it found."""
+
+    def __init__(self, measure: Measure, most: int) -> None:
+        self.measure, self.most = measure, most
+        self.seen: dict[str, float | None] = {}
+
+    def __call__(self, scene: Scene) -> float | None:
+        """What a scene measures; None too where there is nothing left to measure it with."""
+        text = scene_text(scene)
+        if text not in self.seen and self.left:
+            self.seen[text] = self.measure.value(Example.of(scene), DIGITS)
+        return self.seen.get(text)
+
+    @property
+    def left(self) -> bool:
+        return len(self.seen) < self.most
+
+    def worst(self) -> list[Worst]:
+        """All that have a value, the worst first."""
+        known = ((text, value) for text, value in self.seen.items() if value is not None)
+        return sorted((Worst(value=value, scene=text) for text, value in known), key=by_value)
+
+
+def by_value(each: Worst) -> tuple[float, int, str]:
+    """The worst first, of equal ones the shortest."""
+    return -each.value, len(each.scene), each.scene
+
+
+def by_shape(found: Iterable[Worst]) -> list[Worst]:
+    """The first of each shape of H, in the order given."""
+    kept: dict[str, Worst] = {}
+    for each in found:
+        kept.setdefault(_shape(each), each)
+    return list(kept.values())
+
+
+def _shape(each: Worst) -> str:
+    """H's terms without their coefficients, and without the other numbers but exponents."""
+    terms = sympy.Add.make_args(scene_of(each).exact_hamiltonian().exact)
+    primitive = (term.as_content_primitive()[1].as_coeff_Mul()[1] for term in terms)
+    return " + ".join(sorted({_NUMBERS.sub("n", str(term)) for term in primitive}))
+
+
+def scene_of(worst: Worst) -> Scene:
+    """The scene that its text is of."""
+    return scene_from(loads(worst.scene, parse_float=str), "scene")
+
+
+def _confirmed(look: Look) -> Iterator[Worst]:
+    """The worst of each shape that measures the same with twice the digits."""
+    found: set[str] = set()
+    for each in look.worst():
+        shape = _shape(each)
+        if len(found) == KEPT:
+            return
+        if shape in found:
+            continue
+        again = look.measure.value(Example.of(scene_of(each)), 2 * DIGITS)
+        if again is not None and abs(again - each.value) <= _AGREEMENT:
+            found.add(shape)
+            yield Worst(value=again, scene=each.scene)
+
+
+def _directed(look: Look, scenes: st.SearchStrategy[Scene], chance: int, count: int) -> None:
+    """Looks at so many scenes that hypothesis draws, ever nearer to what measures most."""
+
+    @seeded(chance)
+    @settings(
+        max_examples=count,
+        database=None,
+        phases=(Phase.generate, Phase.target),
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(scenes)
+    def looked(scene: Scene) -> None:
+        value = look(scene)
+        if value is not None:
+            target(value)
+
+    # Where every scene that is drawn has to be rejected, there are none to look at.
+    with suppress(Unsatisfiable):
+        looked()
+
+
+def _refined(look: Look) -> None:
+    """Climbs from the worst scene of each shape in turn, as long as scenes may be looked at."""
+    for begin in by_shape(look.worst()):
+        if not look.left:
+            return
+        _climb(begin, look)
+
+
+def _climb(begin: Worst, look: Look) -> None:
+    """Moves to the first neighbour that is worse, as long as there is one."""
+    value, scene, moved = begin.value, scene_of(begin), True
+    while moved:
+        moved = False
+        for other in neighbours(scene, reach=REACH, steps=STEP_SIZES, coefficients=COEFFICIENTS):
+            if not look.left:
+                return
+            found = look(other)
+            if found is not None and found > value:
+                value, scene, moved = found, other, True
+                break
+
+
+def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
+    """Ordinary-looking ones: a few terms, initial values in tenths, h from 1/1000 to 1/10."""
+    # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
+    # the modules loaded, and what is drawn would then depend on which these are. A coefficient with
+    # its sign is drawn as a number below 2·SIZE².
+    tenths = st.integers(-_TENTHS, _TENTHS).map(lambda n: Fraction(n, 10))
+    return strategies.scenes(
+        hamiltonians=strategies.hamiltonians(
+            drawn.kinds or strategies.KINDS,
+            degree=drawn.degree,
+            separable=separable_for(drawn.schemes),
+            terms=3,
+            size=SIZE,
+        ),
+        schemes=strategies.schemes(names=drawn.schemes or ("lie2",)),
+        initial_values=st.builds(InitialValue, q=tenths, p=tenths),
+        step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
+        steps=(steps, steps),
+    )

@@ -1,0 +1,11 @@
+"""From what scenes are drawn."""
+
+from verify.scenes.frozen import Frozen
+
+
+class SampleSpace(Frozen):
+    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all)."""
+
+    kinds: tuple[str, ...] = ()
+    degree: int = 6
+    schemes: tuple[str, ...] = ()

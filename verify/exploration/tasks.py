@@ -1,0 +1,81 @@
+"""The tasks of exploration: a stretch of sampled scenes, one scene shrunk, an island of a hunt."""
+
+from typing import Literal
+
+from verify.execution.keeping import Keeper
+from verify.execution.task import STEP_COST, Task
+from verify.exploration.sample_space import SampleSpace
+from verify.scenes.results.exploration import ExploreResult, HuntResult, ShrunkResult
+
+_SCENE_COST = 10_000  # of one property of one scene
+_HUNTED_COST = 10 * _SCENE_COST
+_RUNS_OF_A_MEASURE = 3
+
+
+class _OnSamples(Task):
+    drawn: SampleSpace
+    seed: int
+
+
+class _OnProperties(_OnSamples):
+    """`properties`: names of the catalogue; `claims`: claims to be looked at so, each as JSON."""
+
+    properties: tuple[str, ...]
+    claims: tuple[str, ...]
+
+
+class ExploreTask(_OnProperties):
+    """Hold properties against `count` scenes: those of this seed from number `first` on."""
+
+    result = ExploreResult
+    kind: Literal["explore"] = "explore"
+    first: int
+    count: int
+
+    @property
+    def cost(self) -> int:
+        return _SCENE_COST * self.count * (len(self.properties) + len(self.claims))
+
+    def perform(self, keeper: Keeper) -> ExploreResult:
+        from verify.exploration.property_checks import check_properties, properties_of
+
+        properties = properties_of(self.properties, self.claims)
+        numbers = range(self.first, self.first + self.count)
+        return check_properties(properties, self.drawn, self.seed, numbers)
+
+
+class ShrinkTask(_OnProperties):
+    """Shrink one sampled scene for which a property (the only one here) does not hold."""
+
+    result = ShrunkResult
+    kind: Literal["shrink"] = "shrink"
+    example: int
+
+    def perform(self, keeper: Keeper) -> ShrunkResult:
+        from verify.exploration.property_checks import properties_of, shrink
+
+        (violated,) = properties_of(self.properties, self.claims)
+        return shrink(violated, self.drawn, self.seed, self.example)
+
+
+class HuntTask(_OnSamples):
+    """Search one island for scenes that make a measure as large as can be."""
+
+    result = HuntResult
+    kind: Literal["hunt"] = "hunt"
+    measure: str
+    island: int
+    count: int
+    steps: int
+
+    @property
+    def cost(self) -> int:
+        runs = _RUNS_OF_A_MEASURE * self.steps * STEP_COST["mpfr"]
+        return self.count * (_HUNTED_COST + runs)
+
+    def perform(self, keeper: Keeper) -> HuntResult:
+        from verify.exploration.island_search import search_island
+
+        return search_island(
+            self.measure, self.drawn, self.seed, self.island, count=self.count, steps=self.steps
+        )

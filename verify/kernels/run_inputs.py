@@ -1,0 +1,74 @@
+"""What is run in a kernel, apart from the arithmetic that it is run in."""
+
+from copy import copy
+from fractions import Fraction
+from functools import lru_cache
+from typing import Self
+
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.computation import step_map_of
+from verify.kernels.kernel import Kernel
+
+
+def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
+    """H with its parameters as the kernel's arguments, where the scheme takes it so.
+
+    A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
+    a = 1; then the values are put in.
+    """
+    generic = hamiltonian.generic()
+    return generic if _takes(generic, scheme) else Hamiltonian(hamiltonian.exact)
+
+
+@lru_cache(maxsize=256)
+def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
+    try:
+        step_map_of(hamiltonian, scheme)
+    except InputError:
+        return False
+    return True
+
+
+class RunInputs:
+    """H, a scheme, where it starts, so many steps, and what is asked of them.
+
+    The state is noted `points` times on the way where a series is kept, else `sections` times.
+    """
+
+    def __init__(
+        self,
+        hamiltonian: Hamiltonian,
+        scheme: str,
+        start: dict[str, Fraction],
+        steps: int,
+        observables: frozenset[str],
+        points: int,
+        keeper: Keeper = NOTHING,
+        sections: int = 16,
+    ) -> None:
+        self.generic, self.scheme = _compilable(hamiltonian, scheme), scheme
+        self.parameters, self.start = dict(hamiltonian.values), start
+        self.steps, self.observables, self.points = steps, observables, points
+        self.sections = points or sections
+        self.keeper = keeper
+
+    @property
+    def solved(self) -> bool:
+        """Whether a step solves equations; there is no certificate of such runs."""
+        return step_map_of(self.generic, self.scheme).solved
+
+    def observing(self, observables: frozenset[str]) -> Self:
+        """The same run with other observables, and without a series."""
+        other = copy(self)
+        other.observables, other.points = observables, 0
+        other.sections = 16
+        return other
+
+    def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
+        """h, the parameters and the scales by the names that the kernel's source has for them."""
+        h = self.start["h"]
+        named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
+        scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
+        return {"h": h, **named, **(scales if kernel.scales else {})}

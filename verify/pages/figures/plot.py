@@ -1,0 +1,51 @@
+"""A picture with its caption, and what captions say in the same words."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+
+from markupsafe import Markup
+
+from verify.pages.text.typography import is_decimal, number, whole
+from verify.scenes.results.run import RunResult
+
+_MOST_SHOWN = 4  # significant digits of a number in a caption
+
+
+@dataclass(frozen=True)
+class Plot:
+    """An inline SVG with its caption; `lead` is also the image's text alternative.
+
+    One that is `wide` spans the text column.
+    """
+
+    svg: Markup
+    lead: str
+    caption: str
+    wide: bool = False
+
+
+def computed(runs: Sequence[RunResult]) -> str:
+    """The arithmetic, the number of steps and the origin of the error bounds, in one sentence."""
+    steps = sorted({run.steps for run in runs})
+    count = whole(steps[0]) if len(steps) == 1 else f"{whole(steps[0])} … {whole(steps[-1])}"
+    systems = " and ".join(dict.fromkeys(_arithmetic(run) for run in runs))
+    methods = dict.fromkeys(
+        f"{run.error_kind}: {run.error_method}" for run in runs if run.status == "finished"
+    )
+    bounds = f"; error bounds {' or '.join(methods)}" if methods else ""
+    return f"Computed in {systems} with N = {count} steps{bounds}."
+
+
+def _arithmetic(run: RunResult) -> str:
+    return (
+        run.arithmetic if run.arithmetic == "float64" else f"{run.arithmetic} ({run.digits} digits)"
+    )
+
+
+def few(text: str) -> str:
+    """The first of the known digits."""
+    digits = sum(c.isdigit() for c in text.lower().partition("e")[0])
+    if not is_decimal(text) or digits <= _MOST_SHOWN or Decimal(text) == 0:
+        return number(text)
+    return number(f"{Decimal(text):.{_MOST_SHOWN - 1}e}")

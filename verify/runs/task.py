@@ -1,0 +1,45 @@
+"""The task of one run."""
+
+from typing import Literal
+
+from verify.execution.keeping import Keeper
+from verify.execution.task import STEP_COST, InitialValueTask
+from verify.runs.float64 import DIRECT_STEPS
+from verify.runs.run import run
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import AUTO, StepSize
+
+_UNLISTED = 500  # float64 steps that a step in any other arithmetic is taken to be worth
+
+
+class RunTask(InitialValueTask):
+    """Run N steps and report the observables."""
+
+    result = RunResult
+    kind: Literal["run"] = "run"
+    step_size: StepSize
+    steps: int
+    arithmetic: str
+    digits: int
+    observables: tuple[str, ...]
+    points: int
+
+    @property
+    def cost(self) -> int:
+        checked = self.arithmetic == "float64" and self.steps <= DIRECT_STEPS
+        return self.steps * STEP_COST.get(AUTO if checked else self.arithmetic, _UNLISTED)
+
+    def perform(self, keeper: Keeper) -> RunResult:
+        return run(
+            self.exact_hamiltonian(),
+            self.scheme,
+            q=self.q,
+            p=self.p,
+            step_size=self.step_size,
+            steps=self.steps,
+            arithmetic=self.arithmetic,
+            digits=self.digits,
+            observables=self.observables,
+            points=self.points,
+            keeper=keeper,
+        )

@@ -1,0 +1,35 @@
+"""What can be said of a claim, and of the paper's criteria: a verdict with its evidence."""
+
+from verify.scenes.frozen import Frozen
+from verify.verdict import Verdict
+
+
+class CriterionResult(Frozen):
+    """One of the paper's four criteria for one scheme in one scene."""
+
+    number: int
+    scheme: str
+    verdict: Verdict
+    evidence: str
+
+
+class ClaimResult(Frozen):
+    """One claim with its verdict; `evidence` is one line, `details` a table of texts.
+
+    `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
+    such as "4.1 The Duffing system"; a report groups its claims by it.
+    `proof`: the argument on paper that stands beside what the machine checked, where there is one.
+    `reproduction`: a few lines of code that show what is said of someone else's code.
+    """
+
+    id: str
+    kind: str = ""
+    source: str
+    section: str = ""
+    statement: str
+    scene: str
+    verdict: Verdict
+    evidence: str
+    details: tuple[tuple[str, ...], ...] = ()
+    proof: str = ""
+    reproduction: str = ""

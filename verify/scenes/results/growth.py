@@ -1,0 +1,56 @@
+"""The growth law of Λ on one orbit, and Λ of runs as it predicts it."""
+
+from typing import Literal
+
+from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.results.value import Value
+
+
+class AverageResult(Frozen):
+    """The growth law of Λ on one orbit: see `verify.proof.growth_law`.
+
+    `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas;
+    `potential` is empty where the leading coefficient of ΔJ does not telescope. `average` (⟨g⟩) and
+    `period` are along the exact orbit through (q, p); `average` is None where the orbit is not
+    known to be closed, and `reason` says why; `period` is None at an equilibrium too.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    digits: int
+    q: str
+    p: str
+    power: int
+    g: str
+    potential: str
+    orbit: Literal["libration", "rotation", "equilibrium", "undecided"]
+    reason: str
+    average: Value | None
+    period: Value | None
+    error_kind: Literal["enclosed", "estimated"]
+    error_method: str
+    seconds: Seconds
+
+
+class PredictionResult(Frozen):
+    """Λ of one run as the growth law predicts it, and as it was measured.
+
+    `boundary` + `secular` = log(1 + Λ), of which `predicted` is the Λ; `difference` is
+    (predicted − measured) / |measured|, None where no digit of the measured Λ is known.
+    """
+
+    step_size: str
+    steps: int
+    boundary: Value
+    secular: Value
+    predicted: Value
+    measured: Value
+    difference: Value | None
+
+
+class GrowthLawResult(Frozen):
+    """The law on one orbit, with the runs of the grid that start there, by step size."""
+
+    law: AverageResult
+    predictions: tuple[PredictionResult, ...]

@@ -1,0 +1,46 @@
+"""What was proved of a scheme, for one H and for every H."""
+
+from verify.algebra.conditions import Condition
+from verify.scenes.frozen import Frozen, Seconds
+from verify.verdict import Verdict
+
+
+class ProofResult(Frozen):
+    """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for."""
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    verdict: Verdict
+    reason: str
+    order: int | None
+    leading: str
+    delta_j: str | None
+    area_preserving: bool | None
+    convergence_order: int | None
+    witness: dict[str, str]
+    enclosure: str
+    p_next: str | None
+    q_next: str | None
+    jacobian: tuple[tuple[str, str], tuple[str, str]] | None
+    seconds: Seconds
+
+
+class EveryResult(Frozen):
+    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it."""
+
+    scheme: str
+    quantifier: str
+    verdict: Verdict
+    reason: str
+    order: int | None
+    area_preserving: bool | None
+    convergence_order: int | None
+    formula: str
+    leading: str
+    telescopes: bool | None
+    potential: str | None
+    why: str
+    checked: tuple[str, ...]
+    conditions: tuple[Condition, ...] = ()
+    argument: str

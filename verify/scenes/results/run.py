@@ -1,0 +1,94 @@
+"""What one run gave, and how it shows itself in a notebook."""
+
+from typing import Literal
+
+from verify.notebook import aligned_latex, html_table, number_latex
+from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.results.value import Value
+
+_SHOWN = {
+    "lambda": ("Λ", r"\Lambda"),
+    "lambda_plain": ("Λ, the plain way", r"\Lambda_{\text{plain}}"),
+    "lambda_max": ("max |Λ|", r"\max |\Lambda|"),
+    "mse": ("MSE", r"\text{MSE}"),
+    "delta_j_max": ("max |ΔJ|", r"\max |\Delta J|"),
+    "q": ("q", "q"),
+    "p": ("p", "p"),
+}
+
+
+class SeriesPoint(Frozen):
+    """The least and greatest ΔJ and Λ over the steps first … last."""
+
+    first: int
+    last: int
+    delta_j: tuple[str, str]
+    lam: tuple[str, str]
+
+
+class RunResult(Frozen):
+    """One run of N steps of a scheme in one arithmetic.
+
+    `values` holds p, q and the observables asked for. It is empty where the orbit left the
+    arithmetic's range (`status` "left range"; `failed_step` is the first step that was out of it),
+    and where no digit could be confirmed ("unresolved"). `error_kind`
+    is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
+    says why another arithmetic was taken than the one that was asked for. `exact` names the
+    observables that a proof gave and no run was needed for. `source` is what of a paper the scene
+    says that the run repeats.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    arithmetic: str
+    fallback: str = ""
+    digits: int
+    step_size: str
+    steps: int
+    q: str
+    p: str
+    status: Literal["finished", "left range", "unresolved"]
+    failed_step: int | None
+    values: dict[str, Value]
+    error_kind: Literal["enclosed", "estimated"]
+    error_method: str
+    exact: tuple[str, ...]
+    series: tuple[SeriesPoint, ...]
+    seconds: Seconds
+    source: str = ""
+
+    def _repr_html_(self) -> str:
+        return _run_html(self)
+
+    def _repr_latex_(self) -> str:
+        return _run_latex(self)
+
+
+def _run_html(run: RunResult) -> str:
+    """The values, each with its error bound."""
+    caption = (
+        f"{run.scheme}: {run.steps} steps of h = {run.step_size} from q = {run.q}, p = {run.p}"
+    )
+    foot = f"{run.arithmetic}, {run.digits} digits; bounds {run.error_kind}: {run.error_method}"
+    if run.fallback:
+        foot += f"; taken instead of what was asked for: {run.fallback}"
+    if run.status != "finished":
+        at = f" at step {run.failed_step}" if run.failed_step is not None else ""
+        return html_table(caption, (), [("outcome", run.status + at)], foot)
+    rows = [
+        (label, value.value, f"± {value.bound}")
+        for name, (label, _) in _SHOWN.items()
+        if (value := run.values.get(name))
+    ]
+    return html_table(caption, ("", "value", "error bound"), rows, foot)
+
+
+def _run_latex(run: RunResult) -> str:
+    """The values with their error bounds."""
+    lines = [
+        f"{symbol} &= {number_latex(value.value)} \\pm {number_latex(value.bound)}"
+        for name, (_, symbol) in _SHOWN.items()
+        if (value := run.values.get(name))
+    ]
+    return aligned_latex(lines or [rf"\Lambda &: \text{{{run.status}}}"])

@@ -1,0 +1,164 @@
+"""Truncation and rounding in Λ as they were found, and how they show themselves in a notebook."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from verify.notebook import html_table
+from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.results.value import Value
+
+_PARTS = {
+    "lambda_working": "Λ in float64",
+    "truncation": "truncation",
+    "total": "rounding",
+    "input": "– input",
+    "trajectory": "– trajectory",
+    "determinant": "– determinant",
+    "product": "– product",
+}
+_WAYS = {"plain": "the plain way", "closed_form": "closed form"}
+
+
+class Parts(Frozen):
+    """truncation + input + trajectory + determinant + product = lambda_working (one equation of
+    exact rationals, of which these are the known digits); total is the sum of the last four."""
+
+    lambda_working: Value
+    truncation: Value
+    total: Value
+    input: Value
+    trajectory: Value
+    determinant: Value
+    product: Value
+
+
+class PartsAt(Frozen):
+    """The parts after `steps` steps, as decimals of a few digits, for a figure."""
+
+    steps: int
+    truncation: str
+    total: str
+    input: str
+    trajectory: str
+    determinant: str
+    product: str
+
+
+class GrowthResult(Frozen):
+    """A `verify.studies.separation.growth.Growth`."""
+
+    exponent: str | None
+    standard_error: str | None
+    name: Literal["random walk", "drift", "undecided"]
+    reason: str
+    first: int
+    last: int
+    points: int
+
+
+class EvaluationResult(Frozen):
+    """Λ of a float64 run, split, for one way to evaluate it; `growth`: of total and of each part.
+
+    `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
+    """
+
+    parts: Parts
+    largest: dict[str, str]
+    growth: dict[str, GrowthResult]
+    series: tuple[PartsAt, ...]
+    error_kind: Literal["enclosed", "estimated"]
+
+
+class SeparationResult(Frozen):
+    """Truncation and rounding in Λ of one run in float64; see `verify.studies.separation.separate`.
+
+    `plain` and `closed_form` are None where `status` is not "finished" (`reason` says why), and
+    `closed_form` also where some det J ≤ 0, whose logarithm it would take. `arithmetic` is what
+    stood for exact arithmetic; `seconds` is the stepping of all runs.
+    """
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+    arithmetic: str
+    digits: int
+    step_size: str
+    steps: int
+    q: str
+    p: str
+    status: Literal["finished", "left range", "unresolved"]
+    failed_step: int | None
+    reason: str
+    plain: EvaluationResult | None
+    closed_form: EvaluationResult | None
+    error_method: str
+    seconds: Seconds
+
+    def _repr_html_(self) -> str:
+        return _separation_html(self)
+
+
+class CrossoverResult(Frozen):
+    """A `verify.studies.separation.growth.Crossover`."""
+
+    step_size: str | None
+    bracket: tuple[str, str] | None
+    reason: str
+
+
+class SeparationGrid(Frozen):
+    """The separation for several step sizes, in the order given, and the crossover of each way."""
+
+    points: tuple[SeparationResult, ...]
+    plain: CrossoverResult
+    closed_form: CrossoverResult
+
+    def _repr_html_(self) -> str:
+        return _grid_html(self)
+
+
+def _separation_html(point: SeparationResult) -> str:
+    """The parts of Λ for each way to evaluate it, with their bounds."""
+    caption = f"{point.scheme}: {point.steps} steps of h = {point.step_size}, Λ in float64"
+    if point.plain is None:
+        return html_table(caption, (), [(point.status, point.reason)])
+    ways = {way: label for way, label in _WAYS.items() if getattr(point, way)}
+    rows = [
+        (label, *(_bounded(getattr(getattr(point, way).parts, name)) for way in ways))
+        for name, label in _PARTS.items()
+    ]
+    rows.append(("rounding with N", *(getattr(point, way).growth["total"].name for way in ways)))
+    foot = f"{point.arithmetic} as exact arithmetic; bounds {point.plain.error_kind}: "
+    return html_table(caption, ("", *ways.values()), rows, foot + point.error_method)
+
+
+def _grid_html(grid: SeparationGrid) -> str:
+    """Truncation and rounding of each step size, and where they cross; one alone in full."""
+    if len(grid.points) == 1:
+        return _separation_html(grid.points[0])
+    heads = ("h", "N", "truncation", *(f"rounding, {label}" for label in _WAYS.values()))
+    rows = [(point.step_size, str(point.steps), *_sizes(point)) for point in grid.points]
+    crossed = (f"{label}: {_crossing(getattr(grid, way))}" for way, label in _WAYS.items())
+    foot = "rounding overtakes truncation, " + "; ".join(crossed)
+    return html_table("Truncation and rounding in Λ", heads, rows, foot)
+
+
+def _sizes(point: SeparationResult) -> Iterator[str]:
+    if point.plain is None:
+        yield f"{point.status}: {point.reason}"
+        return
+    yield _bounded(point.plain.parts.truncation)
+    for way in (point.plain, point.closed_form):
+        yield _rounding(way)
+
+
+def _rounding(way: EvaluationResult | None) -> str:
+    return _bounded(way.parts.total) if way else "–"
+
+
+def _bounded(value: Value) -> str:
+    return value.value if value.bound == "0" else f"{value.value} ± {value.bound}"
+
+
+def _crossing(way: CrossoverResult) -> str:
+    return f"below h = {way.step_size}" if way.step_size else way.reason

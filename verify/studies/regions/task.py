@@ -1,0 +1,43 @@
+"""The task of a region carried by a map."""
+
+from typing import Literal
+
+from verify.execution.keeping import Keeper
+from verify.execution.task import HamiltonianTask
+from verify.scenes.region_sections import ShapeGiven
+from verify.scenes.results.regions import FlowImage
+from verify.scenes.values import StepSize
+
+_COST, _POINTS = 20_000_000, 20_000  # of a region, and how many points of it are carried
+
+
+class FlowTask(HamiltonianTask):
+    """Carry a shape by `steps` steps of a map: a scheme's, or the exact flow's."""
+
+    result = FlowImage
+    kind: Literal["flow"] = "flow"
+    map: str
+    shape: ShapeGiven
+    step_size: StepSize
+    steps: int
+    digits: int
+    mean_lambda: bool
+    distance: bool
+
+    @property
+    def cost(self) -> int:
+        return _COST + _POINTS * self.steps
+
+    def perform(self, keeper: Keeper) -> FlowImage:
+        from verify.studies.regions.carry import carry
+
+        return carry(
+            self.exact_hamiltonian(),
+            self.map,
+            self.shape.made(),
+            step_size=self.step_size,
+            steps=self.steps,
+            digits=self.digits,
+            mean_lambda=self.mean_lambda,
+            distance=self.distance,
+        )

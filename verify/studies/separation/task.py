@@ -1,0 +1,37 @@
+"""The task of splitting Λ of one run into truncation and rounding."""
+
+from typing import Literal
+
+from verify.execution.keeping import Keeper
+from verify.execution.task import STEP_COST, InitialValueTask
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.values import AUTO, StepSize
+from verify.studies.separation.separate import separate
+
+_RUNS = 3  # of the chain, in wide numbers
+
+
+class SeparationTask(InitialValueTask):
+    """Split Λ of a float64 run into truncation and rounding."""
+
+    result = SeparationResult
+    kind: Literal["separation"] = "separation"
+    step_size: StepSize
+    steps: int
+    digits: int
+
+    @property
+    def cost(self) -> int:
+        return _RUNS * self.steps * STEP_COST[AUTO]
+
+    def perform(self, keeper: Keeper) -> SeparationResult:
+        return separate(
+            self.exact_hamiltonian(),
+            self.scheme,
+            q=self.q,
+            p=self.p,
+            step_size=self.step_size,
+            steps=self.steps,
+            digits=self.digits,
+            keeper=keeper,
+        )

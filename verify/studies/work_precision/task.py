@@ -1,0 +1,64 @@
+"""The task of error against run time."""
+
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+from verify.execution.keeping import Keeper
+from verify.execution.task import HamiltonianTask
+from verify.scenes.results.work_precision import WorkPrecisionResult
+from verify.scenes.values import Number, StepSize
+
+_POINT_COST = 30_000_000  # of a point of error against run time: some tenths of a second
+
+
+class WorkPrecisionTask(HamiltonianTask):
+    """Error against run time of schemes over step sizes, of number systems, and of peers.
+
+    `peers`: names of those that are drawn; `peers_left_out`: the others, each with the reason.
+    """
+
+    alone: ClassVar[bool] = True
+    result = WorkPrecisionResult
+    kind: Literal["work_precision"] = "work_precision"
+    schemes: tuple[str, ...]
+    time: Number
+    step_sizes: tuple[StepSize, ...]
+    q: Number
+    p: Number
+    repeats: int
+    number_systems: tuple[str, ...]
+    digits: tuple[int, ...]
+    number_systems_scheme: str
+    number_systems_step_size: StepSize
+    peers: tuple[str, ...]
+    peers_left_out: tuple[tuple[str, str], ...]
+
+    @property
+    def cost(self) -> int:
+        return _POINT_COST * len(self.schemes) * len(self.step_sizes)
+
+    def perform(self, keeper: Keeper) -> WorkPrecisionResult:
+        return self.measure(lambda _: None)
+
+    def measure(self, advance: Callable[[int], None]) -> WorkPrecisionResult:
+        """As `perform`; `advance` is called with the number of points just done."""
+        from verify.studies.work_precision.measure import NumberSystems, work_precision
+
+        return work_precision(
+            self.exact_hamiltonian(),
+            q=self.q,
+            p=self.p,
+            time=self.time,
+            schemes=self.schemes,
+            step_sizes=self.step_sizes,
+            repeats=self.repeats,
+            systems=NumberSystems(
+                names=self.number_systems,
+                digits=self.digits,
+                scheme=self.number_systems_scheme,
+                step_size=self.number_systems_step_size,
+            ),
+            peers=self.peers,
+            left_out=self.peers_left_out,
+            advance=advance,
+        )
