@@ -282,12 +282,12 @@ def compare(old: Path, new: Path) -> int:
         sys.exit(f"{old}, {new}: no answers there")
     differ = []
     for name in names:
-        texts = [
-            (folder / name).read_text() if (folder / name).exists() else "" for folder in (old, new)
+        answers = [
+            json.loads((folder / name).read_text()) if (folder / name).exists() else {}
+            for folder in (old, new)
         ]
-        if texts[0] != texts[1]:
+        if answers[0] != answers[1]:
             differ.append(name)
-            answers = [json.loads(text) if text else {} for text in texts]
             print(f"{name}  {answers[0].get('command', 'the files written')}: differs")
     print(f"{len(names)} answers, {len(differ)} differ")
     return 1 if differ else 0

@@ -51,7 +51,7 @@ def main() -> None:
             command = ["reference", "compare", str(path), "--scene", "duffing"]
             begun = time.perf_counter()
             done = subprocess.run(
-                [sys.executable, "-m", "verify.commands.main", *command],
+                [sys.executable, "-m", "verify", *command],
                 cwd=ROOT, capture_output=True, text=True, check=False,
             )  # fmt: skip
             seconds = time.perf_counter() - begun

@@ -18,11 +18,11 @@ import numpy as np
 
 from verify import arithmetic
 from verify.arithmetic.float_context import FLOAT
+from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
 from verify.scenes.region_sections import ShapeGiven
 from verify.scenes.shapes import named as shapes
-from verify.studies.regions.carry import carry
 from verify.studies.regions.task import FlowTask
 
 SYSTEMS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
@@ -114,7 +114,7 @@ def probe() -> bool:
                 hamiltonian=formula, parameters={}, map="lie2", shape=shape, step_size=h,
                 steps=steps, digits=17, mean_lambda=True, distance=False,
             )  # fmt: skip
-            found = carry(Hamiltonian.parse(formula), task)
+            found = task.perform(NOTHING)
             if found.area_change is None:
                 print(f"probe    {system} h = {float(h)} N = {steps}: {found.problem}")
                 good = False

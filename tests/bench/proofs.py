@@ -43,7 +43,7 @@ def show(what: str, command: Sequence[str], target: str) -> None:
 
 
 def main() -> None:
-    verify = [sys.executable, "-m", "verify.commands.main"]
+    verify = [sys.executable, "-m", "verify"]
     show("lie1 … lie8 for every H, with telescoping", [sys.executable, "-c", EVERY], "< 2 s")
     with tempfile.TemporaryDirectory() as folder:
         file = str(Path(folder) / "lie6.json")

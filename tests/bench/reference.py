@@ -18,7 +18,7 @@ LIMIT = 5_000_000  # bytes
 
 def timed(*given: str) -> tuple[float, str]:
     """Seconds of the command from process start, and what it printed last."""
-    command = [sys.executable, "-m", "verify.commands.main", "reference", *given]
+    command = [sys.executable, "-m", "verify", "reference", *given]
     begun = time.perf_counter()
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return time.perf_counter() - begun, done.stdout.splitlines()[-1]

@@ -54,7 +54,7 @@ def show(what: str, value: str, target: str) -> None:
 
 
 def main() -> None:
-    verify = [sys.executable, "-m", "verify.commands.main"]
+    verify = [sys.executable, "-m", "verify"]
     help_, _ = measure([*verify, "--help"])
     show("verify --help", f"{help_:.3f} s", "< 0.2 s")
     proof, _ = measure([*verify, "prove", "--system", "duffing", "--scheme", "lie2"])

@@ -39,7 +39,7 @@ Medians = dict[tuple[str, str], float]  # by step size and scheme
 def benched(path: Path) -> tuple[float, Medians]:
     """Seconds of the whole process, and the medians of the finished points."""
     begun = time.perf_counter()
-    command = [sys.executable, "-m", "verify.commands.main", "bench", str(path), "--json"]
+    command = [sys.executable, "-m", "verify", "bench", str(path), "--json"]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     taken = time.perf_counter() - begun
     points: list[dict[str, Any]] = json.loads(done.stdout)["points"]

@@ -15,8 +15,8 @@ from contextlib import contextmanager
 from fractions import Fraction
 
 from verify.execution import keeping
+from verify.execution.execute import perform
 from verify.execution.executors import Call, Place, Where, opened, performed
-from verify.execution.perform import perform
 from verify.studies.separation.task import SeparationTask
 
 FEW, MANY = 400_000, 4_000_000  # steps; fewer are stepped in another way

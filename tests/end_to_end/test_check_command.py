@@ -13,8 +13,8 @@ import pytest
 
 from tests.end_to_end.test_command_line import IMPORTED, here, json_of
 from tests.end_to_end.test_report_command import interrupt, started
+from tests.paths import ROOT
 
-ROOT = Path(__file__).parents[2]
 SYMBOLIC = """
 [defaults]
 scheme = "lie2"

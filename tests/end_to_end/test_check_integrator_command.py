@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
+from tests.paths import ROOT
 
-ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SECTION = README.partition("<!-- check-integrator -->")[2].partition("\n## ")[0]
 EXAMPLE, TESTED = re.findall(r"```python\n(.*?)```", SECTION, re.DOTALL)

@@ -275,7 +275,7 @@ def test_people_are_shown_text(capsys: pytest.CaptureFixture[str], given: list[s
 
 IMPORTED = """
 import sys
-from verify.cli import main
+from verify.commands.main import main
 try:
     main(sys.argv[1:])
 except SystemExit as exit_:

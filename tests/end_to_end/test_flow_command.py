@@ -1,13 +1,13 @@
 """`verify flow`: its JSON keys, its text, what is kept, an interruption, exit statuses."""
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
-from verify.execution import perform
 from verify.execution.keeping import Keeper
+from verify.scenes.results.regions import FlowImage
+from verify.studies.regions.task import FlowTask
 
 SCENE = """
 system = "duffing"
@@ -95,23 +95,23 @@ def test_an_interruption_keeps_what_is_finished(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    keep, right, done = tmp_path / "kept", perform.KINDS["flow"], []
+    keep, right, done = tmp_path / "kept", FlowTask.perform, list[str]()
 
-    def third(task: Any, keeper: Keeper) -> Any:
+    def third(task: FlowTask, keeper: Keeper) -> FlowImage:
         if len(done) == 2:
             raise KeyboardInterrupt
         done.append(task.map)
-        return right.do(task, keeper)
+        return right(task, keeper)
 
     given = ("flow", str(scene), "--json", "--workers", "1", "--keep", str(keep))
     with monkeypatch.context() as patch:
-        patch.setitem(perform.KINDS, "flow", perform.Kind(third, right.model))
+        patch.setattr(FlowTask, "perform", third)
         status, out, err = here(capsys, *given)
     assert (status, out) == (130, "")
     assert f"interrupted: 2 of 3 tasks are kept in {keep}" in err
     with monkeypatch.context() as patch:
         done.clear()
-        patch.setitem(perform.KINDS, "flow", perform.Kind(third, right.model))
+        patch.setattr(FlowTask, "perform", third)
         status, out, _ = here(capsys, *given)
     assert (status, len(done)) == (0, 1)
     assert here(capsys, *given)[:2] == (0, out)

@@ -6,7 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
+
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SECTION = README.partition("<!-- own-integrator -->")[2].partition("\n## ")[0]
 EXAMPLE = re.search(r"```python\n(.*?)```", SECTION, re.DOTALL)

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
+from tests.paths import ROOT
 
-README = Path(__file__).parents[2] / "reference" / "README.md"
+README = ROOT / "reference" / "README.md"
 GIVEN = ["--scene", "duffing", "--scheme", "lie2", "--step-size", "0.001", "--q", "1.5", "--p", "0"]
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
+from tests.paths import ROOT
 from verify.commands.input import target
 
 SCENE = """
@@ -82,7 +83,7 @@ def test_the_extreme_scenes_end_in_the_verdicts_that_are_right(
     capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
     assert name in {scene.name for scene in target("extreme")[1]}
-    path = Path(__file__).parents[2] / "reports" / "suites" / "extreme" / f"{name}.toml"
+    path = ROOT / "reports" / "suites" / "extreme" / f"{name}.toml"
     status, out, err = here(capsys, "stability", str(path), "--json")
     assert (status, err) == (0, "")
     verdicts = {case["id"]: case["verdict"] for case in json_of(out)["cases"]}

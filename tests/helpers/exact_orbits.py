@@ -38,7 +38,7 @@ class Case:
     steps: int
     parameters: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
 
-    def run(self, observables: frozenset[str] = OBSERVABLES) -> KernelRun:
+    def kernel_run(self, observables: frozenset[str] = OBSERVABLES) -> KernelRun:
         start = {"p": self.p, "q": self.q, "h": self.h}
         h = Hamiltonian.parse(self.text, self.parameters)
         return KernelRun(h, self.scheme, start, self.steps, observables, 0)

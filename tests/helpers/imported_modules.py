@@ -5,11 +5,12 @@ import json
 import subprocess
 import sys
 from functools import cache
-from pathlib import Path
+
+from tests.paths import ROOT
 
 _APART = """
 import json, os, sys
-from tests.unit.test_report_page import *
+from tests.unit.pages.test_page import *
 
 for line in sys.stdin:
     child = os.fork()
@@ -25,7 +26,7 @@ for line in sys.stdin:
 @cache
 def _process() -> "subprocess.Popen[str]":
     process = subprocess.Popen([sys.executable, "-c", _APART], text=True, stdin=subprocess.PIPE,
-                               stdout=subprocess.PIPE, cwd=Path(__file__).parents[2])  # fmt: skip
+                               stdout=subprocess.PIPE, cwd=ROOT)  # fmt: skip
     atexit.register(process.kill)
     return process
 

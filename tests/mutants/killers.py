@@ -47,7 +47,7 @@ def unit_killers(module: str) -> tuple[Killer, ...]:
 
 
 def _files(folder: str) -> list[Path]:
-    return sorted((ROOT / "tests" / folder).glob("test_*.py"))
+    return sorted((ROOT / "tests" / folder).rglob("test_*.py"))
 
 
 @cache

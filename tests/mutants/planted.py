@@ -29,7 +29,7 @@ class _Changed(SourceFileLoader):
 
 
 class _OwnFingerprint(SourceFileLoader):
-    """Loads `verify.execution.keeping`, whose fingerprint is read from the sources, with a mutant's own."""
+    """Loads `verify.execution.keeping`, whose fingerprint is then a mutant's own."""
 
     def __init__(self, name: str, path: str, key: str) -> None:
         super().__init__(name, path)

@@ -5,12 +5,17 @@ import random
 from tests.mutants.mutate import ROOT, Mutant, mutants
 
 PATTERNS = (
-    "proof/*.py",
-    "schemes/*.py",
+    "algebra/jets.py",
+    "algebra/linear_combination.py",
+    "algebra/quotient_series.py",
     "arithmetic/*.py",
-    "step_map.py",
-    "substep.py",
-    "separation*.py",
+    "arithmetic/systems/*.py",
+    "flows/closed_orbit.py",
+    "flows/extrapolation.py",
+    "flows/orbit_average.py",
+    "proof/**/*.py",
+    "schemes/**/*.py",
+    "studies/separation/*.py",
 )
 
 

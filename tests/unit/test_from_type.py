@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
+
 GROUP = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
 ENTRIES = GROUP["hypothesis"]
 
@@ -22,7 +23,7 @@ print("drawn")
 """
 CLASSES = """
 from verify import Hamiltonian, Scene, Scheme
-from verify.scene_values import InitialValue
+from verify.scenes.values import InitialValue
 """
 ORDERS = {
     "hypothesis first": "import hypothesis" + CLASSES + DRAW,

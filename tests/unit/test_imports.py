@@ -1,16 +1,17 @@
 """Imports go downwards only, and light commands stay light: read from the source."""
 
 import ast
-import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping, Set
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
+
 VERIFY = ROOT / "verify"
 MODULES = sorted(VERIFY.rglob("*.py"))
 
@@ -60,45 +61,138 @@ def roots(names: Set[str]) -> set[str]:
     return {name.partition(".")[0] for name in names}
 
 
-ABOVE = {"reports", "reference", "tests"}
+def rooms_of(name: str) -> str:
+    """The room of a module; its own name where it stands in none."""
+    return name.split(".")[1] if "." in name else name
 
 
-def test_verify_imports_nothing_that_stands_above_it() -> None:
-    for name, path in NAMES.items():
-        command = re.fullmatch(r"verify\.cli(_[a-z]+)?", name)
-        allowed = {"reports", "reference"} if command else set()
-        assert not roots(imported(path)) & ABOVE, name
-        assert roots(imported(path, everywhere=True)) & ABOVE <= allowed, name
+# From the roof down. A module imports from its own room and from those below it.
+ROOF = ("verify", "__main__", "from_type", "testing")
+ROOMS = ("commands", "pages", "reference", "exploration", "strategies", "claims", "studies",
+         "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof", "schemes",
+         "hamiltonians", "algebra", "arithmetic")  # fmt: skip
+GROUND = ("content", "discovery", "drawable", "errors", "notebook", "verdict")
 
 
-def test_the_reports_compute_nothing_themselves() -> None:
-    heavy = {
-        "numba",
-        "mpmath",
-        "gmpy2",
-        "flint",
-        "verify.runs.run",
-        "verify.kernels.kernel",
-        "verify.kernels.stepping",
-    }
-    for path in sorted((ROOT / "reports").rglob("*.py")):
-        assert not imported(path, everywhere=True) & heavy, path
+def floor(name: str) -> int:
+    """How far down a module stands; the ground is the lowest."""
+    room = rooms_of(name)
+    if room in ROOF:
+        return 0
+    return len(ROOMS) + 1 if room in GROUND else 1 + ROOMS.index(room)
 
 
-def test_no_modules_import_each_other_in_a_circle() -> None:
-    edges = {name: imported(path) & set(NAMES) - {name} for name, path in NAMES.items()}
-    done: set[str] = set()
+def edges_of(paths: Mapping[str, Path]) -> dict[str, set[str]]:
+    """What each module imports of ours: in functions, for types and by name as well."""
+    return {name: edges_of_file(path) - {name} for name, path in paths.items()}
 
-    def visit(name: str, above: tuple[str, ...]) -> None:
-        assert name not in above, " → ".join([*above[above.index(name) :], name])
-        if name not in done:
-            for other in sorted(edges[name]):
-                visit(other, (*above, name))
-            done.add(name)
 
+def edges_of_file(path: Path) -> set[str]:
+    return {*imported(path, everywhere=True), *named(path)} & set(NAMES)
+
+
+@cache
+def named(path: Path) -> frozenset[str]:
+    """The modules of ours whose dotted names stand in a file as texts, which import_module takes."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    texts = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant)}
+    modules = set(NAMES) - {"verify"}  # whose data are found by this name
+    return frozenset(t for t in texts if isinstance(t, str) and t in modules)
+
+
+def upward(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
+    """(module, module) where the first imports the second, which stands above it."""
+    return {(a, b) for a, below in edges.items() for b in below if floor(b) < floor(a)}
+
+
+def circles(edges: Mapping[str, Set[str]]) -> list[set[str]]:
+    """The sets of names that reach each other; a name's package is not counted as imported."""
+    reached: dict[str, set[str]] = {}
     for name in edges:
-        visit(name, ())
-    assert sum(map(len, edges.values())) > 50, "the edges were read"
+        seen: set[str] = set()
+        waiting = [name]
+        while waiting:
+            for other in edges[waiting.pop()] - seen:
+                seen.add(other)
+                waiting.append(other)
+        reached[name] = seen
+    found = {frozenset(b for b in reached[a] if a in reached[b]) for a in edges if a in reached[a]}
+    return [set(circle) for circle in found]
+
+
+def folders(edges: Mapping[str, Set[str]]) -> dict[str, set[str]]:
+    """The same between folders. A folder's face finds what is in it, and is left out."""
+    found: dict[str, set[str]] = {}
+    for name, below in edges.items():
+        for other in below:
+            ends = [NAMES[name], NAMES[other]]
+            if VERIFY in (ends[0].parent, ends[1].parent) or "__init__.py" in {
+                p.name for p in ends
+            }:
+                continue
+            own, its = (str(p.parent.relative_to(VERIFY)) for p in ends)
+            found.setdefault(own, set()).update({its} - {own})
+            found.setdefault(its, set())
+    return found
+
+
+EDGES = edges_of(NAMES)
+
+
+def test_every_folder_is_a_room_and_every_room_has_its_floor() -> None:
+    assert {rooms_of(name) for name in NAMES} == {*ROOF, *ROOMS, *GROUND}
+    assert len(ROOMS) == 18
+
+
+def test_imports_go_downwards_only() -> None:
+    assert not upward(EDGES)
+    assert sum(map(len, EDGES.values())) > 1500, "the edges were read"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from verify.studies.plan import plan_scenes",
+        "import verify.commands.main",
+        "def f():\n    from verify.pages import page",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from verify.runs.run import run",
+        "from importlib import import_module\nimport_module('verify.claims.judge')",
+        "from verify import testing",
+    ],
+)
+def test_a_planted_upward_import_is_seen(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "ring.py"
+    path.write_text(line)
+    planted = EDGES | {"verify.algebra.ring": edges_of_file(path)}
+    assert {a for a, _ in upward(planted)} == {"verify.algebra.ring"}
+
+
+def test_there_are_no_circles_of_modules_nor_of_folders() -> None:
+    assert not circles(EDGES)
+    assert not circles(folders(EDGES))
+    planted = EDGES | {"verify.algebra.generator": {"verify.algebra.ring"}}
+    assert any("verify.algebra.generator" in circle for circle in circles(planted))
+
+
+MOST_FILES = 22
+
+
+def test_a_folder_can_be_taken_in_at_a_glance() -> None:
+    counts = Counter(path.parent for path in MODULES)
+    assert max(counts.values()) <= MOST_FILES, counts.most_common(3)
+
+
+def test_content_holds_no_python() -> None:
+    assert not [p for name in ("reports", "reference") for p in (ROOT / name).rglob("*.py")]
+
+
+def test_pages_compute_nothing_themselves() -> None:
+    heavy = {"numba", "mpmath", "gmpy2", "flint"}
+    rooms = {"runs", "kernels", "proof"}
+    for name, path in NAMES.items():
+        if rooms_of(name) == "pages":
+            assert not roots(imported(path, everywhere=True)) & heavy, name
+            assert not {rooms_of(other) for other in EDGES[name]} & rooms, name
 
 
 LIGHT = [
@@ -128,15 +222,12 @@ def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
 
 def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
     for name, path in NAMES.items():
-        assert not roots(imported(path)) & {"numba", "matplotlib"}, name
+        drawing = name.startswith("verify.pages.figures.") or name == "verify.pages.plotting"
+        assert not roots(imported(path)) & {"numba", *(() if drawing else ("matplotlib",))}, name
 
 
-EXPLORING = {
-    "verify.exploration.scenes",
-    "verify.exploration.explore",
-    "verify.exploration.gallery",
-    "verify.exploration.hunting",
-}
+EXPLORING = {f"verify.exploration.{name}" for name in ("scenes", "explore", "property_checks",
+             "gallery", "hunting", "island_search")}  # fmt: skip
 
 
 def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
@@ -156,18 +247,16 @@ def of_arrays(edges: Mapping[str, Set[str]]) -> set[str]:
 def bring_arrays(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
     """(module, array module) where the first imports the second, and is none itself."""
     arrays = of_arrays(edges)
-    return {(name, other) for name in set(edges) - arrays for other in edges[name] & arrays}
+    others = {name for name in set(edges) - arrays if rooms_of(name) not in ("pages", "reference")}
+    return {(name, other) for name in others for other in edges[name] & arrays}
 
 
 def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
     """So that what needs no array never imports numpy: the others do so in functions."""
     edges = {name: imported(path) for name, path in NAMES.items()}
     assert not bring_arrays(edges)
-    light = {"scene", "plan", "perform", "execute", "report", "tasks", "results", "cli"}
-    light |= {
-        name.removeprefix("verify.") for name in NAMES if name.startswith("verify.commands.main")
-    }
-    assert not of_arrays(edges) & {f"verify.{name}" for name in light}
+    light = {"commands", "execution", "scenes", "claims", "proof", "schemes"}
+    assert not {name for name in of_arrays(edges) if rooms_of(name) in light}
     assert "verify.studies.regions.panels" in of_arrays(edges), "the rule speaks of something"
     planted = edges | {
         "verify.studies.plan": edges["verify.studies.plan"] | {"verify.studies.regions.panels"}
@@ -177,7 +266,7 @@ def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
 
 SAID = """
 import sys
-from verify.cli import main
+from verify.commands.main import main
 try:
     main({arguments})
 except SystemExit as done:
@@ -218,8 +307,7 @@ def test_only_what_is_declared_is_imported() -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
                 "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
-                "distributed",
-                "verify", "reports", "reference"}  # fmt: skip
+                "distributed", "pyarrow", "verify"}  # fmt: skip
     for name, path in NAMES.items():
         others = roots(imported(path, everywhere=True)) - set(sys.stdlib_module_names)
         assert others <= declared, name

@@ -153,8 +153,8 @@ from tests.mutants.planted import planted
 if {index} >= 0:
     planted({module!r}, {index})
 import {module} as there
-from verify.keeping import fingerprint
-import verify.proof.jets as beside
+from verify.execution.keeping import fingerprint
+import verify.algebra.jets as beside
 print(type(beside.__loader__).__name__, type(there.__loader__).__name__, fingerprint(), sep=";")
 """
 
@@ -167,7 +167,9 @@ def in_a_process(source: str) -> str:
 
 def test_one_module_is_planted_and_nothing_on_disk_is_changed() -> None:
     mutant = one(COMBINATION, "last in pivots → True")
-    before = {p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "proof").rglob("combination*")}
+    before = {
+        p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "algebra").rglob("linear_combination*")
+    }
     source = records.source()
     changed = in_a_process(PLANTED.format(module=COMBINATION, index=mutant.index)).split(";")
     sound = in_a_process(PLANTED.format(module=COMBINATION, index=-1)).split(";")
@@ -175,7 +177,9 @@ def test_one_module_is_planted_and_nothing_on_disk_is_changed() -> None:
     assert sound[:2] == ["SourceFileLoader", "SourceFileLoader"]
     assert changed[2] != sound[2], "what is kept on disk would be taken for the sound code's"
     assert records.source() == source
-    after = {p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "proof").rglob("combination*")}
+    after = {
+        p: p.stat().st_mtime_ns for p in (ROOT / "verify" / "algebra").rglob("linear_combination*")
+    }
     assert {p: t for p, t in after.items() if p in before} == before
 
 
@@ -211,7 +215,7 @@ def test_a_child_is_done_or_dies_or_hangs() -> None:
 
 CHECK = """
 from verify import schemes
-from verify.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 def test_ruth3_has_order_three():
     scheme = schemes.get("ruth3")
@@ -252,9 +256,9 @@ def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) 
 def test_the_killers_are_all_files_of_properties_and_the_battery_where_it_is() -> None:
     found = killers.killers(60)
     assert [k.name for k in found if k.stage == 1] == [killers.BATTERY] * battery.there()
-    files = {p.name for p in (ROOT / "tests" / "property").glob("test_*.py")}
+    files = {p.name for p in (ROOT / "tests" / "property").rglob("test_*.py")}
     assert {Path(k.name).name for k in found if k.stage == 2} == files
-    assert "tests/unit/test_step_map.py" in {
+    assert "tests/unit/schemes/test_step_map.py" in {
         k.name for k in killers.unit_killers("verify.schemes.step_map")
     }
 
@@ -262,7 +266,11 @@ def test_the_killers_are_all_files_of_properties_and_the_battery_where_it_is() -
 def test_what_is_near_and_cheap_is_asked_first() -> None:
     """The battery looks at all modules, and a file at those that it imports, or their package."""
     folder = ROOT / "tests" / "property"
-    files = ("test_flow.py", "test_splittings.py", "test_trees.py")
+    files = (
+        "kernels/test_reach.py",
+        "schemes/test_splitting_conditions.py",
+        "flows/test_extrapolation.py",
+    )
     made = [killers.of_file(folder / name, 2) for name in files]
     made.append(killers.Killer(killers.BATTERY, 1, lambda _: {}))
     far, near, other, battery_ = (k.name for k in made)

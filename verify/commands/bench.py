@@ -1,19 +1,21 @@
 """The command `verify bench`: error against run time of one scene."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output_bench as show_bench
 from verify.commands.input import target
 from verify.commands.output import print_json
 from verify.commands.tasks import cluster_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.scenes.results.work_precision import WorkPrecisionResult
+    from rich.table import Table
+
+    from verify.scenes.results.value import Value
+    from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
     from verify.scenes.scene import Scene
     from verify.studies.work_precision.task import WorkPrecisionTask
 
@@ -43,9 +45,9 @@ def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -
             several = len(found) > 1
             _draw(result, output.with_stem(f"{output.stem}-{name}") if several else output)
         if not as_json:
-            show_bench.print_bench(name, result)
+            _print_bench(name, result)
     if as_json:
-        print_json(show_bench.bench_json(found))
+        print_json(_bench_json(found))
 
 
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
@@ -88,3 +90,118 @@ def _draw(result: "WorkPrecisionResult", path: Path) -> None:
     except OSError as error:
         problem = error.strerror or "cannot be written"
         raise InputError("--output", str(path), problem) from None
+
+
+# -- how it is shown ------------------------------------------------------------------------------
+
+
+def _bench_json(found: "Sequence[tuple[str, WorkPrecisionResult]]") -> dict[str, Any]:
+    """`points` of all scenes, each with its scene's name, and of each scene all the rest."""
+    return {
+        "points": [
+            {"scene": name, **_point(point)}
+            for name, result in found
+            for line in result.lines
+            for point in line.points
+        ],
+        "scenes": [{"name": name, **_rest(result)} for name, result in found],
+    }
+
+
+def _point(point: "WorkPoint") -> dict[str, Any]:
+    values = {
+        "error": point.error,
+        "truncation": point.truncation,
+        "rounding": point.rounding,
+        "energy_error": point.energy,
+        "lambda": point.lam,
+        "lambda_plain": point.lam_plain,
+    }
+    rest = point.model_dump(mode="json", exclude={"energy", "lam", "lam_plain", *values})
+    return {
+        **rest,
+        **{name: value.value if value else None for name, value in values.items()},
+        "error_bound": {name: value.bound for name, value in values.items() if value},
+    }
+
+
+def _rest(result: "WorkPrecisionResult") -> dict[str, Any]:
+    data = result.model_dump(mode="json")
+    lines = [{k: v for k, v in line.items() if k != "points"} for line in data.pop("lines")]
+    return {**data, "lines": lines}
+
+
+def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(_table(name, result))
+    for line in result.lines:
+        console.print(_about(line))
+    for system in result.systems:
+        known = f"{system.certified} certified digits" if system.certified else system.reason
+        asked = f"{system.arithmetic}, {system.digits} digits"
+        console.print(f"{asked}: {known} in {_seconds(system.seconds_median)} s")
+    for each in result.comparisons:
+        console.print(each.sentence)
+    for what, why in result.left_out:
+        console.print(f"not drawn: {what} ({why})")
+    console.print(
+        f"{result.clock} on {result.machine}, {result.repeats} rounds; reference: "
+        f"{result.reference}, to within {result.reference_bound}; {result.seconds:.3g} s in all"
+    )
+
+
+def _table(name: str, result: "WorkPrecisionResult") -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    title = f"{name}: error at T = {result.time} against run time"
+    table = Table(
+        title=title,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+        collapse_padding=True,
+    )
+    for head in ("scheme", "h or tol.", "N", "error", "Λ", "seconds", "limited by"):
+        left = head in ("scheme", "limited by")
+        table.add_column(head, justify="left" if left else "right", no_wrap=not left)
+    for line in result.lines:
+        for k, point in enumerate(line.points):
+            table.add_row("" if k else line.name, *_row(point))
+        table.add_section()
+    return table
+
+
+def _row(point: "WorkPoint") -> tuple[str, ...]:
+    failed = f"failed, step {point.failed_step}" if point.failed_step else point.limited_by
+    return (
+        point.step_size or point.tolerance or "",
+        "" if point.steps is None else str(point.steps),
+        *map(_few, (point.error, point.lam)),
+        _seconds(point.seconds_median),
+        failed,
+    )
+
+
+def _about(line: "WorkLine") -> str:
+    if line.peer:
+        return f"{line.name}: made ready in {line.compile_seconds:.2g} s"
+    slopes = []
+    for of, slope in (("error", line.error_slope), ("Λ", line.lambda_slope)):
+        known = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
+        why = f" ({slope.reason})" if slope.reason else ""
+        slopes.append(f"order of {of} {known}{why}")
+    operations = f"; a step is {line.cost.text}" if line.cost else ""
+    return f"{line.name}: {'; '.join(slopes)}{operations}; compiled in {line.compile_seconds:.2g} s"
+
+
+def _few(value: "Value | None") -> str:
+    if value is None:
+        return "–"
+    return f"{float(value.value):.1e}" if float(value.value) else "0"
+
+
+def _seconds(seconds: float | None) -> str:
+    return "–" if seconds is None else f"{seconds:.2e}"

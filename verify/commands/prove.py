@@ -1,21 +1,25 @@
 """The command `verify prove`, for one Hamiltonian or for every one."""
 
+import textwrap
 import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands import output as show
-from verify.commands import output_every as show_every
 from verify.commands.input import hamiltonian_of, with_system
+from verify.commands.output import cut
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.proof.every import EveryProof
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
     from verify.schemes.scheme import Scheme
+_WIDTH = 88
 
 
 @click.command()
@@ -70,9 +74,9 @@ def prove(
 
         _write(of_every(proof), certificate)
     if as_json:
-        show.print_json(show_every.every_json(proof, seconds))
+        show.print_json(_every_json(proof, seconds))
     else:
-        show_every.print_every(proof)
+        _print_every(proof)
 
 
 def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Path | None) -> None:
@@ -108,9 +112,6 @@ def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> di
         return of_every(prove_every(scheme.name))
 
 
-# -- certificates ---------------------------------------------------------------------------------
-
-
 def _write(data: dict[str, Any], path: Path) -> None:
     import json
 
@@ -119,21 +120,51 @@ def _write(data: dict[str, Any], path: Path) -> None:
     write_atomically(path, json.dumps(data, ensure_ascii=False, indent=1) + "\n")
 
 
-@click.group()
-def certificate() -> None:
-    """Certificates of proofs: `verify prove … --certificate FILE` writes one."""
+# -- of every H -----------------------------------------------------------------------------------
 
 
-@certificate.command()
-@click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
-def check(file: Path, as_json: bool) -> None:
-    """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
-    from verify.proof.certificates.file import checked
+def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
+    return {
+        "verdict": proof.verdict.value,
+        "reason": proof.reason,
+        "hamiltonian": proof.quantifier,
+        "scheme": proof.scheme,
+        "order": proof.order,
+        "leading": proof.leading,
+        "formula": proof.formula or None,
+        "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
+        "area_preserving": proof.area_preserving,
+        "convergence_order": proof.convergence_order,
+        "telescopes": proof.telescopes,
+        "potential": proof.potential,
+        "why": proof.why,
+        "checked": list(proof.checked),
+        "conditions": [asdict(condition) for condition in proof.conditions],
+        "seconds": seconds,
+    }
 
-    accepted, said = checked(file)
-    if as_json:
-        show.print_json({"accepted": accepted, "statement" if accepted else "reason": said})
-    else:
-        click.echo(f"{'holds' if accepted else 'refused'}: {said}")
-    raise SystemExit(0 if accepted else 1)
+
+def _print_every(proof: "EveryProof") -> None:
+    click.echo(f"{proof.verdict}: {proof.reason}")
+    _line("H", proof.quantifier)
+    _line("scheme", proof.scheme)
+    if proof.order is not None:
+        _line("leading", f"h^{proof.order} · ({cut(proof.formula or proof.leading)})")
+        if proof.formula:
+            _line("", f"= h^{proof.order} · ({cut(proof.leading)})")
+    if proof.telescopes:
+        _line("G", f"{cut(proof.potential or '')}, the leading coefficient is X·G")
+    if proof.telescopes is not None:
+        _line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
+    _line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
+    for identity in proof.checked:
+        _line("checked", identity)
+    for condition in proof.conditions:
+        found = "holds" if condition.holds else f"residue {condition.residue}"
+        _line("condition", f"{condition.name}: {found}")
+
+
+def _line(name: str, text: str) -> None:
+    indent = " " * 13
+    first = f"  {name:11}"
+    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=indent))

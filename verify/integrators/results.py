@@ -4,6 +4,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from verify.proof.order_proof import Proof
+from verify.proof.potential import Potential, potential_of
+from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
 MOST_CLAIMED = 12
@@ -104,3 +106,22 @@ def broken(claims: Claims, found: Finding) -> list[tuple[str, bool | None, str]]
             holds = found.order >= claims.area_order
         judged.append((f"ΔJ = O(h^{claims.area_order})", holds, area))
     return [claim for claim in judged if claim[1] is not True]
+
+
+def potential_of_finding(found: Finding) -> Potential:
+    """As of a scheme that is known by its proof alone."""
+    proof = found.proof
+    if proof is None:
+        if found.area_preserving and found.how == "proof":
+            return Potential(True, "ΔJ ≡ 0")
+        return Potential(None, "the leading coefficient is not proved")
+    alone = Scheme(
+        name="step",
+        order=1,
+        area_preserving=False,
+        explicit=False,
+        symmetric=False,
+        source="the user's function",
+        build=lambda _: proof.step_map,
+    )
+    return potential_of(proof, alone)

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
+from verify.algebra.ring import Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.increments import increments
 from verify.kernels.program import Evaluator, Program
-from verify.kernels.scaling import divided, lowest_power
 from verify.kernels.tangent_map import Tangent
 from verify.schemes import get
-from verify.schemes.step_map import StepMap, Substep
+from verify.schemes.step_map import StepMap, Substep, h_inside
 
 _STATE = ("p", "q")
 
@@ -158,3 +158,19 @@ def _product(program: Program, x: Sequence[int], y: Sequence[int]) -> list[int]:
     """The 2 × 2 matrix product x y, row by row."""
     add, mul = program.add, program.mul
     return [add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])) for i in (0, 1) for j in (0, 1)]
+
+
+def lowest_power(step: Substep) -> int:
+    """The greatest r for which h^r divides ΔJ; 0 where h stands inside a function."""
+    if h_inside(step.ring, step.p_next, step.q_next):
+        return 0
+    return min(step.ring.powers(step.delta_j, "h"))
+
+
+def divided(step: Substep, power: int) -> Poly:
+    """ΔJ / h^power, where that divides it."""
+    if power == 0:
+        return step.delta_j
+    h = step.ring.variable("h")
+    parts = step.ring.powers(step.delta_j, "h")
+    return sum((h ** (n - power) * x for n, x in parts.items()), step.ring.zero)

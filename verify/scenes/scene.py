@@ -38,7 +38,7 @@
     step_size = 0.01
     steps = [5000, 20000]
 
-    [[reference]]                          # numbers to test against; see verify.scenes.reference_sections
+    [[reference]]                          # numbers to test against; see verify.scenes.sections
     step_sizes = [0.01]
     initial_values = [{ q = 1.5, p = 0 }]
     steps = [0, 1, 10, 100]
@@ -61,9 +61,8 @@ from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
-from verify.scenes.reference_sections import Reference
 from verify.scenes.region_sections import Flow
-from verify.scenes.sections import WorkPrecision
+from verify.scenes.sections import Reference, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
 from verify.scenes.values import (
     CLOSED_FORM,

@@ -31,12 +31,12 @@ FIXED, LIKE, TRUE = fixed.at_bits(128 - FRACTION_OF), mpfr.at_bits(112), mpfr.at
 
 
 def check_job(kernel_run: KernelRun) -> Outcome:
-    """The job in fixed: what finishes agrees with mpfr, within the bounds that are certified.
+    """The run in fixed: what finishes agrees with mpfr, within the bounds that are certified.
 
     Where there is no certificate it is about as near as mpfr is in as many bits.
     """
     found = kernel_run.go(FIXED, tangent=True)
-    where = f"{run.generic}, {run.parameters}, {run.scheme}, {run.start}, {run.steps} steps"
+    where = f"{kernel_run.generic}, {kernel_run.parameters}, {kernel_run.scheme}, {kernel_run.start}, {kernel_run.steps} steps"
     if found.done < kernel_run.steps:
         assert found.reason, where
         return found

@@ -14,7 +14,7 @@ from tests.helpers.random_formulas import H, P, Q, plain, rationals
 from verify.algebra.jets import Jets, Series
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.counterexample import counterexample
+from verify.proof.every import counterexample
 from verify.proof.order import prove
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import StageEquations, TaylorSeries

@@ -15,8 +15,7 @@ from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.counterexample import counterexample
-from verify.proof.every import prove_every
+from verify.proof.every import counterexample, prove_every
 from verify.proof.order import prove
 from verify.schemes import get, names
 from verify.schemes.every_hamiltonian import RungeKutta, Stage, StageEquations, TaylorSeries

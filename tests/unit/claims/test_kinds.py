@@ -8,7 +8,6 @@ at rational points (or sympy expands in h, where a claim holds up to a power of 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +15,7 @@ import sympy
 
 from tests.helpers.mutation import mutants
 from tests.helpers.random_formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
+from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
 from verify.claims.judge import check_claims
@@ -28,7 +28,7 @@ from verify.scenes.scene import Scene, load_scene
 from verify.studies.plan import plan_scenes
 from verify.verdict import Verdict
 
-PAPER = Path(__file__).parents[2] / "reports" / "paper"
+PAPER = ROOT / "reports" / "paper"
 CLAIMS: dict[str, Any] = {claim.id: claim for claim in load_claims(PAPER / "claims.toml").claims}
 EQUATIONS = {
     id_: claim for id_, claim in CLAIMS.items() if id_.startswith("eq-") and claim.kind != "theorem"

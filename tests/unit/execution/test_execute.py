@@ -3,20 +3,22 @@
 import contextlib
 import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.end_to_end.test_report_command import ended
+from tests.paths import ROOT
 from tests.unit.scenes.test_scene import DUFFING, GRID, SERIES, load
+from verify import content as shipped
 from verify.errors import InputError
 from verify.execution import execute as execution
-from verify.execution import keeping
 from verify.execution.execute import Store, execute
 from verify.execution.executors import HERE, Where
 from verify.execution.keeping import fingerprint, write_atomically
@@ -163,35 +165,75 @@ def test_an_interruption_keeps_what_was_finished(
 # -- the source is part of a result's name --------------------------------------------------------
 
 
+@pytest.fixture
+def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A copy of the package and of its content, of which the fingerprint is then made."""
+    root = tmp_path / "copy"
+    for folder in ("verify", "reports", "reference"):
+        shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(shipped, "_package", lambda: root / "verify")
+    fingerprint.cache_clear()
+    yield root
+    monkeypatch.undo()
+    fingerprint.cache_clear()
+
+
+def fresh() -> str:
+    fingerprint.cache_clear()
+    return fingerprint()
+
+
+def one_file_of_each_room() -> list[str]:
+    """Of each folder of the package, whatever kind of file, and of each folder of the content."""
+    files: dict[Path, Path] = {}
+    for folder in ("verify", "reports", "reference"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.is_file() and "__pycache__" not in path.parts:
+                files.setdefault(path.parent, path)
+    return [str(path.relative_to(ROOT)) for path in files.values()]
+
+
+def test_the_fingerprint_covers_every_room_and_all_data(copy: Path) -> None:
+    first = fresh()
+    assert first == fresh(), "the same code has the same name"
+    names = one_file_of_each_room()
+    assert len({Path(name).parts[1] for name in names if name.startswith("verify/")}) >= 18
+    seen = {first}
+    for name in names:
+        raw = (copy / name).read_bytes()
+        (copy / name).write_bytes(raw + b" ")
+        seen.add(fresh())
+        (copy / name).write_bytes(raw)
+    assert len(seen) == len(names) + 1, "each change gives another name"
+    assert fresh() == first
+    (copy / "verify" / "algebra" / "new.py").touch()
+    assert fresh() not in seen, "and so does a file that is new"
+
+
+def test_a_wheel_and_its_checkout_have_one_fingerprint(copy: Path) -> None:
+    checkout = fresh()
+    for folder in ("reports", "reference"):
+        shutil.move(copy / folder, copy / "verify" / "data" / folder)
+    assert fresh() == checkout
+
+
+def test_what_python_writes_itself_does_not_count(copy: Path) -> None:
+    first = fresh()
+    (copy / "verify" / "algebra" / "__pycache__").mkdir()
+    (copy / "verify" / "algebra" / "__pycache__" / "ring.pyc").write_bytes(b"compiled")
+    assert fresh() == first
+
+
 def test_another_source_does_not_take_up_the_results_of_this_one(
-    tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, plan: Plan, copy: Path
 ) -> None:
-    source = tmp_path / "verify"
-    (source / "schemes").mkdir(parents=True)
-    (source / "keeping.py").write_text("one = 1\n")
-    (source / "schemes" / "lie.py").write_text("two = 2\n")
-    monkeypatch.setattr(keeping, "__file__", str(source / "keeping.py"))
-
-    def fresh() -> str:
-        fingerprint.cache_clear()
-        return fingerprint()
-
-    try:
-        first = fresh()
-        assert fresh() == first
-        (source / "schemes" / "lie.py").write_text("two = 3\n")
-        second = fresh()
-        assert second != first
-        (source / "schemes" / "new.py").write_text("\n")
-        assert fresh() not in (first, second)
-        store = kept_in(tmp_path)
-        execute(plan, store, where=HERE)
-        (source / "schemes" / "lie.py").write_text("two = 4\n")
-        fresh()
-        assert all(store.get(name, task) is None for name, task in plan.tasks.items())
-    finally:
-        monkeypatch.undo()
-        fingerprint.cache_clear()
+    store = kept_in(tmp_path)
+    execute(plan, store, where=HERE)
+    assert all(store.get(name, task) is not None for name, task in plan.tasks.items())
+    path = copy / "verify" / "schemes" / "methods" / "taylor" / "lie.py"
+    path.write_text(path.read_text() + "\n")
+    fresh()
+    assert all(store.get(name, task) is None for name, task in plan.tasks.items())
 
 
 # -- atomic writes --------------------------------------------------------------------------------
@@ -269,10 +311,10 @@ def test_bad_input_found_by_a_worker_is_still_an_input_error(workers: int) -> No
 INTERRUPTED = """
 import sys, time
 from fractions import Fraction
-from verify.execute import Store, execute
-from verify.executors import Where
-from verify.planned import Plan
-from verify.tasks import RunTask
+from verify.execution.execute import Store, execute
+from verify.execution.executors import Where
+from verify.execution.plan import Plan
+from verify.runs.task import RunTask
 
 def stop(name, result):
     raise KeyboardInterrupt

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.worker_functions import killed, killed_once, loaded, process, square, wrong
+from tests.paths import ROOT
 from verify.errors import InputError, PlaceError
 from verify.execution.executors import ANYWHERE, HERE, Call, Where, opened, performed, there
 from verify.execution.keeping import fingerprint
@@ -76,7 +77,8 @@ def test_without_distributed_the_error_names_the_extra(monkeypatch: pytest.Monke
 
 def test_distributed_is_imported_for_a_cluster_only() -> None:
     code = (
-        "import sys; from verify.execution.executors import *; from verify import cluster, execute, cli\n"
+        "import sys; from verify.execution.executors import *; from verify.commands import main\n"
+        "from verify.execution import cluster, execute\n"
         "from tests.helpers.worker_functions import square\n"
         "if __name__ == '__main__':\n"
         "    for n in (1, 2):\n"
@@ -84,7 +86,7 @@ def test_distributed_is_imported_for_a_cluster_only() -> None:
         "            assert list(performed(place, [Call('a', square, (3,))])) == [('a', 9)]\n"
         "    assert not {'distributed', 'dask', 'tornado'} & set(sys.modules)\n"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
 
 
 # -- results --------------------------------------------------------------------------------------
@@ -209,7 +211,7 @@ def test_workers_are_forked_beside_this_process_from_one_that_has_imported_what_
 def test_workers_end_when_their_parent_is_killed() -> None:
     """It cannot end them then; nor would they see by themselves that no more calls come."""
     parent = subprocess.Popen(
-        [sys.executable, "-c", _HAS_WORKERS], stdout=subprocess.PIPE, text=True, cwd=_ROOT
+        [sys.executable, "-c", _HAS_WORKERS], stdout=subprocess.PIPE, text=True, cwd=ROOT
     )
     with parent:
         assert parent.stdout is not None
@@ -222,11 +224,10 @@ def test_workers_end_when_their_parent_is_killed() -> None:
         time.sleep(0.1)
 
 
-_ROOT = Path(__file__).parents[2]
 _HAS_WORKERS = """
 import time
-from tests.unit.sent import process
-from verify.executors import Call, Where, opened, performed
+from tests.helpers.worker_functions import process
+from verify.execution.executors import Call, Where, opened, performed
 
 if __name__ == "__main__":
     with opened(Where(2)) as place:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.paths import ROOT
 from verify.execution.processes import safe_path
 
 PLANTED = sorted(
@@ -27,11 +28,11 @@ initial_values = [{ q = 1, p = 0 }]
 LOG = "executed.log"
 ENTRY = """
 import contextlib, multiprocessing
-from verify import processes
-from verify.executors import Call, Where, opened, performed
-from tests.unit.sent import square
+from verify.execution import processes
+from verify.execution.executors import Call, Where, opened, performed
+from tests.helpers.worker_functions import square
 if {method!r} == "spawn":
-    processes._forked_beside_this = lambda: multiprocessing.get_context("spawn")
+    processes._forked_beside_this = lambda _: multiprocessing.get_context("spawn")
 if {unsafe}:
     processes.safe_path = contextlib.nullcontext
 if __name__ == "__main__":
@@ -63,7 +64,7 @@ def call(folder: Path, entry: Path, code: str) -> tuple[int, str]:
     entry.write_text(code)
     done = subprocess.run(
         [sys.executable, str(entry)], cwd=folder, capture_output=True, text=True, check=False,
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     return done.returncode, done.stderr
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.paths import ROOT
 from tests.unit.exploration.test_explore import exploration
 from verify.claims.file import load_claims
 from verify.errors import InputError
@@ -18,7 +19,7 @@ from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import drawn_scene
 from verify.scenes.scene import load_scene, scene_from
 
-PAPER = Path(__file__).parents[2] / "reports" / "paper"
+PAPER = ROOT / "reports" / "paper"
 
 CLAIMS = """
 [defaults]

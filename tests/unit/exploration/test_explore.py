@@ -26,6 +26,16 @@ def exploration(**changes: object) -> Exploration:
     return Exploration(**(given | changes))  # type: ignore[arg-type]
 
 
+def plant(monkeypatch: pytest.MonkeyPatch, planted: Property) -> None:
+    """The property is in the catalogue under its name."""
+    others = properties.get
+
+    def get(name: str) -> Property:
+        return planted if name == planted.name else others(name)
+
+    monkeypatch.setattr(properties, "get", get)
+
+
 @pytest.fixture
 def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A property with a planted falsehood: no H has q³ in it."""
@@ -36,7 +46,7 @@ def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
         return True
 
     made = Property("no-cubes", "No H has q³ in it, which is wrong.", holds)
-    monkeypatch.setitem(properties._all(), "no-cubes", made)
+    plant(monkeypatch, made)
 
 
 # -- scenes ---------------------------------------------------------------------------------------
@@ -109,7 +119,7 @@ def test_found_scenes_are_looked_at_again(tmp_path: Path, monkeypatch: pytest.Mo
     report = explore(asked, Store(None), where=HERE, earlier=found_earlier(tmp_path))
     assert [again.message for again in report.again] == ["it has q**3"]
     mended = Property("no-cubes", "Now anything goes with it.", lambda _: True)
-    monkeypatch.setitem(properties._all(), "no-cubes", mended)
+    plant(monkeypatch, mended)
     report = explore(asked, Store(None), where=HERE, earlier=found_earlier(tmp_path))
     assert [again.message for again in report.again] == [""]
 
@@ -119,7 +129,7 @@ def test_an_exception_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
         raise ZeroDivisionError("by\nzero")
 
     made = Property("raises", "It divides by zero in every scene.", holds)
-    monkeypatch.setitem(properties._all(), "raises", made)
+    plant(monkeypatch, made)
     report = explore(exploration(properties=("raises",), examples=2), Store(None), where=HERE)
     assert report.properties[0].failures == 2
     assert report.failures[0].message == "raised ZeroDivisionError: by zero"

@@ -13,14 +13,16 @@ from verify import strategies
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import HERE, Where
-from verify.exploration import hunting
-from verify.exploration.hunting import Hunt, by_shape, hunt, scene_of, search
+from verify.execution.keeping import NOTHING
+from verify.exploration import hunting, island_search
+from verify.exploration.hunting import Hunt, hunt
+from verify.exploration.island_search import by_shape, scene_of
 from verify.exploration.measures import MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
 from verify.exploration.sample import Example
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.tasks import HuntTask
-from verify.scenes.results.exploration import Worst
+from verify.scenes.results.exploration import HuntResult, Worst
 
 POLYNOMIAL = SampleSpace(kinds=("polynomial",), degree=4)
 
@@ -46,6 +48,10 @@ def plant(monkeypatch: pytest.MonkeyPatch) -> Plant:
     return planted
 
 
+def search(task: HuntTask) -> HuntResult:
+    return task.perform(NOTHING)
+
+
 def near(q: str, p: str) -> Callable[[Example], float]:
     """By far the greatest at one initial value, and ever greater towards it."""
 
@@ -68,7 +74,7 @@ def test_without_the_local_search_it_is_not_found(
     plant: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plant(near("1.37", "-0.74"))
-    monkeypatch.setattr(hunting, "_refined", lambda _: None)
+    monkeypatch.setattr(island_search, "_refined", lambda _: None)
     assert search(task()).worst[0].value < 2
 
 
@@ -126,17 +132,17 @@ def test_all_scenes_that_are_looked_at_are_within_the_bounds(plant: Plant) -> No
     seen: list[Example] = []
     plant(lambda example: seen.append(example) or float(sum(map(abs, example.start.values()))))  # type: ignore[func-returns-value]
     search(task())
-    least, most = hunting.STEP_SIZES
+    least, most = island_search.STEP_SIZES
     assert len(seen) > 150
-    assert all(max(abs(x.q), abs(x.p)) <= hunting.REACH for x in seen)
+    assert all(max(abs(x.q), abs(x.p)) <= island_search.REACH for x in seen)
     assert all(least <= x.step_size <= most for x in seen)
     reached = {abs(x.q) for x in seen} & {abs(x.p) for x in seen}
-    assert hunting.REACH in reached, "the bounds themselves are looked at"
+    assert island_search.REACH in reached, "the bounds themselves are looked at"
 
 
 def test_neighbours_keep_to_the_bounds_of_coefficients() -> None:
     start = scene_of(Worst(value=0.0, scene=_text("7*p**2 + q**2/7 + q/(2*p**2 + 2)")))
-    bounds = {"reach": Fraction(2), "steps": hunting.STEP_SIZES}
+    bounds = {"reach": Fraction(2), "steps": island_search.STEP_SIZES}
     kept = list(neighbours(start, **bounds, coefficients=(Fraction(1, 7), Fraction(7))))
     wide = list(neighbours(start, **bounds, coefficients=(Fraction(1, 99), Fraction(99))))
     assert "14*p**2" not in " ".join(str(x.hamiltonian) for x in kept)

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.unit.kernels.test_program import STATE, VARIABLES, Polynomial, polynomials, program_of
 from verify import arithmetic
-from verify.algebra.enclosure import enclose_all
-from verify.algebra.enclosures import Enclosures
+from verify.algebra.enclosure import Enclosures, enclose_all
 from verify.algebra.ring import Poly
 from verify.arithmetic.balls import rational_ball
 from verify.arithmetic.flint_precision import working_precision

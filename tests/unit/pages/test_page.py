@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
-import reports
 from tests.helpers.imported_modules import imported_by
 from verify.claims.kinds import Claim, MonotoneClaim, TableClaim
 from verify.claims.report import make_report
 from verify.execution.execute import Store
 from verify.execution.executors import HERE
+from verify.pages.environment import TEMPLATES
 from verify.pages.page import render, write
 from verify.pages.text.typography import number
 from verify.scenes.results.claim import ClaimResult
@@ -29,7 +29,7 @@ from verify.scenes.scene import scene_from
 from verify.verdict import Verdict
 
 EVIL = '<script>alert("x")</script>'
-SCRIPT = (Path(reports.__file__).parent / "templates" / "page.js").read_text(encoding="utf-8")
+SCRIPT = (TEMPLATES / "page.js").read_text(encoding="utf-8")
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 
 # -- small reports --------------------------------------------------------------------------------

@@ -6,10 +6,8 @@ were computed elsewhere. Random orbits are in `tests/property/test_certificate.p
 `test_certificate_controls.py`.
 """
 
-import json
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -23,13 +21,14 @@ from tests.helpers.exact_orbits import (
     enclosed_finely,
     exact,
 )
+from tests.paths import vectors
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import ball, fixed, mpfr, mpmath
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import certify, certify_at
 
-VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
+VECTORS = vectors()
 DUFFING, PENDULUM = "p**2/2 + q**2/2 + delta*q**4/4", "p**2/2 - cos(q)"
 SYSTEMS = [fixed.at_bits(112), mpfr.at_bits(24), mpfr.at_bits(120), mpmath.at_bits(60)]
 systems = pytest.mark.parametrize("arithmetic", SYSTEMS, ids=lambda a: f"{a.name}-{a.bits}")

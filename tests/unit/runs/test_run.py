@@ -4,11 +4,9 @@
 with `verify`. See test_runs_range.py for orbits that escape, series, memory and compilation.
 """
 
-import json
 import random
 import sys
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import gmpy2
@@ -17,6 +15,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.paths import vectors
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
@@ -26,7 +25,7 @@ from verify.runs.run import run
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import CLOSED_FORM, REPORTED
 
-VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
+VECTORS = vectors()
 VALUES = ("lambda", "mse", "delta_j_max", "q", "p")
 vectors = pytest.mark.parametrize("case", VECTORS, ids=["duffing-lie2", "pendulum", "duffing-lie3"])
 

@@ -7,15 +7,17 @@ import pytest
 from pydantic import ValidationError
 
 from tests.helpers.constructed_galleries import gallery, shown
+from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.report import make_report
 from verify.errors import InputError
 from verify.execution import execute
 from verify.execution.executors import HERE
 from verify.scenes.frozen import Frozen
-from verify.scenes.results import core as results
+from verify.scenes.results import claim, growth, proof, separation, value
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
+from verify.scenes.results import run as run_results
 from verify.scenes.results import stability as stability_results
 from verify.scenes.results import work_precision as work_precision_results
 from verify.scenes.results.exploration import GalleryScene
@@ -25,7 +27,7 @@ from verify.scenes.results.work_precision import RatioResult
 from verify.scenes.scene import Scene, load_scene
 from verify.scenes.values import MAX_STEPS
 
-PAPER = Path(__file__).parents[2] / "reports" / "paper"
+PAPER = ROOT / "reports" / "paper"
 H = "p**2/2 + q**4/4"
 HEAD = f'hamiltonian = "{H}"\nschemes = ["lie2"]\n'
 START = "initial_values = [{ q = 1.5, p = 0 }]"
@@ -160,7 +162,18 @@ def test_the_steps_are_the_whole_ones_that_fit_into_the_time(tmp_path: Path) -> 
 
 # -- JSON -----------------------------------------------------------------------------------------
 
-RESULTS = (results, scene_results, stability_results, work_precision_results, flow_results)
+RESULTS = (
+    claim,
+    growth,
+    proof,
+    separation,
+    value,
+    run_results,
+    scene_results,
+    stability_results,
+    work_precision_results,
+    flow_results,
+)
 FULL = """
 title = "Two <schemes> & δ"
 system = "duffing"

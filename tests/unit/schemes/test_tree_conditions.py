@@ -16,8 +16,7 @@ from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every
-from verify.proof.counterexample import counterexample
-from verify.proof.every import EveryProof, prove_every
+from verify.proof.every import EveryProof, counterexample, prove_every
 from verify.proof.order import convergence_of, prove
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.implicit_tableau import ImplicitTableau

@@ -8,7 +8,7 @@ import mpmath
 import pytest
 
 from tests.helpers.constructed_runs import STEP_SIZES, Given, made_proof, made_run
-from verify.execution.perform import perform
+from verify.execution.execute import perform
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
 from verify.studies.criteria import judge, measured_slopes

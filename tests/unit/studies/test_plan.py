@@ -3,15 +3,13 @@
 import time
 from fractions import Fraction
 from pathlib import Path
-from typing import get_args
 
 import pytest
 
 from tests.unit.scenes.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
-from verify.execution.perform import KINDS, perform
+from verify.execution.execute import perform
 from verify.execution.plan import Plan
-from verify.execution.task import Task
 from verify.reference.make.scene_plan import plan_references
 from verify.runs.task import RunTask
 from verify.scenes.results.proof import ProofResult
@@ -101,11 +99,6 @@ def test_the_plan_of_the_paper_has_the_grids_and_says_why_of_each_task() -> None
 def test_a_grid_over_parameter_values_needs_one_task_for_each(tmp_path: Path) -> None:
     scenes = [load(tmp_path, DUFFING + f"parameters = {{ delta = {d} }}\n" + GRID) for d in (1, 2)]
     assert len(runs_of(plan_scenes(scenes))) == 2
-
-
-def test_every_kind_of_task_has_its_way_to_be_done() -> None:
-    kinds = {model.model_fields["kind"].default for model in get_args(Task)}
-    assert kinds == set(KINDS)
 
 
 def test_a_plan_of_many_tasks_is_made_quickly(tmp_path: Path) -> None:

@@ -15,9 +15,9 @@ from verify.integrators.others.tableau import (
     Symplecticity,
     TableauOrder,
     order_of,
+    repair,
     symplecticity,
 )
-from verify.integrators.others.tableau_repair import repair
 from verify.integrators.results import Finding
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict

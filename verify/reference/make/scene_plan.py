@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 from verify.execution.plan import Plan
 from verify.reference.make.tasks import OrbitTask, SolutionTask
-from verify.scenes.reference_sections import Reference
 from verify.scenes.scene import Scene
+from verify.scenes.sections import Reference
 from verify.studies.plan import proof_task
 from verify.studies.proofs.one import ProofTask
 

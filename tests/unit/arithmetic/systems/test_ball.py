@@ -5,11 +5,9 @@ more digits than the orbit can lose.
 """
 
 import dataclasses
-import json
 import math
 from fractions import Fraction
 from itertools import islice
-from pathlib import Path
 from typing import Any
 
 import flint
@@ -18,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.paths import vectors
 from tests.unit.runs.test_run_range import duffing_steps
 from verify import arithmetic
 from verify.arithmetic.balls import middle_and_radius
@@ -30,7 +29,7 @@ from verify.runs.run import run
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import CLOSED_FORM, REPORTED
 
-VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
+VECTORS = vectors()
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 VALUES = (*REPORTED, "q", "p")

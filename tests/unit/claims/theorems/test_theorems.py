@@ -1,14 +1,13 @@
 """The paper's theorems: their verdicts, and that no wrong counterexample or identity passes."""
 
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
 import sympy
 
-import verify
 from tests.helpers.theorem_controls import refused
+from tests.paths import ROOT
 from verify.claims.theorems import (
     check_theorem,
     convergence,
@@ -31,7 +30,7 @@ from verify.schemes import get
 from verify.verdict import Verdict
 
 PROVED, REFUTED, UNDECIDED = Verdict.PROVED, Verdict.REFUTED, Verdict.UNDECIDED
-TOML = Path(verify.__file__).parents[1] / "reports" / "paper" / "claims.toml"
+TOML = ROOT / "reports" / "paper" / "claims.toml"
 VERDICTS = {
     "lie-exponential": PROVED,
     "eq-3": REFUTED,

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.paths import ROOT
 from verify.integrators.others import libraries as others
 from verify.integrators.others import report as integrators_report
 from verify.integrators.others.claims import claims_of
@@ -132,7 +133,7 @@ def test_a_table_of_ours_that_fails_ends_the_report(monkeypatch: pytest.MonkeyPa
 
 
 def test_the_extra_peers_installs_every_library() -> None:
-    text = (Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8")
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     peers = tomllib.loads(text)["project"]["optional-dependencies"]["peers"]
     names = {entry.partition(">")[0] for entry in peers}
     assert {others.get(name).LIBRARY for name in LIBRARIES} <= names

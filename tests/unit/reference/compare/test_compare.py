@@ -240,7 +240,7 @@ def test_another_reading_of_an_area_error_is_named(ours: Ours, tmp_path: Path, n
 
 def test_every_mistake_has_its_table(ours: Ours) -> None:
     run = next(x for x in ours.scene("duffing") if x.run.scheme == "lie2" and x.run.p == "1.5")
-    names = {x.name for x in of_states(Setting(run.case, Points({})))}
+    names = {x.name for x in of_states(Setting(run.orbit, Points({})))}
     assert {n for n in names if not n.startswith("scheme ")} == {
         n for n in MISTAKES if not n.startswith("scheme ") and n not in ("double-h", "single")
     }

@@ -79,15 +79,15 @@ def test_what_is_not_finite_early_or_wrong_and_finite_differs(tmp_path: Path) ->
 def test_a_determinant_may_overflow_where_the_state_does_not() -> None:
     run = run_of("stiff-duffing", "symplectic-euler", 1e-5, 1.0)
     known = {n: (Fraction(getattr(run.rows[5], n).value), Fraction(0)) for n in ("p", "q")}
-    assert may_overflow(run.case, 5, known)
+    assert may_overflow(run.orbit, 5, known)
     small = {n: (Fraction(getattr(run.rows[1], n).value), Fraction(0)) for n in ("p", "q")}
-    assert not may_overflow(run.case, 1, small)
+    assert not may_overflow(run.orbit, 1, small)
 
 
 def test_a_large_angle_scatters_p_as_much_as_doubles_do() -> None:
     """q = 10⁸ is known to 10⁻⁸ in doubles, and so is the force after one step; h = 0.01."""
     run = run_of("extreme-pendulum-top", "lie2", 0.01, 1e8)
-    spreads = Scatter([run.case]).at(0, 100)
+    spreads = Scatter([run.orbit]).at(0, 100)
     assert spreads is not None
     assert spreads["p"].worst > 1e7
 

@@ -22,6 +22,6 @@ def test_a_number_of_very_many_digits_is_refused(tmp_path: Path, part: str) -> N
 
 
 def test_a_mistake_is_not_run_for_very_many_steps() -> None:
-    case = next(load(PUBLISHED, "extreme-zero").runs()).case
+    case = next(load(PUBLISHED, "extreme-zero").runs()).orbit
     assert Points({}).at(case, 10**30, 30) is None
     assert Points({}).at(case, 10, 30) is not None

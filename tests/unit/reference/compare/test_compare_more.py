@@ -50,7 +50,7 @@ def test_a_leapfrogs_half_step_is_named(
 
 
 def test_a_half_step_of_position_verlet_is_of_q(ours: Ours) -> None:
-    case = next(x for x in ours.scene("duffing") if x.run.scheme == "stormer-verlet").case
+    case = next(x for x in ours.scene("duffing") if x.run.scheme == "stormer-verlet").orbit
     found = of_states(Setting(replace(case, scheme="position-verlet"), Points({})))
     assert {x.name for x in found if x.name.startswith("half-q")} == {
         "half-q-ahead",

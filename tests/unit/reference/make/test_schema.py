@@ -2,16 +2,15 @@
 
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-import reference
+from verify.content import content
 from verify.reference.make.make import PUBLISHED
 from verify.reference.make.writing import MANIFEST, SCHEMAS, schema_text
 
-FOLDER = Path(reference.__file__).parent
+FOLDER = content("reference")
 every_schema = pytest.mark.parametrize("name", SCHEMAS)
 
 

@@ -1,7 +1,5 @@
 """The schemes: found by themselves, and every claim they make held against a proof."""
 
-import importlib
-import pkgutil
 from fractions import Fraction
 
 import pytest
@@ -18,7 +16,7 @@ from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict
 
-FILES = sorted(m.name for m in pkgutil.iter_modules(schemes.__path__))
+FILES = schemes._FILES
 NAMES = schemes.names()
 SYSTEMS = sorted(systems.all_systems())
 NONLINEAR = "p**2/2 - cos(q)"  # a linear problem may flatter an order
@@ -33,9 +31,9 @@ def proof_of(scheme_name: str, hamiltonian: Hamiltonian) -> Proof:
 # -- discovery --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize("file", FILES.names)
 def test_each_file_answers_to_its_names_and_to_no_other(file: str) -> None:
-    module = importlib.import_module(f"verify.schemes.{file}")
+    module = FILES.module(file)
     answered = [name for name in (*NAMES, *USERS_OWN) if module.make(name) is not None]
     assert answered, "an orphan: no name reaches this file"
     assert [name for name in answered if name not in USERS_OWN] == list(module.EXAMPLES)

@@ -9,12 +9,11 @@ import pytest
 from tests.helpers.known_areas import linear_determinant
 from tests.unit.scenes.test_scene import load
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.execution.keeping import NOTHING
 from verify.scenes.region_sections import ShapeGiven
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.studies.regions import carry as module
 from verify.studies.regions import mean_lambda as region_mean
-from verify.studies.regions.carry import carry
 from verify.studies.regions.findings import flow_json, flows_of
 from verify.studies.regions.hausdorff import Distance
 from verify.studies.regions.plan import plan_flows
@@ -43,8 +42,7 @@ def task(scheme: str = "lie2", h: Any = "0.1", steps: int = 10, **more: Any) -> 
 
 
 def carried(**more: Any) -> FlowImage:
-    asked = task(**more)
-    return carry(Hamiltonian.parse(asked.hamiltonian), asked)
+    return task(**more).perform(NOTHING)
 
 
 # -- a scene's section ----------------------------------------------------------------------------
@@ -148,7 +146,7 @@ def test_every_printed_number_carries_the_rounding_of_its_text() -> None:
 def test_numbers_are_decimal_strings_and_survive_json(tmp_path: Path) -> None:
     scene = load(tmp_path, HEAD + FLOW)
     plan = plan_flows([scene])
-    results = {n: carry(Hamiltonian.parse(DUFFING), t) for n, t in plan.tasks.items()
+    results = {n: t.perform(NOTHING) for n, t in plan.tasks.items()
                if isinstance(t, FlowTask)}  # fmt: skip
     (found,) = flows_of(scene, results)
     assert FlowResult.model_validate_json(found.model_dump_json()) == found

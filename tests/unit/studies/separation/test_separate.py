@@ -1,15 +1,14 @@
 """Truncation and rounding of Λ: bits of the real kernel, planted errors, what is exactly zero."""
 
-import json
 import math
 import re
 from collections.abc import Callable
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.paths import vectors
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -21,7 +20,7 @@ from verify.studies.separation.kernel import WORKING, mixed_kernel
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import WorkingRun, rounded_inputs
 
-VECTORS = json.loads((Path(__file__).parents[1] / "data" / "vectors.json").read_text())["cases"]
+VECTORS = vectors()
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 HARMONIC = Hamiltonian.parse("p**2/2 + omega**2*q**2/2", {"omega": "7/3"})

@@ -12,7 +12,7 @@ import pytest
 from verify import schemes
 from verify.arithmetic.balls import slope
 from verify.errors import InputError
-from verify.execution.perform import perform
+from verify.execution.execute import perform
 from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
+from tests.paths import ROOT
 from tests.unit.scenes.test_scene import DUFFING, GRID, HEAD, load
 from verify.commands import main as cli
 from verify.errors import InputError
@@ -124,7 +125,7 @@ def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
         f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), where=HERE);"
         "assert not {'scipy.integrate', 'heyoka', 'matplotlib'} & set(sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
 
 
 def test_the_plan_tells_what_is_timed(tmp_path: Path) -> None:

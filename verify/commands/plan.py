@@ -1,14 +1,35 @@
-"""A plan on the terminal: what would be computed, why, and what is left out."""
+"""The command `verify plan`: what a scene needs computed, what is left out, and why."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import click
 
-Task = Mapping[str, Any]
+from verify.commands import output as show
+from verify.commands.input import target
+
+Task = Mapping[str, Any]  # as JSON has it
 
 
-def print_plan(planned: dict[str, Any]) -> None:
+@click.command()
+@click.argument("scene", metavar="SCENE")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+def plan(scene: str, as_json: bool) -> None:
+    """Show what SCENE needs computed, what is left out, and why.
+
+    SCENE is a TOML file, `paper`, `stiff` or `extreme`.
+    """
+    from verify.studies.plan import plan_scenes
+
+    _, scenes, _ = target(scene)
+    planned = plan_scenes(scenes).as_json()
+    if as_json:
+        show.print_json(planned)
+    else:
+        _print(planned)
+
+
+def _print(planned: dict[str, Any]) -> None:
     click.echo(f"{len(planned['tasks'])} tasks")
     for task in planned["tasks"]:
         click.echo(f"  {_LINES[task['kind']](task)} ({'; '.join(task['reasons'])})")

@@ -97,7 +97,7 @@ def check_integrator(
 
 def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> dict[str, Any]:
     from verify.arithmetic.exact import text
-    from verify.integrators.potential import potential_of_finding
+    from verify.integrators.results import potential_of_finding
 
     potential = potential_of_finding(found)
     witness = found.proof.witness if found.proof else {}
@@ -134,7 +134,7 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
 
 
 def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
-    from verify.integrators.potential import potential_of_finding
+    from verify.integrators.results import potential_of_finding
 
     if found.proof is not None and found.counterexample is None:
         show.print_proof(exact, target, found.proof, potential_of_finding(found))

@@ -1,0 +1,77 @@
+"""The command `verify run`: N steps, each number with its error bound."""
+
+from pathlib import Path
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import hamiltonian_of, with_system, writable
+
+
+@click.command()
+@with_system
+@click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
+@click.option("--steps", required=True, type=int, metavar="N", help="At least 1.")
+@click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
+@click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
+@click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
+@click.option(
+    "--arithmetic",
+    help="float64; auto, the fastest that certifies the digits; fixed (compiled), mpfr, mpmath or "
+    "ball. Without it: float64, or auto where --digits is given.",
+)
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Keep checkpoints there; the same command goes on from them.",
+)
+def run(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    as_json: bool,
+    step_size: str,
+    steps: int,
+    q: str,
+    p: str,
+    digits: int | None,
+    arithmetic: str | None,
+    keep: Path | None,
+) -> None:
+    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
+
+    With --keep, an interruption costs at most some seconds of work.
+    """
+    from verify.commands.progress import steps_bar
+    from verify.execution.keeping import Keeper, name_of
+    from verify.runs.run import run as run_scheme
+    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED
+
+    exact = hamiltonian_of(system, hamiltonian, params)
+    arithmetic = arithmetic or (AUTO if digits else "float64")
+    if keep is not None:
+        writable(keep, "--keep")
+    asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
+    keeper = Keeper(keep, name_of(asked))
+    with steps_bar(steps) as tell:
+        result = run_scheme(
+            exact,
+            scheme,
+            q=q,
+            p=p,
+            step_size=step_size,
+            steps=steps,
+            arithmetic=arithmetic,
+            digits=17 if digits is None else digits,
+            # The plain way shows what rounding does to it; at many digits that is nothing.
+            observables=REPORTED if arithmetic == "float64" else CLOSED_FORM,
+            progress=tell,
+            keeper=keeper,
+        )
+    keeper.clear()
+    if as_json:
+        show.print_json(show.run_json(result))
+    else:
+        show.print_run(result)

@@ -1,0 +1,52 @@
+"""The command `verify separate`: truncation and four kinds of rounding in Λ."""
+
+from typing import Any
+
+import click
+
+from verify.commands import output as show
+from verify.commands.input import hamiltonian_of, with_system
+
+
+@click.command()
+@with_system
+@click.option(
+    "--step-size",
+    "step_sizes",
+    required=True,
+    multiple=True,
+    metavar="H",
+    help="Greater than 0; given several times, a grid of them.",
+)
+@click.option("--steps", type=int, metavar="N", help="At least 1; or:")
+@click.option("--time", metavar="T", help="N = ⌊T/H⌋ steps for each H.")
+@click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
+@click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
+@click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
+@click.option(
+    "--arithmetic", default="auto", help="What stands for exact: auto, fixed, mpfr, mpmath."
+)
+def separate(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    as_json: bool,
+    step_sizes: tuple[str, ...],
+    **options: Any,
+) -> None:
+    """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
+
+    With several step sizes also the one below which rounding is the larger part.
+    """
+    from verify.commands.progress import progress_bar
+    from verify.studies.separation.separate import RUNS, grid, separate_grid
+
+    exact = hamiltonian_of(system, hamiltonian, params)
+    counts = grid(step_sizes, options["steps"], options["time"])
+    with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
+        result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)
+    if as_json:
+        show.print_json(show.separation_json(result))
+    else:
+        show.print_separation(result)
