@@ -21,7 +21,7 @@ from verify.arithmetic.exact import Exact, rational
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import made_step
+from verify.integrators.loading import step_from
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.step import TIME_LIMIT
 from verify.verdict import Verdict
@@ -106,7 +106,7 @@ def _asserted(
         raise InputError("p, q", p if p is not None else q, "give both or none")
     start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
     limit = options.get("time_limit", TIME_LIMIT)
-    made, notes = made_step(step, options.get("arguments"), dict(exact.values), limit)
+    made, notes = step_from(step, options.get("arguments"), dict(exact.values), limit)
     found = check_integrator(made, exact, claims, start).noting(*notes)
     if not found.verdict.holds:
         raise AssertionError(_message(found))

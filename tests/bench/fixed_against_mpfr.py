@@ -48,7 +48,7 @@ def ours(system: str, digits: int, steps: int, name: str = "fixed") -> Result:
     start = {"h": Fraction(STEP_SIZE), "q": Fraction(Q), "p": Fraction(P)}
     observables = frozenset({"lambda", "mse", "delta_j_max"})
     kernel_run = KernelRun(hamiltonian, "lie2", start, steps, observables, points=0)
-    outcome = kernel_run.go(arithmetic.get(name, digits))
+    outcome = kernel_run.run(arithmetic.get(name, digits))
     return outcome.seconds, {x: outcome.values[x] for x in NAMES}
 
 

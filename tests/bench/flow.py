@@ -21,7 +21,7 @@ from verify.arithmetic.float_context import FLOAT
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
-from verify.scenes.region_sections import ShapeGiven
+from verify.scenes.region_sections import PlacedShape
 from verify.scenes.shapes import named as shapes
 from verify.studies.regions.task import FlowTask
 
@@ -106,7 +106,7 @@ def loop() -> bool:
 
 
 def probe() -> bool:
-    shape = ShapeGiven(shape="cat", centre={"q": 1, "p": 0}, scale="0.5")  # type: ignore[arg-type]
+    shape = PlacedShape(shape="cat", centre={"q": 1, "p": 0}, scale="0.5")  # type: ignore[arg-type]
     good = True
     for system, formula in SYSTEMS.items():
         for h, steps in PAPER:
@@ -114,7 +114,7 @@ def probe() -> bool:
                 hamiltonian=formula, parameters={}, map="lie2", shape=shape, step_size=h,
                 steps=steps, digits=17, mean_lambda=True, distance=False,
             )  # fmt: skip
-            found = task.perform(NOTHING)
+            found = task.compute(NOTHING)
             if found.area_change is None:
                 print(f"probe    {system} h = {float(h)} N = {steps}: {found.problem}")
                 good = False

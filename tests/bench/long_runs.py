@@ -67,10 +67,10 @@ def step_costs(system: str, name: str, digits: int, long: int) -> tuple[float, f
     made, formula = arithmetic.get(name, digits), systems.get(system).formula
     kernel_runs = {n: _job(formula, SYSTEMS[system], n) for n in (SHORT, long)}
     taken: dict[int, list[float]] = {n: [] for n in kernel_runs}
-    kernel_runs[SHORT].go(made)
+    kernel_runs[SHORT].run(made)
     for _ in range(ROUNDS):
         for steps, times in ((SHORT, 10), (long, 1)):
-            taken[steps] += [kernel_runs[steps].go(made).seconds / steps for _ in range(times)]
+            taken[steps] += [kernel_runs[steps].run(made).seconds / steps for _ in range(times)]
     return statistics.median(taken[SHORT]), statistics.median(taken[long])
 
 
@@ -79,7 +79,7 @@ def peak_memory(system: str, name: str, digits: int, steps: int) -> int:
     from verify import arithmetic
     from verify.hamiltonians import systems
 
-    _job(systems.get(system).formula, SYSTEMS[system], steps).go(arithmetic.get(name, digits))
+    _job(systems.get(system).formula, SYSTEMS[system], steps).run(arithmetic.get(name, digits))
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
@@ -89,7 +89,7 @@ def first_call(formula: str, name: str, digits: int) -> float:
 
     parameters = {"delta": "1"} if "delta" in formula else {}
     begun = time.perf_counter()
-    _job(formula, parameters, 1).go(arithmetic.get(name, digits))
+    _job(formula, parameters, 1).run(arithmetic.get(name, digits))
     return time.perf_counter() - begun
 
 
@@ -97,7 +97,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     """Wall seconds, steps, the fewest digits that are known, and how often each kind of bound."""
     from verify.commands.input import target
     from verify.execution.execute import Store, execute
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.scenes.results.run import RunResult
     from verify.studies.plan import plan_scenes
 
@@ -109,7 +109,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
         grid = scene.grid.model_copy(update=asked | shorter)
         chosen.append(scene.with_only(schemes=("lie2",), grid=grid))
     begun = time.perf_counter()
-    results = execute(plan_scenes(chosen), Store(None), where=Where(CORES)).values()
+    results = execute(plan_scenes(chosen), Store(None), where=Placement(CORES)).values()
     seconds = time.perf_counter() - begun
     runs = [r for r in results if isinstance(r, RunResult)]
     digits = min((known_digits(r.values[x].value) for r in runs for x in r.values), default=0)

@@ -81,7 +81,7 @@ def translated(kernel: Kernel) -> str:
     """The kernel's source as a program in C: `steps h parameters… carried…` are its arguments."""
     (function,) = ast.parse(kernel.source).body
     names = [a.arg for a in function.args.args][1:]
-    state = names[-len(kernel.carried) :]
+    state = names[-len(kernel.state_names) :]
     fixed = names[: len(names) - len(state)]
     *before, loop, _ = function.body
     seen = {*state, *fixed}

@@ -60,7 +60,7 @@ def one_run(hamiltonian: Hamiltonian, scheme: str, name: str) -> None:
 
 def one_kernel(hamiltonian: Hamiltonian, scheme: str, name: str) -> None:
     made = number_systems.get(name, DIGITS[name])
-    kernel_for(hamiltonian.generic(), scheme, made, frozenset({"lambda"}))
+    kernel_for(hamiltonian.with_symbols(), scheme, made, frozenset({"lambda"}))
 
 
 def seconds(what: Callable[[Hamiltonian, str, str], None], *given: object) -> float:

@@ -15,8 +15,8 @@ from contextlib import contextmanager
 from fractions import Fraction
 
 from verify.execution import keeping
-from verify.execution.execute import perform
-from verify.execution.executors import Call, Place, Where, opened, performed
+from verify.execution.execute import compute_task
+from verify.execution.executors import FunctionCall, Place, Placement, open_place, results_of
 from verify.studies.separation.task import SeparationTask
 
 FEW, MANY = 400_000, 4_000_000  # steps; fewer are stepped in another way
@@ -37,14 +37,14 @@ def timed(k: int, steps: int) -> tuple[float, int]:
     import resource
 
     begun = time.perf_counter()
-    perform(task(k, steps))
+    compute_task(task(k, steps))
     seconds = time.perf_counter() - begun
     return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def awake(k: int) -> None:
     """In the worker: what is compiled and imported for the tasks; then busy until all are."""
-    perform(task(1000 + k, FEW))
+    compute_task(task(1000 + k, FEW))
     time.sleep(TOGETHER)
 
 
@@ -55,16 +55,16 @@ def steps_of(seconds: float) -> int:
     return max(FEW, round(FEW + (MANY - FEW) * (seconds - few) / max(many - few, 1e-3)))
 
 
-def calls(count: int, steps: int) -> Iterator[Call]:
-    return (Call(str(k), timed, (k, steps)) for k in range(count))
+def calls(count: int, steps: int) -> Iterator[FunctionCall]:
+    return (FunctionCall(str(k), timed, (k, steps)) for k in range(count))
 
 
 def measure(name: str, place: Place, count: int, steps: int, one: float | None) -> float:
     """The wall time of all tasks; prints it with the speedup over `one`."""
     for _ in range(2):  # so that each worker has had one
-        list(performed(place, (Call(str(k), awake, (k,)) for k in range(2))))
+        list(results_of(place, (FunctionCall(str(k), awake, (k,)) for k in range(2))))
     begun = time.perf_counter()
-    found = [result for _, result in performed(place, calls(count, steps))]
+    found = [result for _, result in results_of(place, calls(count, steps))]
     wall = time.perf_counter() - begun
     assert len(found) == count
     each = statistics.median(seconds for seconds, _ in found)
@@ -77,11 +77,11 @@ def measure(name: str, place: Place, count: int, steps: int, one: float | None) 
 
 
 @contextmanager
-def dask_of_two() -> Iterator[Where]:
+def dask_of_two() -> Iterator[Placement]:
     from distributed import LocalCluster
 
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
-        yield Where(cluster=cluster.scheduler_address)
+        yield Placement(cluster=cluster.scheduler_address)
 
 
 def main() -> None:
@@ -92,12 +92,12 @@ def main() -> None:
     steps = steps_of(given.each)
     count = max(4, round(given.seconds / given.each))
     print(f"{count} separations of {steps} steps each, on {keeping.machine()}")
-    with opened(Where(1)) as place:
+    with open_place(Placement(1)) as place:
         one = measure("1 worker", place, count, steps, None)
-    with opened(Where(2)) as place:
+    with open_place(Placement(2)) as place:
         measure("2 workers", place, count, steps, one)
     try:
-        with dask_of_two() as where, opened(where) as place:
+        with dask_of_two() as where, open_place(where) as place:
             measure("Dask, 2 workers", place, count, steps, one)
     except ImportError:
         print("Dask: left out, distributed is not installed")

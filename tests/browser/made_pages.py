@@ -9,7 +9,7 @@ from tests.helpers.constructed_galleries import CROSSED, KEPT, NOTHING, gallery,
 from verify.claims.kinds import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
 from verify.claims.report import gallery_report, make_report
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.pages.page import render
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.report import Report
@@ -91,7 +91,7 @@ def hunted() -> Report:
     scenes = [shown(KEPT, hamiltonian=formula, value=4.0 - n) for n, formula in enumerate(formulas)]
     others = [shown(CROSSED, meaningless_after=100), shown(NOTHING), shown(None, hamiltonian=EVIL)]
     found = gallery(*scenes, *others, sentence=f"greatest part {EVIL}")
-    return gallery_report(found, "verify explore", 0.0, 0, 1, HERE)
+    return gallery_report(found, "verify explore", 0.0, 0, 1, THIS_PROCESS)
 
 
 def _report(
@@ -99,7 +99,7 @@ def _report(
 ) -> Report:
     command = "verify report"
     return make_report(
-        title, [scene], claims, Store(None), command=command, figures=figures, where=HERE
+        title, [scene], claims, Store(None), command=command, figures=figures, where=THIS_PROCESS
     )
 
 

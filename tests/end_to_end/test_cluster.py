@@ -20,7 +20,7 @@ from verify.execution import cluster as clusters
 from verify.execution import executors
 from verify.execution.cluster import connected
 from verify.execution.execute import execute
-from verify.execution.executors import HERE, Call, Where, opened, performed
+from verify.execution.executors import THIS_PROCESS, FunctionCall, Placement, open_place, results_of
 from verify.execution.keeping import machine
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.studies.plan import plan_scenes
@@ -52,17 +52,17 @@ def address(cluster: Any) -> str:
     return str(cluster.scheduler_address)
 
 
-def squares(count: int, seconds: float = 0.0, log: str = "") -> list[Call]:
-    return [Call(str(k), square, (k, seconds, log)) for k in range(count)]
+def squares(count: int, seconds: float = 0.0, log: str = "") -> list[FunctionCall]:
+    return [FunctionCall(str(k), square, (k, seconds, log)) for k in range(count)]
 
 
 def right(found: list[tuple[str, int]], count: int) -> bool:
     return sorted(found) == sorted((str(k), k * k) for k in range(count))
 
 
-def collect(found: list[tuple[str, int]], address: str, calls: Iterable[Call]) -> None:
-    with opened(Where(cluster=address)) as place:
-        for each in performed(place, calls):
+def collect(found: list[tuple[str, int]], address: str, calls: Iterable[FunctionCall]) -> None:
+    with open_place(Placement(cluster=address)) as place:
+        for each in results_of(place, calls):
             found.append(each)
 
 
@@ -71,8 +71,8 @@ def collect(found: list[tuple[str, int]], address: str, calls: Iterable[Call]) -
 
 def test_a_cluster_finds_what_this_process_finds(address: str, tmp_path: Path) -> None:
     plan = plan_scenes([load(tmp_path, CONTENT)])
-    there = execute(plan, kept_in(tmp_path), where=Where(cluster=address))
-    assert plain(there) == plain(execute(plan, kept_in(tmp_path / "own"), where=HERE))
+    there = execute(plan, kept_in(tmp_path), where=Placement(cluster=address))
+    assert plain(there) == plain(execute(plan, kept_in(tmp_path / "own"), where=THIS_PROCESS))
     assert len(list((tmp_path / "kept").iterdir())) == len(plan.tasks)
 
 
@@ -108,7 +108,7 @@ def test_times_are_measured_there_one_after_another(address: str, tmp_path: Path
     def done(name: str, _: object) -> None:
         order.append(name)
 
-    found = execute(plan, kept_in(tmp_path), where=Where(cluster=address), done=done)
+    found = execute(plan, kept_in(tmp_path), where=Placement(cluster=address), done=done)
     assert len(timed) == 2
     assert set(order[-2:]) == timed, "when all others are done"
     for name in timed:
@@ -119,16 +119,16 @@ def test_times_are_measured_there_one_after_another(address: str, tmp_path: Path
 
 def test_one_by_one_no_two_are_under_way(address: str, tmp_path: Path) -> None:
     log = tmp_path / "log"
-    with opened(Where(cluster=address)) as place:
+    with open_place(Placement(cluster=address)) as place:
         calls = squares(4, 0.1, str(log))
-        for count, _ in enumerate(performed(place, calls, one_by_one=True), 1):
+        for count, _ in enumerate(results_of(place, calls, one_by_one=True), 1):
             assert len(log.read_text().splitlines()) == count
 
 
 def test_what_a_task_raises_there_is_raised_here(address: str) -> None:
     found: list[tuple[str, int]] = []
     with pytest.raises(ValueError, match="wrong input"):
-        collect(found, address, [*squares(1), Call("wrong", wrong, (0.5,))])
+        collect(found, address, [*squares(1), FunctionCall("wrong", wrong, (0.5,))])
     assert right(found, 1)
 
 
@@ -137,8 +137,8 @@ def test_what_a_task_raises_there_is_raised_here(address: str) -> None:
 
 def test_nothing_is_lost_or_doubled_when_a_worker_is_killed(address: str, tmp_path: Path) -> None:
     log, found = tmp_path / "log", list[tuple[str, int]]()
-    with opened(Where(cluster=address)) as place:
-        for each in performed(place, squares(24, 0.1, str(log))):
+    with open_place(Placement(cluster=address)) as place:
+        for each in results_of(place, squares(24, 0.1, str(log))):
             found.append(each)
             if len(found) == 6:
                 os.kill(int(log.read_text().split()[-1]), signal.SIGKILL)
@@ -148,8 +148,10 @@ def test_nothing_is_lost_or_doubled_when_a_worker_is_killed(address: str, tmp_pa
 
 def test_a_plan_whose_worker_is_killed_finds_the_same(address: str, tmp_path: Path) -> None:
     plan = plan_scenes([load(tmp_path, CONTENT.replace("steps = 50", "steps = 20000"))])
-    with opened(Where(cluster=address)) as place:
-        ids = {pid for _, pid in performed(place, [Call(str(k), process) for k in range(4)])}
+    with open_place(Placement(cluster=address)) as place:
+        ids = {
+            pid for _, pid in results_of(place, [FunctionCall(str(k), process) for k in range(4)])
+        }
     done: list[str] = []
 
     def kill(name: str, _: object) -> None:
@@ -157,14 +159,16 @@ def test_a_plan_whose_worker_is_killed_finds_the_same(address: str, tmp_path: Pa
         if len(done) == 2:
             os.kill(min(ids), signal.SIGKILL)
 
-    found = execute(plan, kept_in(tmp_path), where=Where(cluster=address), done=kill)
+    found = execute(plan, kept_in(tmp_path), where=Placement(cluster=address), done=kill)
     assert sorted(done) == sorted(plan.tasks), "each is told once"
-    assert plain(found) == plain(execute(plan, kept_in(tmp_path / "own"), where=HERE))
+    assert plain(found) == plain(execute(plan, kept_in(tmp_path / "own"), where=THIS_PROCESS))
 
 
 def test_a_task_that_loses_its_worker_once_is_done_by_another(address: str, tmp_path: Path) -> None:
     found: list[tuple[str, Any]] = []
-    collect(found, address, [Call("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)])
+    collect(
+        found, address, [FunctionCall("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)]
+    )
     assert dict(found).pop("twice") == "well"
     assert right([each for each in found if each[0] != "twice"], 4)
 
@@ -173,7 +177,9 @@ def test_a_task_that_always_loses_its_worker_is_named_and_no_other(address: str)
     """Dask also gives up those that waited at its workers; they are not what is blamed."""
     found: list[tuple[str, int]] = []
     with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again") as caught:
-        collect(found, address, [*squares(3, 0.1), Call("x", killed, told="run of lie2")])
+        collect(
+            found, address, [*squares(3, 0.1), FunctionCall("x", killed, description="run of lie2")]
+        )
     assert "\n" not in str(caught.value)
     assert all(value == int(name) ** 2 for name, value in found)
     assert len(dict(found)) == len(found)
@@ -223,7 +229,9 @@ def test_a_cluster_that_ends_is_told_and_not_waited_for(
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=":0"
     ) as made:
-        calls = (Call(name, square, (3, seconds)) for name, seconds in _ending(made, gone, found))
+        calls = (
+            FunctionCall(name, square, (3, seconds)) for name, seconds in _ending(made, gone, found)
+        )
         with pytest.raises(PlaceError, match=said):
             collect(found, made.scheduler_address, calls)
     assert found[0] == ("0", 9), "what was finished is not lost"

@@ -95,7 +95,7 @@ def test_an_interruption_keeps_what_is_finished(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    keep, right, done = tmp_path / "kept", FlowTask.perform, list[str]()
+    keep, right, done = tmp_path / "kept", FlowTask.compute, list[str]()
 
     def third(task: FlowTask, keeper: Keeper) -> FlowImage:
         if len(done) == 2:
@@ -105,13 +105,13 @@ def test_an_interruption_keeps_what_is_finished(
 
     given = ("flow", str(scene), "--json", "--workers", "1", "--keep", str(keep))
     with monkeypatch.context() as patch:
-        patch.setattr(FlowTask, "perform", third)
+        patch.setattr(FlowTask, "compute", third)
         status, out, err = here(capsys, *given)
     assert (status, out) == (130, "")
     assert f"interrupted: 2 of 3 tasks are kept in {keep}" in err
     with monkeypatch.context() as patch:
         done.clear()
-        patch.setattr(FlowTask, "perform", third)
+        patch.setattr(FlowTask, "compute", third)
         status, out, _ = here(capsys, *given)
     assert (status, len(done)) == (0, 1)
     assert here(capsys, *given)[:2] == (0, out)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from verify.execution.execute import Store, execute
-from verify.execution.executors import HERE
-from verify.reference.make.make import Asked, command_of, data_of, files_of, manifest_of, write
+from verify.execution.executors import THIS_PROCESS
+from verify.reference.make.make import SceneText, command_of, data_of, files_of, manifest_of, write
 from verify.reference.make.models import Data
 from verify.reference.make.scene_plan import plan_references
 from verify.reference.make.writing import MANIFEST, digest
@@ -42,14 +42,14 @@ flow = false
 def made(scenes: dict[str, str] | None = None) -> list[Data]:
     """The data of the scenes."""
     found = [scene_from_toml(toml, name) for name, toml in (scenes or SCENES).items()]
-    results = execute(plan_references(found), Store(None), where=HERE)
+    results = execute(plan_references(found), Store(None), where=THIS_PROCESS)
     return [data_of(scene, results) for scene in found]
 
 
 def put(folder: Path, data: list[Data], scenes: dict[str, str] | None = None) -> None:
     """The data's files and their manifest in the folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    asked = [Asked(scene_from_toml(x, name), x) for name, x in (scenes or SCENES).items()]
+    asked = [SceneText(scene_from_toml(x, name), x) for name, x in (scenes or SCENES).items()]
     files = files_of(data)
     command = command_of([f"{name}.toml" for name in scenes or SCENES], parquet=False)
     write(folder, files, manifest_of(asked, files, command))

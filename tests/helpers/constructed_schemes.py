@@ -16,7 +16,7 @@ from verify.schemes.scheme import Scheme
 
 def made_of(generic: Any, order: int, area: bool = False, base: str = "euler") -> Scheme:
     """A scheme named "made" with these claims; for one H it is the scheme `base`."""
-    return replace(get(base), name="made", generic=generic, order=order, area_preserving=area)
+    return replace(get(base), name="made", every_h=generic, order=order, area_preserving=area)
 
 
 def proof_of(

@@ -78,15 +78,15 @@ def float64_steps(
 ) -> list[tuple[float, float, float, float]]:
     """p, q, det J and ΔJ of every step as the float64 kernel finds them."""
     kernel = kernel_for(
-        Hamiltonian.parse(text).generic(), f"lie{eta}", arithmetic.get("float64", 17), WORKING
+        Hamiltonian.parse(text).with_symbols(), f"lie{eta}", arithmetic.get("float64", 17), WORKING
     )
     step: Any = kernel.function
     p, q, h = (float(start[name]) for name in "pqh")
     found = []
     for _ in range(steps):
-        first = dict(zip(kernel.carried, (p, q, *map(float, kernel.start)), strict=True))
+        first = dict(zip(kernel.state_names, (p, q, *map(float, kernel.start)), strict=True))
         _, *after = step(1, h, *first.values())
-        after = dict(zip(kernel.carried, after, strict=True))
+        after = dict(zip(kernel.state_names, after, strict=True))
         found.append((p, q, after["plain"], after["lam"]))  # products of one factor each
         p, q = after["p"], after["q"]
     return found

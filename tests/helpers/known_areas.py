@@ -10,7 +10,7 @@ import numpy as np
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.shapes.outline import Outline, Point, bezier
 from verify.studies.regions.area import Goal, Measured, Probe
-from verify.studies.regions.point_systems import FloatPlane, WidePlane
+from verify.studies.regions.point_systems import FloatCarrier, WideCarrier
 
 FINE = Goal(change=Fraction(0), area=Fraction(1, 10**13))
 OSCILLATOR = Hamiltonian.parse("p**2/2 + q**2/2")
@@ -18,13 +18,13 @@ DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 
 
-class MadePlane(FloatPlane):
+class MadePlane(FloatCarrier):
     """Points in float64, carried by a given map (x, y) ↦ (x, y) instead of a scheme's."""
 
     def __init__(self, made: Callable[[Any, Any], tuple[Any, Any]]) -> None:
         self._made = made
 
-    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
         return self._made(x, y)
 
     def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -40,11 +40,11 @@ def measured(outline: Outline, plane: Any, goal: Goal = FINE) -> Measured:
 
 
 def wide(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR, digits: int = 33) -> Any:
-    return WidePlane(of, scheme, Fraction(h), steps, "fixed", digits)
+    return WideCarrier(of, scheme, Fraction(h), steps, "fixed", digits)
 
 
-def floats(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR) -> FloatPlane:
-    return FloatPlane(of, scheme, Fraction(h), steps)
+def floats(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR) -> FloatCarrier:
+    return FloatCarrier(of, scheme, Fraction(h), steps)
 
 
 def polygon(*corners: tuple[Any, Any]) -> Outline:

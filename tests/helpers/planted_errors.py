@@ -7,11 +7,11 @@ from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 from verify.schemes.splitting_conditions import Part, Splitting
 
-SPLITTINGS = tuple(n for n in schemes.names() if isinstance(schemes.get(n).generic, Splitting))
+SPLITTINGS = tuple(n for n in schemes.names() if isinstance(schemes.get(n).every_h, Splitting))
 
 
 def parts_of(name: str) -> list[Part]:
-    generic = schemes.get(name).generic
+    generic = schemes.get(name).every_h
     assert isinstance(generic, Splitting)
     return list(generic.parts)
 

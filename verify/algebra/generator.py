@@ -40,7 +40,7 @@ def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], Any]]:
     return zip(x.monoms(), x.coeffs(), strict=True)
 
 
-def written(g: Generator, argument: sympy.Expr) -> sympy.Expr:
+def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:
     """The generator's function of an expression."""
     return _FUNCTIONS[g.kind](argument, g.degree)
 

@@ -79,7 +79,7 @@ class Jets:
         """X x, the derivative along the flow."""
         return self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
 
-    def along(self, name: str, most: int) -> Series:
+    def lie_derivatives(self, name: str, most: int) -> Series:
         """[y, X y, …, X^most y] of y = p or q."""
         result = [self.p if name == "p" else self.q]
         for _ in range(most):

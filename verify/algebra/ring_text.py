@@ -6,7 +6,7 @@ import sympy
 
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.formula import to_text
-from verify.algebra.generator import Generator, Poly, rational_of, terms_of, written
+from verify.algebra.generator import Generator, Poly, generator_expression, rational_of, terms_of
 
 _MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
@@ -26,7 +26,7 @@ def _of(ring: DifferentialRing, g: Generator) -> sympy.Expr:
     if g.expression is not None:
         return g.expression
     if g.index not in ring.expressions:
-        ring.expressions[g.index] = written(g, as_expression(ring, g.argument))
+        ring.expressions[g.index] = generator_expression(g, as_expression(ring, g.argument))
     return ring.expressions[g.index]
 
 

@@ -15,7 +15,7 @@ from verify.verdict import Verdict
 
 
 @dataclass(frozen=True)
-class Known:
+class ProvedOrder:
     """What is proved of an order: it is at least `least`, and no more than that where `exact`.
 
     `vanishes`: whether it is that of the zero function, which has every order; None where that is
@@ -29,16 +29,16 @@ class Known:
 
 
 def check_order(claim: OrderClaim, findings: Findings) -> ClaimResult:
-    return judge_order(claim, claim.order, delta_j_known(_map(claim, findings)))
+    return judge_order(claim, claim.order, delta_j_order(_map(claim, findings)))
 
 
 def check_convergence_order(claim: ConvergenceOrderClaim, findings: Findings) -> ClaimResult:
-    known = convergence_known(_map(claim, findings))
+    known = convergence_order(_map(claim, findings))
     return judge_order(claim, claim.convergence_order, known)
 
 
 def check_area(claim: AreaClaim, findings: Findings) -> ClaimResult:
-    known = delta_j_known(_map(claim, findings))
+    known = delta_j_order(_map(claim, findings))
     return judge_area(claim, known.vanishes, known.evidence)
 
 
@@ -49,40 +49,42 @@ def _map(claim: Any, findings: Findings) -> StepMap:
 # -- what is proved of one H ----------------------------------------------------------------------
 
 
-def delta_j_known(step_map: StepMap) -> Known:
+def delta_j_order(step_map: StepMap) -> ProvedOrder:
     """The order of ΔJ in h."""
     leading = leading_of(step_map)
     beyond, decision = MOST_ORDERS + 1, leading.decision
     if decision.zero is True:
-        return Known(beyond, False, True, "ΔJ is the zero function: det J ≡ 1")
+        return ProvedOrder(beyond, False, True, "ΔJ is the zero function: det J ≡ 1")
     power = beyond if leading.power is None else leading.power
     if decision.zero is None or leading.power is None:
         evidence = f"ΔJ = O(h^{power}), and whether of higher order is not decided"
         evidence += "; ΔJ is not the zero function" if decision.zero is False else ""
-        return Known(power, False, decision.zero, evidence)
+        return ProvedOrder(power, False, decision.zero, evidence)
     at = ", ".join(f"{name} = {value}" for name, value in decision.witness.items())
     where = f"; at {at} the coefficient is {decision.enclosure}" if at else ""
     term = f"({to_text(leading.coefficient)})·h^{power}"
-    return Known(power, True, False, f"ΔJ = {term} + O(h^{power + 1}){where}")
+    return ProvedOrder(power, True, False, f"ΔJ = {term} + O(h^{power + 1}){where}")
 
 
-def convergence_known(step_map: StepMap) -> Known:
+def convergence_order(step_map: StepMap) -> ProvedOrder:
     """To which power of h the map agrees with the exact flow."""
     found = convergence_of(step_map)
     if found.order is None:
         evidence = f"the map agrees with the exact flow in all orders looked at, {MOST_ORDERS}"
-        return Known(MOST_ORDERS, False, None, evidence)
+        return ProvedOrder(MOST_ORDERS, False, None, evidence)
     agrees = f"the map agrees with the exact flow up to h^{found.order}"
     if found.order < 0:
         agrees = "the map does not agree with the exact flow even at h = 0"
     more = " and no further" if found.decided else "; whether further is not decided"
-    return Known(found.order, found.decided, False, agrees + more)
+    return ProvedOrder(found.order, found.decided, False, agrees + more)
 
 
 # -- verdicts -------------------------------------------------------------------------------------
 
 
-def judge_order(claim: OrderClaim | ConvergenceOrderClaim, order: int, known: Known) -> ClaimResult:
+def judge_order(
+    claim: OrderClaim | ConvergenceOrderClaim, order: int, known: ProvedOrder
+) -> ClaimResult:
     """Whether the order is the claimed one, or with `at_least` no lower one."""
     verdict = Verdict.UNDECIDED
     if claim.at_least:

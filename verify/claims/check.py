@@ -12,8 +12,8 @@ from verify.claims.judge import check_claim
 from verify.claims.kinds import EXACT, Claim
 from verify.claims.plan import add_claims
 from verify.errors import InputError
-from verify.execution.execute import Done, Store, execute
-from verify.execution.executors import ANYWHERE, Where
+from verify.execution.execute import OnResult, Store, execute
+from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
@@ -29,7 +29,7 @@ class Check:
     known: dict[str, Frozen]
 
     def run(
-        self, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
+        self, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
     ) -> list[ClaimResult]:
         """Each claim's verdict, in their order. InputError names the claim and its line.
 

@@ -11,7 +11,7 @@ import sympy
 
 from verify.algebra.formula import parse, symbol, to_text
 from verify.algebra.generators import embed
-from verify.claims.area import Known, judge_area, judge_order
+from verify.claims.area import ProvedOrder, judge_area, judge_order
 from verify.claims.findings import result
 from verify.claims.formulas import PRINTED_AS, delta_j_printed, differs_below
 from verify.claims.kinds import (
@@ -42,7 +42,7 @@ def check_every(claim: Any) -> ClaimResult:
     if isinstance(claim, OrderClaim):
         if proof.area_preserving is None and proof.order is None:
             return result(claim, Verdict.UNDECIDED, proof.reason)
-        known = Known(proof.order or 0, proof.order is not None, proof.area_preserving,
+        known = ProvedOrder(proof.order or 0, proof.order is not None, proof.area_preserving,
                       proof.reason)  # fmt: skip
         return judge_order(claim, claim.order, known)
     assert isinstance(claim, ConvergenceOrderClaim)  # noqa: S101 - the last that has `every`
@@ -52,7 +52,7 @@ def check_every(claim: Any) -> ClaimResult:
     # The proof looks one order beyond the scheme's own; what reaches that may reach further.
     exact = proof.convergence_order <= get(claim.scheme).order
     evidence += " and, of some, no further" if exact else "; whether further is not decided"
-    known = Known(proof.convergence_order, exact, False, evidence)
+    known = ProvedOrder(proof.convergence_order, exact, False, evidence)
     return judge_order(claim, claim.convergence_order, known)
 
 

@@ -43,7 +43,14 @@ from verify.claims.kinds import (
     TheoremClaim,
     ValueClaim,
 )
-from verify.claims.scenes import ON_RUNS, ONE_RUN, RUN_KEYS, SUBJECT_KEYS, SUBJECTS, scene_for
+from verify.claims.scenes import (
+    HAMILTONIAN_KEYS,
+    HAMILTONIAN_SOURCES,
+    ON_RUNS,
+    ONE_RUN,
+    RUN_KEYS,
+    scene_for,
+)
 from verify.claims.toml_lines import Lines, lines_of
 from verify.errors import InputError
 from verify.scenes.paper_figures import PaperFigure
@@ -52,7 +59,7 @@ from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_fr
 _ROOT = ("title", "defaults", "scene", "claim", "figure")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
 _GROUPS = (
-    SUBJECT_KEYS,
+    HAMILTONIAN_KEYS,
     ("time", "steps"),
     ("step_size", "step_sizes"),
     ("q", "p", "initial_values"),
@@ -144,7 +151,7 @@ def _defaults(file: ClaimsFile, table: Any) -> dict[str, Any]:
         raise InputError(f"{file.name}: defaults", table, "is not a table")
     known = {key for model in KINDS.values() for key in model.model_fields}
     for key in table:
-        if key == "id" or key not in known | {*SUBJECT_KEYS, *RUN_KEYS}:
+        if key == "id" or key not in known | {*HAMILTONIAN_KEYS, *RUN_KEYS}:
             at = file.lines.of("defaults", 0, key)
             raise InputError(f"{file.name}:{at}: defaults: {key}", table[key], "no claim shares it")
     return table
@@ -165,7 +172,7 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: "_Sc
         raise InputError("every", table["every"], f"a claim of kind {kind} speaks of one H; of "
                          f"every H may speak: {', '.join(_EVERY_KINDS)}")  # fmt: skip
     keys = _with_defaults(model, table, defaults)
-    subject = {key: keys.pop(key) for key in SUBJECT_KEYS if key in keys}
+    subject = {key: keys.pop(key) for key in HAMILTONIAN_KEYS if key in keys}
     on_runs = issubclass(model, ON_RUNS)
     runs = {key: keys[key] for key in RUN_KEYS if key in keys} if on_runs else {}
     for key in set(runs) - set(model.model_fields):
@@ -205,7 +212,7 @@ def _with_defaults(
 ) -> dict[str, Any]:
     """The claim's keys, with those of the defaults that its kind has and it does not say itself."""
     fields = set(model.model_fields)
-    taken = set(fields) | set(SUBJECTS) | {"parameters"}
+    taken = set(fields) | set(HAMILTONIAN_SOURCES) | {"parameters"}
     taken -= set() if "every" in fields else {"every"}
     if issubclass(model, ON_RUNS):
         taken |= set(RUN_KEYS)
@@ -216,15 +223,17 @@ def _with_defaults(
         taken -= {"q", "p"} if not one and "initial_values" in defaults else set()
     for group in _GROUPS:
         taken -= set(group) if set(group) & set(table) else set()
-    if not set(SUBJECTS) & set(table):  # `parameters` alone are of the H that the claims share
-        taken |= {key for key in SUBJECTS if key != "every" or "every" in fields}
+    if not set(HAMILTONIAN_SOURCES) & set(
+        table
+    ):  # `parameters` alone are of the H that the claims share
+        taken |= {key for key in HAMILTONIAN_SOURCES if key != "every" or "every" in fields}
     return {**{key: value for key, value in defaults.items() if key in taken}, **table}
 
 
 def _check_every(claim: Claim, subject: Mapping[str, Any]) -> None:
     if others := [key for key in subject if key != "every"]:
         raise InputError(others[0], subject[others[0]], "says which H, and `every` says every H")
-    generic = schemes.get(claim.scheme).generic
+    generic = schemes.get(claim.scheme).every_h
     if generic is None:
         raise InputError("scheme", claim.scheme, "is given for one H, not for every H")
     if generic.separable and subject["every"] != EVERY_SEPARABLE:

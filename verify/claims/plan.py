@@ -12,7 +12,7 @@ from verify.claims.regions import flow_tasks_of
 from verify.claims.scenes import ON_RUNS
 from verify.execution.plan import Plan
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import known_run
+from verify.runs.run import proved_run
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
@@ -66,7 +66,7 @@ def _runs(claim: Claim, scenes: Mapping[str, Scene]) -> list[RunTask]:
 
 
 def _without_a_run(task: RunTask) -> Frozen | None:
-    return known_run(
+    return proved_run(
         Hamiltonian.parse(task.hamiltonian, task.parameters),
         task.scheme,
         q=task.q,

@@ -9,8 +9,8 @@ from verify.claims.findings import Findings
 from verify.claims.judge import check_claims
 from verify.claims.kinds import Claim
 from verify.claims.plan import add_claims
-from verify.execution.execute import Done, Store, execute
-from verify.execution.executors import ANYWHERE, Where
+from verify.execution.execute import OnResult, Store, execute
+from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.keeping import machine, versions
 from verify.execution.plan import Plan
 from verify.hamiltonians import systems
@@ -27,7 +27,7 @@ from verify.studies.plan import plan_scenes, series_task
 from verify.studies.proofs.every import EveryTask
 from verify.studies.regions.findings import flows_of
 from verify.studies.separation.separate import as_grid
-from verify.studies.stability.findings import judged_cases, largest_steps, stability_maps
+from verify.studies.stability.findings import largest_steps, run_verdicts, stability_maps
 from verify.studies.work_precision.plan import work_precision_task
 
 
@@ -41,8 +41,8 @@ def make_report(
     claim_scenes: Mapping[str, Scene] | None = None,
     figures: Sequence[PaperFigure] = (),
     plan: Plan | None = None,
-    where: Where = ANYWHERE,
-    done: Done | None = None,
+    where: Placement = ANYWHERE,
+    done: OnResult | None = None,
 ) -> Report:
     """Compute what the scenes and claims need, and judge.
 
@@ -71,7 +71,7 @@ def make_report(
 
 
 def gallery_report(
-    gallery: Gallery, command: str, begun: float, kept: int, islands: int, where: Where
+    gallery: Gallery, command: str, begun: float, kept: int, islands: int, where: Placement
 ) -> Report:
     """The report of a hunt of so many tasks, which has a gallery and nothing else."""
     computed = islands + len(gallery.scenes) + sum(1 for each in gallery.scenes if each.longer)
@@ -85,7 +85,9 @@ def gallery_report(
     )
 
 
-def _provenance(command: str, begun: float, kept: int, computed: int, where: Where) -> Provenance:
+def _provenance(
+    command: str, begun: float, kept: int, computed: int, where: Placement
+) -> Provenance:
     return Provenance(
         command=command,
         versions=versions(),
@@ -101,7 +103,7 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
     return SceneResult(
         name=scene.name,
         title=scene.title or scene.name,
-        **exact.written,
+        **exact.texts,
         source=systems.get(scene.system).source if scene.system else "the user's formula",
         time=text(scene.grid.time) if scene.grid and scene.grid.time else None,
         proofs=tuple(findings.proof(scene, scheme) for scheme in scene.schemes),
@@ -119,7 +121,7 @@ def _scene_result(scene: Scene, findings: Findings) -> SceneResult:
         growth_explains=scene.grid.growth_explains if scene.grid else "",
         work_precision=_work_precision(scene, findings),
         flows=flows_of(scene, findings.results),
-        stability=judged_cases(scene, findings.results),
+        stability=run_verdicts(scene, findings.results),
         largest_steps=largest_steps(scene, findings.results),
         stability_maps=stability_maps(scene, findings.results),
     )

@@ -40,8 +40,8 @@ from verify.scenes.values import (
 )
 from verify.studies.regions.plan import maps_of
 
-SUBJECTS = ("scene", "system", "hamiltonian", "every")
-SUBJECT_KEYS = (*SUBJECTS, "parameters")
+HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
+HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters")
 _LEAST_DIGITS = 20  # certified of every value, unless the claim asks for more or fewer
 _MORE_DIGITS = 5  # than are printed
 
@@ -52,7 +52,7 @@ ON_RUNS = (
 ONE_RUN = (ValueClaim, GrowthClaim)  # the others may have many
 
 
-class Subject(Frozen):
+class ClaimedHamiltonian(Frozen):
     """Of which H; `parameters` are of `system` or `hamiltonian`."""
 
     system: str | None = None
@@ -87,13 +87,13 @@ def scene_for(
     `subject` and `runs`: the claim's keys for them; `named` finds a scene by its name. Raises
     InputError, whose name is the key, and pydantic's ValidationError.
     """
-    if len([name for name in SUBJECTS if name in subject]) != 1:
-        given = " and ".join(name for name in SUBJECTS if name in subject)
-        raise InputError(given or "scene", "", f"give one of {', '.join(SUBJECTS)}")
+    if len([name for name in HAMILTONIAN_SOURCES if name in subject]) != 1:
+        given = " and ".join(name for name in HAMILTONIAN_SOURCES if name in subject)
+        raise InputError(given or "scene", "", f"give one of {', '.join(HAMILTONIAN_SOURCES)}")
     if "scene" not in subject:
         if isinstance(claim, FlowClaim):
             raise InputError("scene", "", "is missing: a [[flow]] of a scene is spoken of")
-        own = Subject.model_validate(subject)
+        own = ClaimedHamiltonian.model_validate(subject)
         scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
         return _with_grid(claim, own.system or "own", scene, None, runs)
     if "parameters" in subject:

@@ -66,12 +66,15 @@ def _measured_there(
     scenes: "list[Scene]", cluster: str
 ) -> "Iterator[tuple[str, WorkPrecisionResult]]":
     """On the cluster, one after another: the times are of the machine that each result names."""
-    from verify.execution.execute import perform
-    from verify.execution.executors import Call, Where, opened, performed
+    from verify.execution.execute import compute_task
+    from verify.execution.executors import FunctionCall, Placement, open_place, results_of
 
-    calls = [Call(each.name, perform, (_task(each),), f"scene {each.name}") for each in scenes]
-    with opened(Where(cluster=cluster)) as place:
-        yield from performed(place, calls, one_by_one=True)
+    calls = [
+        FunctionCall(each.name, compute_task, (_task(each),), f"scene {each.name}")
+        for each in scenes
+    ]
+    with open_place(Placement(cluster=cluster)) as place:
+        yield from results_of(place, calls, one_by_one=True)
 
 
 def _task(scene: "Scene") -> "WorkPrecisionTask":

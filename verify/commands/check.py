@@ -8,10 +8,10 @@ import click
 
 from verify.commands import output as show
 from verify.commands.input import paper_folder, writable
-from verify.commands.tasks import told, with_tasks
+from verify.commands.tasks import progress_of, with_tasks
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.scenes.results.claim import ClaimResult
 
 REFUTED = 1  # exit status
@@ -24,7 +24,7 @@ REFUTED = 1  # exit status
 )
 @with_tasks
 def check(
-    claims: str, only: tuple[str, ...], keep: Path | None, where: "Where", as_json: bool
+    claims: str, only: tuple[str, ...], keep: Path | None, where: "Placement", as_json: bool
 ) -> None:
     """Check the claims in CLAIMS (a TOML file, or `paper`); exit status 1 where one is refuted.
 
@@ -70,7 +70,7 @@ def check(
     prepared = prepare(load_claims(path), only)
     if keep is not None:
         writable(keep, "--keep")
-    with told(prepared.plan.tasks, keep) as done:
+    with progress_of(prepared.plan.tasks, keep) as done:
         found = prepared.run(Store(keep), where=where, done=done)
     if as_json:
         keys = {"id", "kind", "source", "statement", "verdict", "evidence"}

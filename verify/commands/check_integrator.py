@@ -72,7 +72,7 @@ def check_integrator(
     """
     from verify.arithmetic.exact import rational
     from verify.integrators.check import check_integrator as check
-    from verify.integrators.loading import load, made_step
+    from verify.integrators.loading import load, step_from
     from verify.integrators.results import Claims
 
     begun = time.perf_counter()
@@ -82,7 +82,7 @@ def check_integrator(
     start = None if p is None or q is None else (rational(p, "--p"), rational(q, "--q"))
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
-    step, notes = made_step(load(target), arguments, dict(exact.values), time_limit)
+    step, notes = step_from(load(target), arguments, dict(exact.values), time_limit)
     claims = Claims(order, area_order, area_preserving)
     found = check(step, exact, claims, start).noting(*notes)
     seconds = f"{time.perf_counter() - begun:.6f}"
@@ -105,7 +105,7 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
     return {
         "verdict": found.verdict.value,
         "reason": found.reason,
-        **exact.written,
+        **exact.texts,
         "integrator": target,
         "how": found.how,
         "order": found.order,
@@ -141,7 +141,7 @@ def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
     else:
         click.echo(f"{found.verdict}: {found.reason}")
         click.echo(f"  H        {exact.formula}")
-        for name, value in exact.written["parameters"].items():
+        for name, value in exact.texts["parameters"].items():
             click.echo(f"  {name:8} {value}")
         click.echo(f"  scheme   {target}")
         if found.leading is not None and found.order is not None:

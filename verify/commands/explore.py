@@ -9,11 +9,11 @@ import click
 from verify.commands import output as show
 from verify.commands.hunt import STEPS, hunt
 from verify.commands.input import writable, writable_later
-from verify.commands.tasks import told, with_tasks
+from verify.commands.tasks import progress_of, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.scenes.results.exploration import ExploreReport
 
 FAILED = 1  # exit status
@@ -67,7 +67,7 @@ def explore(
     steps: int | None,
     output: Path,
     keep: Path | None,
-    where: "Where",
+    where: "Placement",
     as_json: bool,
 ) -> None:
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
@@ -91,7 +91,7 @@ def explore(
     import random
 
     from verify.execution.execute import Store
-    from verify.exploration.explore import Exploration, explore, found_earlier, keep_found
+    from verify.exploration.explore import Exploration, explore, load_failures, save_failures
     from verify.exploration.sample_space import SampleSpace
 
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
@@ -109,12 +109,12 @@ def explore(
     writable_later(output)
     if keep is not None:
         writable(keep, "--keep")
-    earlier = found_earlier(output) if output.is_dir() else []
-    with told(asked.plan.tasks, keep) as done:
+    earlier = load_failures(output) if output.is_dir() else []
+    with progress_of(asked.plan.tasks, keep) as done:
         report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)
     unwritten, written = None, [""] * len(report.failures)
     try:
-        written = [str(path) for path in keep_found(report, output)]
+        written = [str(path) for path in save_failures(report, output)]
     except OSError as error:  # what was found is told all the same
         unwritten = InputError("--output", str(output), error.strerror or "cannot be written to")
     if as_json:
@@ -134,7 +134,7 @@ def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], di
     """
     from verify.claims.file import load_claims
     from verify.exploration import properties
-    from verify.exploration.claims import claim_texts, left_out
+    from verify.exploration.claims import claim_texts, claims_left_out
 
     for name in names:
         properties.get(name)
@@ -145,7 +145,7 @@ def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], di
     if not path.is_file():
         raise InputError("CLAIMS", claims, "is no file")
     given = load_claims(path).claims
-    return {"properties": named, "claims": claim_texts(given)}, left_out(given)
+    return {"properties": named, "claims": claim_texts(given)}, claims_left_out(given)
 
 
 def _spoken_of(looks: dict[str, Any]) -> tuple[str, ...]:

@@ -9,11 +9,11 @@ import click
 from verify.arithmetic.exact import short
 from verify.commands import output as show
 from verify.commands.input import target, writable
-from verify.commands.tasks import told, with_tasks
+from verify.commands.tasks import progress_of, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.scenes.results.regions import FlowImage, FlowResult
 
 NO_RESULT = 1  # exit status
@@ -22,7 +22,7 @@ NO_RESULT = 1  # exit status
 @click.command()
 @click.argument("scene", metavar="SCENE")
 @with_tasks
-def flow(scene: str, keep: Path | None, where: "Where", as_json: bool) -> None:
+def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> None:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
     SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
@@ -46,7 +46,7 @@ def flow(scene: str, keep: Path | None, where: "Where", as_json: bool) -> None:
         raise InputError("SCENE", scene, "asks for no [[flow]]")
     if keep is not None:
         writable(keep, "--keep")
-    with told(plan.tasks, keep) as done:
+    with progress_of(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
     if as_json:

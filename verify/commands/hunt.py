@@ -10,10 +10,10 @@ import click
 
 from verify.commands import output as show
 from verify.commands.input import writable
-from verify.commands.tasks import told
+from verify.commands.tasks import progress_of
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.exploration.hunting import Hunt
     from verify.exploration.sample_space import SampleSpace
     from verify.scenes.results.exploration import Gallery, GalleryScene
@@ -30,7 +30,7 @@ def hunt(
     drawn: "SampleSpace",
     output: Path,
     keep: Path | None,
-    where: "Where",
+    where: "Placement",
     as_json: bool,
 ) -> None:
     """Hunts, writes the worst scenes and the page that shows them, and tells what was found."""
@@ -45,7 +45,7 @@ def hunt(
     if keep is not None:
         writable(keep, "--keep")
     store, begun, tasks = Store(keep), time.perf_counter(), asked.plan.tasks
-    with told(tasks, keep) as done:
+    with progress_of(tasks, keep) as done:
         found = hunt(asked, store, where=where, done=done)
     shown = gallery(asked, found, store, where=where)
     _keep_scenes(shown, output)

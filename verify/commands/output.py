@@ -59,7 +59,7 @@ def proof_json(
     return {
         "verdict": proof.verdict.value,
         "reason": proof.reason,
-        **exact.written,
+        **exact.texts,
         "scheme": scheme,
         "order": proof.order,
         "leading": proof.first.text,

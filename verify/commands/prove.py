@@ -106,7 +106,7 @@ def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> di
     try:
         return of_one(proof, potential)
     except InputError as error:
-        if scheme.generic is None or proof.verdict != "PROVED":
+        if scheme.every_h is None or proof.verdict != "PROVED":
             raise
         click.echo(f"the certificate is of the proof for every H: {error}", err=True)
         return of_every(prove_every(scheme.name))

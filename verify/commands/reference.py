@@ -9,11 +9,11 @@ import click
 from verify.commands import output as show
 from verify.commands.compare import compare
 from verify.commands.input import writable
-from verify.commands.tasks import json_option, told, with_tasks, with_where
+from verify.commands.tasks import json_option, progress_of, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.reference.check.check import Checked
 
 DIFFERENT = 1  # exit status
@@ -39,7 +39,7 @@ def make(
     output: Path | None,
     parquet: bool,
     keep: Path | None,
-    where: "Where",
+    where: "Placement",
     as_json: bool,
 ) -> None:
     """Make the reference data that SCENE asks for, in DIR; without SCENE, the committed set.
@@ -69,7 +69,7 @@ def make(
     if keep is not None:
         writable(keep, "--keep")
     plan = plan_references([x.scene for x in asked])
-    with told(plan.tasks, keep) as done:
+    with progress_of(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     data = [making.data_of(x.scene, results) for x in asked]
     files = making.files_of(data, parquet=parquet)
@@ -95,7 +95,7 @@ def make(
     help=f"Of all runs recomputed; the others are named. {_MOST_STEPS:,}; none with --all.",
 )
 @click.option("--seed", type=click.IntRange(0), help="Of the random sample; without it, any.")
-@with_where
+@with_placement
 @json_option
 def check(
     folder: Path | None,
@@ -103,7 +103,7 @@ def check(
     everything: bool,
     most_steps: int | None,
     seed: int | None,
-    where: "Where",
+    where: "Placement",
     as_json: bool,
 ) -> None:
     """Check the reference data in DIR; without it, the committed set.

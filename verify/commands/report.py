@@ -8,11 +8,11 @@ import click
 
 from verify.commands import output as show
 from verify.commands.input import target, writable
-from verify.commands.tasks import json_option, told, with_where
+from verify.commands.tasks import json_option, progress_of, with_placement
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.scenes.results.report import Report
 
 _INTEGRATORS = "integrators"
@@ -30,10 +30,10 @@ _INTEGRATORS = "integrators"
     help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
     "repository; given twice, both.",
 )
-@with_where
+@with_placement
 @json_option
 def report(
-    scene: str, output: Path | None, formats: tuple[str, ...], where: "Where", as_json: bool
+    scene: str, output: Path | None, formats: tuple[str, ...], where: "Placement", as_json: bool
 ) -> None:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
@@ -54,7 +54,9 @@ def report(
         show.print_report(made, *written)
 
 
-def _scene(scene: str, output: Path | None, asked: str, where: "Where") -> "tuple[Path, Report]":
+def _scene(
+    scene: str, output: Path | None, asked: str, where: "Placement"
+) -> "tuple[Path, Report]":
     from verify.claims.plan import add_claims
     from verify.claims.report import make_report
     from verify.execution.execute import Store
@@ -66,7 +68,7 @@ def _scene(scene: str, output: Path | None, asked: str, where: "Where") -> "tupl
     writable(folder)
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
-    with told(planned.tasks, folder / "kept") as done:
+    with progress_of(planned.tasks, folder / "kept") as done:
         made = make_report(
             title,
             scenes,
@@ -83,7 +85,7 @@ def _scene(scene: str, output: Path | None, asked: str, where: "Where") -> "tupl
 
 
 def _integrators(
-    scene: str, output: Path | None, asked: str, where: "Where"
+    scene: str, output: Path | None, asked: str, where: "Placement"
 ) -> "tuple[Path, Report]":
     """Other libraries run here, in this process: they are not sent to workers."""
     from verify.integrators.others.report import make_integrators_report

@@ -8,11 +8,11 @@ import click
 
 from verify.commands import output as show
 from verify.commands.input import target, writable
-from verify.commands.tasks import told, with_tasks
+from verify.commands.tasks import progress_of, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.execution.executors import Where
+    from verify.execution.executors import Placement
     from verify.scenes.scene import Scene
     from verify.studies.stability.findings import StabilityFindings
 
@@ -30,7 +30,7 @@ def stability(
     linear: bool,
     scheme: str | None,
     keep: Path | None,
-    where: "Where",
+    where: "Placement",
     as_json: bool,
 ) -> None:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
@@ -57,7 +57,7 @@ def stability(
 
 
 def _of_scenes(
-    given: str, scenes: "list[Scene]", keep: Path | None, where: "Where", as_json: bool
+    given: str, scenes: "list[Scene]", keep: Path | None, where: "Placement", as_json: bool
 ) -> None:
     from verify.execution.execute import Store, execute
     from verify.studies.stability.findings import findings_of
@@ -69,7 +69,7 @@ def _of_scenes(
         raise InputError("SCENE", given, problem)
     if keep is not None:
         writable(keep, "--keep")
-    with told(plan.tasks, keep) as done:
+    with progress_of(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     found = findings_of(scenes, results)
     if as_json:
@@ -83,8 +83,10 @@ def _print(found: "StabilityFindings") -> None:
     for run in found.runs:
         click.echo(f"{run.verdict:{width}}  {run.id}")
         if run.kind not in _PLAIN:
-            told = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
-            click.echo(told)
+            progress_of = textwrap.fill(
+                run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN
+            )
+            click.echo(progress_of)
     for step in found.largest_steps:
         measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"
         linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from verify.execution.execute import Done
+    from verify.execution.execute import OnResult
     from verify.execution.task import Task
 
 keep_option = click.option(
@@ -31,25 +31,25 @@ json_option = click.option(
 )
 
 
-def with_where(command: Callable[..., Any]) -> Callable[..., Any]:
+def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
     """The command with --workers and --cluster, which it gets as one `where`."""
 
     @wraps(command)
     def given(*args: Any, workers: int | None, cluster: str | None, **options: Any) -> Any:
-        from verify.execution.executors import Where
+        from verify.execution.executors import Placement
 
-        return command(*args, where=Where(workers, cluster), **options)
+        return command(*args, where=Placement(workers, cluster), **options)
 
     return workers_option(cluster_option(given))
 
 
 def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
     """The command with --keep, --workers, --cluster and --json."""
-    return keep_option(with_where(json_option(command)))
+    return keep_option(with_placement(json_option(command)))
 
 
 @contextmanager
-def told(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[Done]":
+def progress_of(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[OnResult]":
     """Yields what is called with each finished task; an interruption says what is kept where."""
     from verify.commands.progress import progress_bar
     from verify.execution.execute import Store

@@ -1,4 +1,4 @@
-"""A Dask cluster that the user has started, as a place where calls are performed."""
+"""A Dask cluster that the user has started, as a place where functions are called."""
 
 import asyncio
 import contextlib
@@ -100,7 +100,7 @@ class Cluster:
     waiting at those workers; so that call is tried once more, with no other of ours under way.
     """
 
-    local, attempts, blames = False, 2, False
+    local, attempts, names_lost_call = False, 2, False
 
     def __init__(self, address: str, client: Any, executor: Any) -> None:
         self._address, self._client, self._executor = address, client, executor
@@ -129,7 +129,7 @@ class Cluster:
 
         return isinstance(error, KilledWorker)
 
-    def look(self) -> None:
+    def check(self) -> None:
         now = time.monotonic()
         if now - self._looked < _LOOK:
             return

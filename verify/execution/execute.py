@@ -1,4 +1,4 @@
-"""Tasks → results, wherever they are performed; what is finished is kept.
+"""Tasks → results, wherever they are computed; what is finished is kept.
 
 Each result is written by itself, atomically, as soon as it is there, under a name made of the task
 and of this package's own source: an interrupted run goes on from there, and no result of other
@@ -11,13 +11,21 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from verify.execution.executors import ANYWHERE, HERE, Call, Place, Where, opened, performed
+from verify.execution.executors import (
+    ANYWHERE,
+    THIS_PROCESS,
+    FunctionCall,
+    Place,
+    Placement,
+    open_place,
+    results_of,
+)
 from verify.execution.keeping import NOTHING, Keeper, fingerprint, write_atomically
 from verify.execution.plan import Plan
 from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
 
-Done = Callable[[str, Frozen], None]  # called with a task's key and its result
+OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
 
 _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
 
@@ -55,7 +63,7 @@ class Store:
 
 
 def execute(
-    plan: Plan, store: Store, *, where: Where = ANYWHERE, done: Done | None = None
+    plan: Plan, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
 ) -> dict[str, Frozen]:
     """All results of the plan by task key; those in the store are taken from there.
 
@@ -80,7 +88,7 @@ def execute(
             finish(name, kept)
 
     def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
-        for name, result in performed(place, _calls(tasks, store, place), one_by_one=one_by_one):
+        for name, result in results_of(place, _calls(tasks, store, place), one_by_one=one_by_one):
             store.put(name, result)
             finish(name, result)
 
@@ -89,32 +97,32 @@ def execute(
     together = {name: task for name, task in waiting.items() if not task.alone}
     alone = {name: task for name, task in waiting.items() if task.alone}
     modules = {type(task).__module__ for task in together.values()}
-    with opened(_enough(together, where), sorted(modules)) as place:
+    with open_place(_enough(together, where), sorted(modules)) as place:
         take(place, together)
         if not place.local:
             take(place, alone, one_by_one=True)
     if place.local:
-        with opened(HERE) as place:
+        with open_place(THIS_PROCESS) as place:
             take(place, alone)
     return results
 
 
-def perform(task: Task, keeper: Keeper = NOTHING) -> Frozen:
+def compute_task(task: Task, keeper: Keeper = NOTHING) -> Frozen:
     """Do one task, in whatever process."""
-    return task.perform(keeper)
+    return task.compute(keeper)
 
 
-def _enough(tasks: Mapping[str, Task], where: Where) -> Where:
+def _enough(tasks: Mapping[str, Task], where: Placement) -> Placement:
     """Where nothing is said of where: so many processes as are worth their start."""
     if where != ANYWHERE:
         return where
     if sum(task.cost for task in tasks.values()) < _WORTH_A_POOL:
-        return HERE
-    return Where(workers=max(1, min(os.cpu_count() or 1, len(tasks))))
+        return THIS_PROCESS
+    return Placement(workers=max(1, min(os.cpu_count() or 1, len(tasks))))
 
 
-def _calls(tasks: Mapping[str, Task], store: Store, place: Place) -> Iterator[Call]:
+def _calls(tasks: Mapping[str, Task], store: Store, place: Place) -> Iterator[FunctionCall]:
     # Longest first, so that no worker is left with a long one at the end.
     for name in sorted(tasks, key=lambda name: -tasks[name].cost):
         keeper = store.keeper(name) if place.local else NOTHING
-        yield Call(name, perform, (tasks[name], keeper), tasks[name].description)
+        yield FunctionCall(name, compute_task, (tasks[name], keeper), tasks[name].description)

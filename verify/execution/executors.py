@@ -1,4 +1,4 @@
-"""Where calls are performed: in this process, in processes beside it, or on a Dask cluster.
+"""Where functions are called: in this process, in processes beside it, or on a Dask cluster.
 
 Wherever that is, each result is yielded once and as it comes, and no more calls are under way than
 the place has room for: memory does not grow with their number. A call whose worker is lost is sent
@@ -25,7 +25,7 @@ _LOOK = 5.0  # seconds after which the place is looked at, though nothing is fin
 
 
 @dataclass(frozen=True)
-class Where:
+class Placement:
     """Where tasks run: in so many processes here, or on the Dask cluster at that address.
 
     `workers`: 1 stays in this process, None goes by the work there is. InputError where both are
@@ -47,33 +47,33 @@ class Where:
             raise InputError("cluster", self.cluster, problem)
 
 
-ANYWHERE = Where()
-HERE = Where(workers=1)
+ANYWHERE = Placement()
+THIS_PROCESS = Placement(workers=1)
 
 
-class Call(NamedTuple):
-    """`function(*arguments)`, to be found again by its name; `told` is what an error calls it."""
+class FunctionCall(NamedTuple):
+    """`function(*arguments)`, to be found again by its name; `description` is what an error calls it."""
 
     name: str
     function: Callable[..., Any]
     arguments: tuple[Any, ...] = ()
-    told: str = ""
+    description: str = ""
 
 
 class Place(Protocol):
     """Where calls go. `local`: this machine's files and clock are theirs.
 
-    `attempts`: so often may a call lose its worker. `blames`: a lost worker tells which call lost
+    `attempts`: so often may a call lose its worker. `names_lost_call`: a lost worker tells which call lost
     it; where it does not, that call and others are tried again one at a time.
     """
 
     local: bool
     attempts: int
-    blames: bool
+    names_lost_call: bool
 
     @property
     def room(self) -> int:
-        """So many calls may be under way; 0: a call is performed where it is asked for."""
+        """So many calls may be under way; 0: a function is called where its result is asked for."""
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """As an executor's."""
@@ -84,13 +84,13 @@ class Place(Protocol):
     def lost(self, error: BaseException) -> bool:
         """Whether that error of a call says that its worker was lost."""
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Called every few seconds. PlaceError where nothing can be finished any more."""
 
 
 @contextlib.contextmanager
-def opened(where: Where, modules: Sequence[str] = ()) -> Iterator[Place]:
-    """What performs calls there; left by an exception, it ends what is under way at once.
+def open_place(where: Placement, modules: Sequence[str] = ()) -> Iterator[Place]:
+    """Opens the place where functions are called; left by an exception, it ends what is under way at once.
 
     `modules`: what processes have imported before their first call.
 
@@ -103,7 +103,7 @@ def opened(where: Where, modules: Sequence[str] = ()) -> Iterator[Place]:
         with connected(where.cluster) as place:
             yield place
     elif where.workers == 1:
-        yield _Here()
+        yield _ThisProcess()
     else:
         processes = Processes(where.workers or os.cpu_count() or 1, modules)
         try:
@@ -114,8 +114,8 @@ def opened(where: Where, modules: Sequence[str] = ()) -> Iterator[Place]:
         processes.close()
 
 
-def performed(
-    place: Place, calls: Iterable[Call], *, one_by_one: bool = False
+def results_of(
+    place: Place, calls: Iterable[FunctionCall], *, one_by_one: bool = False
 ) -> Iterator[tuple[str, Any]]:
     """(name, result) of each call as it is finished; `one_by_one`: with no other under way.
 
@@ -142,12 +142,12 @@ def performed(
 
 
 class _Course:
-    """The calls of one `performed`: those under way, those lost, and those that are finished."""
+    """The calls of one `results_of`: those under way, those lost, and those that are finished."""
 
-    def __init__(self, place: Place, calls: Iterable[Call], one_by_one: bool) -> None:
+    def __init__(self, place: Place, calls: Iterable[FunctionCall], one_by_one: bool) -> None:
         self.place, self.calls, self.one_by_one = place, iter(calls), one_by_one
-        self.under_way: dict[Future[Any], Call] = {}
-        self.again: deque[Call] = deque()
+        self.under_way: dict[Future[Any], FunctionCall] = {}
+        self.again: deque[FunctionCall] = deque()
         self.ready: deque[tuple[str, Future[Any]]] = deque()
         self.losses: Counter[str] = Counter()
 
@@ -157,13 +157,13 @@ class _Course:
             call = self.again.popleft() if self.again else next(self.calls, None)
             if call is None:
                 break
-            future = self.place.submit(there, fingerprint(), call.function, call.arguments)
+            future = self.place.submit(call_in_worker, fingerprint(), call.function, call.arguments)
             self.under_way[future] = call
         return bool(self.under_way)
 
     def _room(self) -> int:
         suspects = bool(self.again) or any(c.name in self.losses for c in self.under_way.values())
-        alone = self.one_by_one or (suspects and not self.place.blames)
+        alone = self.one_by_one or (suspects and not self.place.names_lost_call)
         return 1 if alone else self.place.room
 
     def take(self) -> None:
@@ -179,9 +179,9 @@ class _Course:
             self.losses[call.name] += 1
             if self.losses[call.name] >= self.place.attempts:
                 problem = "its worker was lost again and again: killed, or out of memory?"
-                raise PlaceError(f"{call.told or call.name}: {problem}")
+                raise PlaceError(f"{call.description or call.name}: {problem}")
             self.again.append(call)
-        self.place.look()
+        self.place.check()
 
     def rest(self) -> Iterator[tuple[str, Any]]:
         """What is finished and was not yet yielded; errors among it are left out."""
@@ -196,7 +196,7 @@ class _Course:
 _ONE = threading.Lock()  # libraries below have settings that all threads of a process share
 
 
-def there(source: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+def call_in_worker(source: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
     """The call in the worker, one at a time, and only where its code is that of the caller."""
     if fingerprint() != source:  # it may have joined the others, or been started again, since
         worker = f"{socket.gethostname()}, process {os.getpid()}"
@@ -208,10 +208,10 @@ def there(source: str, function: Callable[..., Any], arguments: tuple[Any, ...])
 # -- in this process -------------------------------------------------------------------------------
 
 
-class _Here:
-    """This process: a call is performed when its result is asked for."""
+class _ThisProcess:
+    """This process: a function is called when its result is asked for."""
 
-    local, attempts, blames, room = True, 1, True, 0
+    local, attempts, names_lost_call, room = True, 1, True, 0
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         raise NotImplementedError  # there is no room for any
@@ -221,4 +221,4 @@ class _Here:
     def lost(self, error: BaseException) -> bool:
         return False
 
-    def look(self) -> None: ...
+    def check(self) -> None: ...

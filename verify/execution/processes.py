@@ -1,4 +1,4 @@
-"""Processes on this machine, as a place where calls are performed."""
+"""Processes on this machine, as a place where functions are called."""
 
 import multiprocessing
 import os
@@ -22,7 +22,7 @@ class Processes:
     which call that was; of a pool of one nothing else is lost, and there is nothing to guess.
     """
 
-    local, attempts, blames = True, 3, True
+    local, attempts, names_lost_call = True, 3, True
 
     def __init__(self, workers: int, modules: Sequence[str] = ()) -> None:
         """`modules`: what the processes have imported before their first call."""
@@ -57,7 +57,7 @@ class Processes:
     def lost(self, error: BaseException) -> bool:
         return isinstance(error, BrokenExecutor)
 
-    def look(self) -> None: ...
+    def check(self) -> None: ...
 
     def end(self) -> None:
         """Ends the processes at once, whatever they are at."""

@@ -1,6 +1,6 @@
-"""A task: all that a result depends on, what it is worth, and how it is performed.
+"""A task: all that a result depends on, what it is worth, and how it is computed.
 
-A kind of task is one class, in a file of the study that performs it.
+A kind of task is one class, in a file of the study whose it is.
 """
 
 import hashlib
@@ -22,7 +22,7 @@ class Task(Frozen):
     """What is to be computed; two tasks of equal content are one.
 
     `alone`: it measures run times, so that nothing else may run beside it. `result`: the model of
-    what `perform` returns.
+    what `compute` returns.
     """
 
     alone: ClassVar[bool] = False
@@ -35,7 +35,7 @@ class Task(Frozen):
         return 1
 
     @abstractmethod
-    def perform(self, keeper: Keeper) -> Frozen:
+    def compute(self, keeper: Keeper) -> Frozen:
         """Do it; a run goes on from the checkpoint that the keeper may have."""
 
     @property

@@ -40,7 +40,7 @@ def ball_steps(
 
     h may be negative. Raises nothing: a pole on the way gives None.
     """
-    if step_map.solved:
+    if step_map.implicit:
         return None
     with working_precision(bits):
         states = [BallState(rational_ball(p), rational_ball(q), flint.arb(1))]

@@ -37,10 +37,10 @@ from verify.claims.plan import add_claims
 from verify.claims.scenes import ON_RUNS, scene_for
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.execution.plan import Plan
 from verify.exploration.property import Property, Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -70,7 +70,7 @@ def why_not(claim: Claim) -> str:
     return "printed numbers are those of its own runs"
 
 
-def left_out(claims: Sequence[Claim]) -> dict[str, list[str]]:
+def claims_left_out(claims: Sequence[Claim]) -> dict[str, list[str]]:
     """The claims that cannot be asked of other scenes, by the reason."""
     found: dict[str, list[str]] = {}
     for claim in claims:
@@ -102,7 +102,7 @@ def claim_property(text: str) -> Property:
     return Property(claim.id, sentence, lambda example: _holds(claim, example), claim.scheme)
 
 
-def _holds(claim: Claim, example: Example) -> bool:
+def _holds(claim: Claim, example: Sample) -> bool:
     """Raises Violation where the claim is refuted for the example's H and run."""
     separable = getattr(claim, "every", None) == EVERY_SEPARABLE
     if separable and not example.hamiltonian.field()[0].separable():
@@ -119,7 +119,7 @@ def _holds(claim: Claim, example: Example) -> bool:
     return found.verdict is not Verdict.UNDECIDED
 
 
-def _of_scheme(example: Example, name: str) -> Example | None:
+def _of_scheme(example: Sample, name: str) -> Sample | None:
     """The example with that scheme; None where the scheme does not take its H."""
     scene = example.scene.model_copy(update={"schemes": (name,), "name": _NAME})
     asked = replace(example, scheme=get(name), scene=scene)
@@ -130,17 +130,17 @@ def _of_scheme(example: Example, name: str) -> Example | None:
     return asked
 
 
-def _judged(claim: Claim, example: Example) -> Any:
+def _judged(claim: Claim, example: Sample) -> Any:
     """The claim's result for the example, a `verify.scenes.results.core.ClaimResult`."""
     claim = claim.model_copy(update={"scene": _NAME} | _without_every(claim, example))
     scenes = {_NAME: _scene(claim, example)}
     plan = Plan()
     known = add_claims(plan, [claim], scenes)
-    results = execute(plan, Store(None), where=HERE)
+    results = execute(plan, Store(None), where=THIS_PROCESS)
     return check_claim(claim, Findings(scenes, {**known, **results}))
 
 
-def _without_every(claim: Claim, example: Example) -> dict[str, Any]:
+def _without_every(claim: Claim, example: Sample) -> dict[str, Any]:
     """What changes where a claim of every H is made of this one.
 
     An order that is not passed for all H together may well be passed for this one.
@@ -154,7 +154,7 @@ def _without_every(claim: Claim, example: Example) -> dict[str, Any]:
     return {"every": None}
 
 
-def _scene(claim: Claim, example: Example) -> Scene:
+def _scene(claim: Claim, example: Sample) -> Scene:
     """The example's scene, with the runs that the claim speaks of."""
     scene = example.scene
     if not isinstance(claim, ON_RUNS):

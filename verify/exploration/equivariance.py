@@ -14,7 +14,7 @@ from verify.arithmetic.balls import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps, unlike
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 
@@ -22,12 +22,12 @@ Matrix = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
 _P, _Q = symbol("p"), symbol("q")
 
 
-def knows_no_coordinates(example: Example) -> bool:
+def knows_no_coordinates(example: Sample) -> bool:
     """Whether the scheme treats p and q alike, so that every linear map may be asked for."""
-    return isinstance(example.scheme.generic, TaylorSeries | RungeKutta)
+    return isinstance(example.scheme.every_h, TaylorSeries | RungeKutta)
 
 
-def carried(example: Example, matrix: Matrix, factor: Fraction) -> Hamiltonian:
+def transformed_hamiltonian(example: Sample, matrix: Matrix, factor: Fraction) -> Hamiltonian:
     """K(z) = factor · H(M⁻¹ z)."""
     (a, b), (c, d) = matrix
     determinant = a * d - b * c
@@ -39,7 +39,7 @@ def carried(example: Example, matrix: Matrix, factor: Fraction) -> Hamiltonian:
     return Hamiltonian(_rational(factor) * expression)
 
 
-def same_step(example: Example, matrix: Matrix, factor: Fraction, time: Fraction) -> bool:
+def same_step(example: Sample, matrix: Matrix, factor: Fraction, time: Fraction) -> bool:
     """Holds Φ_K of h · `time` at M z against M Φ_H(z); False where one of them is not known.
 
     Raises Violation where they differ.
@@ -51,7 +51,7 @@ def same_step(example: Example, matrix: Matrix, factor: Fraction, time: Fraction
     ours = ball_steps(example.step_map, p, q, example.step_size, 1)
     if ours is None or not ours[-1].sharp:
         return False
-    other = example.scheme.step_map(carried(example, matrix, factor))
+    other = example.scheme.step_map(transformed_hamiltonian(example, matrix, factor))
     theirs = ball_steps(other, a * p + b * q, c * p + d * q, example.step_size * time, 1)
     if theirs is None or not theirs[-1].sharp:
         return False

@@ -14,22 +14,22 @@ from pathlib import Path
 
 from verify.claims.scenes import slug
 from verify.errors import InputError
-from verify.execution.execute import Done, Store, execute
-from verify.execution.executors import ANYWHERE, Where
+from verify.execution.execute import OnResult, Store, execute
+from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.keeping import name_of, write_atomically
 from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
 from verify.exploration.property import Property
 from verify.exploration.property_checks import outcome, properties_of
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import scenes_of
 from verify.exploration.tasks import ExploreTask, ShrinkTask
 from verify.scenes.results.exploration import (
+    EarlierFailure,
     ExploreReport,
     ExploreResult,
     Failure,
-    FoundAgain,
     PropertySummary,
     ShrunkResult,
 )
@@ -111,8 +111,8 @@ def explore(
     asked: Exploration,
     store: Store,
     *,
-    where: Where = ANYWHERE,
-    done: Done | None = None,
+    where: Placement = ANYWHERE,
+    done: OnResult | None = None,
     earlier: Sequence[tuple[str, Scene]] = (),
 ) -> ExploreReport:
     """Looks at all examples, and shrinks the first failure of each property.
@@ -146,12 +146,12 @@ def explore(
     )
 
 
-def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator[FoundAgain]:
+def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator[EarlierFailure]:
     for name, scene in earlier:
         for each in asked.looks:
             if slug(each.name) == name:
-                wrong = outcome(each, Example.of(scene))[1]
-                yield FoundAgain(file=f"{scene.name}.toml", property=each.name, message=wrong)
+                wrong = outcome(each, Sample.of(scene))[1]
+                yield EarlierFailure(file=f"{scene.name}.toml", property=each.name, message=wrong)
 
 
 # -- the scenes that were found -------------------------------------------------------------------
@@ -160,7 +160,7 @@ def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator
 _FOUND = re.compile(r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml")  # what is written, and no other file
 
 
-def keep_found(report: ExploreReport, folder: Path) -> list[Path]:
+def save_failures(report: ExploreReport, folder: Path) -> list[Path]:
     """Writes each shrunk scene into the folder, under its property's name."""
     written = []
     for failure in report.failures:
@@ -170,7 +170,7 @@ def keep_found(report: ExploreReport, folder: Path) -> list[Path]:
     return written
 
 
-def found_earlier(folder: Path) -> list[tuple[str, Scene]]:
+def load_failures(folder: Path) -> list[tuple[str, Scene]]:
     """The scenes that earlier explorations wrote there, each with its property's name as the file
     has it. InputError for one that was changed into what is no scene, or has no [grid]."""
     found = []

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal, text
-from verify.execution.execute import Done, Store, execute
-from verify.execution.executors import ANYWHERE, Where
+from verify.execution.execute import OnResult, Store, execute
+from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
-from verify.exploration.hunting import Found, Hunt
+from verify.exploration.hunting import Hunt, WorstScenes
 from verify.exploration.island_search import COEFFICIENTS, REACH, STEP_SIZES, scene_of
 from verify.exploration.measures import MEASURES, orbit
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.scenes.results.exploration import Gallery, GalleryScene, Worst
 from verify.scenes.results.separation import PartsAt, SeparationResult
 from verify.scenes.toml_text import scene_text
@@ -24,11 +24,11 @@ _DIGITS = 8
 
 def gallery(
     asked: Hunt,
-    found: Found,
+    found: WorstScenes,
     store: Store,
     *,
-    where: Where = ANYWHERE,
-    done: Done | None = None,
+    where: Placement = ANYWHERE,
+    done: OnResult | None = None,
 ) -> Gallery:
     """The scenes with what is shown of them, over runs longer than those of the hunt.
 
@@ -64,7 +64,7 @@ def gallery(
 
 
 def _task(worst: Worst, steps: int) -> SeparationTask:
-    example = Example.of(scene_of(worst))
+    example = Sample.of(scene_of(worst))
     return SeparationTask(
         **example.scene.given(),
         scheme=example.scheme.name,
@@ -74,7 +74,7 @@ def _task(worst: Worst, steps: int) -> SeparationTask:
 
 
 def _shown(worst: Worst, run: SeparationResult, longer: SeparationResult) -> GalleryScene:
-    points = orbit(Example.of(scene_of(worst)))
+    points = orbit(Sample.of(scene_of(worst)))
     lost = meaningless(run.plain.series if run.plain else ())
     return GalleryScene(
         value=worst.value,

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from verify.errors import InputError
-from verify.execution.execute import Done, Store, execute
-from verify.execution.executors import ANYWHERE, Where
+from verify.execution.execute import OnResult, Store, execute
+from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
 from verify.exploration.island_search import (
     KEPT,
@@ -69,20 +69,22 @@ class Hunt:
 
 
 @dataclass(frozen=True)
-class Found:
+class WorstScenes:
     """`worst`: of all islands, the worst first, one a shape of H; `measured`: of so many scenes."""
 
     worst: tuple[Worst, ...]
     measured: int
 
 
-def hunt(asked: Hunt, store: Store, *, where: Where = ANYWHERE, done: Done | None = None) -> Found:
+def hunt(
+    asked: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
+) -> WorstScenes:
     """The worst scenes found on all islands."""
     plan = asked.plan
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
     together = sorted((each for island in islands for each in island.worst), key=by_value)
-    return Found(
+    return WorstScenes(
         tuple(by_shape(together)[:KEPT]),
         sum(island.examples for island in islands),
     )

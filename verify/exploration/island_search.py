@@ -18,7 +18,7 @@ from hypothesis.errors import Unsatisfiable
 from verify import strategies
 from verify.exploration.measures import DIGITS, MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import HuntResult, Worst
 from verify.scenes.scene import Scene, scene_from
@@ -42,14 +42,14 @@ def search_island(
     measure: str, space: SampleSpace, seed: int, island: int, *, count: int, steps: int
 ) -> HuntResult:
     """The worst scenes among `count` that the island looks at, of so many steps each."""
-    look = Look(MEASURES[measure], count)
+    look = MeasuredScenes(MEASURES[measure], count)
     chance = seed * MOST_EXAMPLES + island
     _directed(look, hunted_scenes(space, steps), chance, max(1, int(count * _DIRECTED)))
     _refined(look)
     return HuntResult(worst=tuple(_confirmed(look)), examples=len(look.seen))
 
 
-class Look:
+class MeasuredScenes:
     """Measures scenes, at most so many, and remembers what it found."""
 
     def __init__(self, measure: Measure, most: int) -> None:
@@ -60,7 +60,7 @@ class Look:
         """What a scene measures; None too where there is nothing left to measure it with."""
         text = scene_text(scene)
         if text not in self.seen and self.left:
-            self.seen[text] = self.measure.value(Example.of(scene), DIGITS)
+            self.seen[text] = self.measure.value(Sample.of(scene), DIGITS)
         return self.seen.get(text)
 
     @property
@@ -98,7 +98,7 @@ def scene_of(worst: Worst) -> Scene:
     return scene_from(loads(worst.scene, parse_float=str), "scene")
 
 
-def _confirmed(look: Look) -> Iterator[Worst]:
+def _confirmed(look: MeasuredScenes) -> Iterator[Worst]:
     """The worst of each shape that measures the same with twice the digits."""
     found: set[str] = set()
     for each in look.worst():
@@ -107,13 +107,15 @@ def _confirmed(look: Look) -> Iterator[Worst]:
             return
         if shape in found:
             continue
-        again = look.measure.value(Example.of(scene_of(each)), 2 * DIGITS)
+        again = look.measure.value(Sample.of(scene_of(each)), 2 * DIGITS)
         if again is not None and abs(again - each.value) <= _AGREEMENT:
             found.add(shape)
             yield Worst(value=again, scene=each.scene)
 
 
-def _directed(look: Look, scenes: st.SearchStrategy[Scene], chance: int, count: int) -> None:
+def _directed(
+    look: MeasuredScenes, scenes: st.SearchStrategy[Scene], chance: int, count: int
+) -> None:
     """Looks at so many scenes that hypothesis draws, ever nearer to what measures most."""
 
     @seeded(chance)
@@ -135,7 +137,7 @@ def _directed(look: Look, scenes: st.SearchStrategy[Scene], chance: int, count: 
         looked()
 
 
-def _refined(look: Look) -> None:
+def _refined(look: MeasuredScenes) -> None:
     """Climbs from the worst scene of each shape in turn, as long as scenes may be looked at."""
     for begin in by_shape(look.worst()):
         if not look.left:
@@ -143,7 +145,7 @@ def _refined(look: Look) -> None:
         _climb(begin, look)
 
 
-def _climb(begin: Worst, look: Look) -> None:
+def _climb(begin: Worst, look: MeasuredScenes) -> None:
     """Moves to the first neighbour that is worse, as long as there is one."""
     value, scene, moved = begin.value, scene_of(begin), True
     while moved:

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.studies.separation.chain import Separation
 from verify.studies.separation.working import Stopped
@@ -29,10 +29,10 @@ class Measure:
 
     name: str
     sentence: str
-    value: Callable[[Example, int], float | None]
+    value: Callable[[Sample, int], float | None]
 
 
-def rounding_share(example: Example, digits: int = DIGITS) -> float | None:
+def rounding_share(example: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest rounding part over the greatest truncation part, at checkpoints of a run.
 
     The greatest ones, as Λ itself may pass through 0, where any error is infinitely large.
@@ -53,7 +53,7 @@ def _greatest(trail: Sequence[Fraction], bound: Fraction) -> Fraction:
     return top if top > 10 * bound else Fraction(0)
 
 
-def digits_lost(example: Example, digits: int = DIGITS) -> float | None:
+def digits_lost(example: Sample, digits: int = DIGITS) -> float | None:
     """lg of the error of float64's p and q after the run, in units of its roundoff.
 
     Relative to the farthest that the orbit is from (0, 0): where it comes near to that, no digit is
@@ -62,7 +62,7 @@ def digits_lost(example: Example, digits: int = DIGITS) -> float | None:
     exact = _stays(example, digits)
     if exact is None:
         return None
-    found = _job(example, frozenset()).go(number_systems.get("float64", 17))
+    found = _job(example, frozenset()).run(number_systems.get("float64", 17))
     if found.done < example.steps:
         return None
     points = ({"p": example.p, "q": example.q}, *exact.trail)
@@ -71,7 +71,7 @@ def digits_lost(example: Example, digits: int = DIGITS) -> float | None:
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
-def growth(example: Example, digits: int = DIGITS) -> float | None:
+def growth(example: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it."""
     found = _stays(example, digits)
     if found is None or not found.values["lambda_max"]:
@@ -79,23 +79,23 @@ def growth(example: Example, digits: int = DIGITS) -> float | None:
     return _lg(found.values["lambda_max"])
 
 
-def orbit(example: Example) -> list[tuple[Fraction, Fraction]]:
+def orbit(example: Sample) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
     run = KernelRun(*example.given, frozenset(), 0, sections=_POINTS)
-    trail = run.go(number_systems.get("mpfr", DIGITS)).trail
+    trail = run.run(number_systems.get("mpfr", DIGITS)).trail
     return [(example.q, example.p), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(example: Example, digits: int) -> Outcome | None:
+def _stays(example: Sample, digits: int) -> Outcome | None:
     """The run with so many digits; None where it goes far."""
-    found = _job(example, frozenset({"lambda_max"})).go(number_systems.get("mpfr", digits))
+    found = _job(example, frozenset({"lambda_max"})).run(number_systems.get("mpfr", digits))
     if found.done < example.steps:
         return None
     near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
     return found if near else None
 
 
-def _job(example: Example, observables: frozenset[str]) -> KernelRun:
+def _job(example: Sample, observables: frozenset[str]) -> KernelRun:
     return KernelRun(*example.given, observables, 0)
 
 

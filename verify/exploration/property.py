@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 
 
 class Violation(Exception):  # noqa: N818 - it is a finding about the code, not a failure of it
@@ -20,5 +20,5 @@ class Property:
 
     name: str
     sentence: str
-    holds: Callable[[Example], bool]
+    holds: Callable[[Sample], bool]
     scheme: str = ""

@@ -20,7 +20,7 @@ _MOST_OF_KERNELS, _MOST_TERMS, _MOST_OF_POINTS = 20, 40, 150
 
 
 @dataclass(frozen=True)
-class Example:
+class Sample:
     """What a property is asked about; the map and its proof are made once for all of them."""
 
     hamiltonian: Hamiltonian
@@ -32,7 +32,7 @@ class Example:
     scene: Scene
 
     @classmethod
-    def of(cls, scene: Scene) -> "Example":
+    def of(cls, scene: Scene) -> "Sample":
         """The first scheme, step size and initial value of a scene that has a [grid].
 
         Raises InputError for one that has none.
@@ -69,7 +69,7 @@ class Example:
         scheme = self.scheme
         if self._terms > _MOST_TERMS:
             return False
-        if self.polynomial or scheme.order <= 2 or isinstance(scheme.generic, TaylorSeries):
+        if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
             return True
         return scheme.needs_separable and not self._kinds & {"inverse", "root"}
 

@@ -24,7 +24,7 @@ _BYTES = 4096
 _MOST_STEPS = 12
 _ATTEMPTS = 100
 
-Look = Callable[[Scene], str]  # what is wrong with a scene; empty where nothing is
+Fault = Callable[[Scene], str]  # what is wrong with a scene; empty where nothing is
 
 
 @lru_cache(maxsize=32)
@@ -42,7 +42,7 @@ def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
     )
 
 
-def drawn_scene(drawn: SampleSpace, seed: int, number: int) -> Scene:
+def sample_scene(drawn: SampleSpace, seed: int, number: int) -> Scene:
     """Scene `number` of the seed."""
     box, fuzz = _drawer(drawn)
     for attempt in range(_ATTEMPTS):
@@ -70,7 +70,7 @@ def _drawer(drawn: SampleSpace) -> tuple[list[Scene], Callable[[bytes], Any]]:
     return box, draw.hypothesis.fuzz_one_input  # type: ignore[attr-defined]
 
 
-def simplest(drawn: SampleSpace, seed: int, number: int, look: Look) -> tuple[Scene, str]:
+def simplest(drawn: SampleSpace, seed: int, number: int, look: Fault) -> tuple[Scene, str]:
     """The simplest scene that hypothesis shrinks that one to, where `look` still finds something.
 
     It must find something in that scene itself.

@@ -36,7 +36,7 @@ class ExploreTask(_OnProperties):
     def cost(self) -> int:
         return _SCENE_COST * self.count * (len(self.properties) + len(self.claims))
 
-    def perform(self, keeper: Keeper) -> ExploreResult:
+    def compute(self, keeper: Keeper) -> ExploreResult:
         from verify.exploration.property_checks import check_properties, properties_of
 
         properties = properties_of(self.properties, self.claims)
@@ -51,7 +51,7 @@ class ShrinkTask(_OnProperties):
     kind: Literal["shrink"] = "shrink"
     example: int
 
-    def perform(self, keeper: Keeper) -> ShrunkResult:
+    def compute(self, keeper: Keeper) -> ShrunkResult:
         from verify.exploration.property_checks import properties_of, shrink
 
         (violated,) = properties_of(self.properties, self.claims)
@@ -73,7 +73,7 @@ class HuntTask(_OnSamples):
         runs = _RUNS_OF_A_MEASURE * self.steps * STEP_COST["mpfr"]
         return self.count * (_HUNTED_COST + runs)
 
-    def perform(self, keeper: Keeper) -> HuntResult:
+    def compute(self, keeper: Keeper) -> HuntResult:
         from verify.exploration.island_search import search_island
 
         return search_island(

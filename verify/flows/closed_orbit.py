@@ -89,7 +89,7 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
         p, q = (flow.number(x) for x in start)
         return Orbit(flow, ((p, q),), None, (zero, zero))
     rough = Flow(field, _ROUGH)
-    found = _Walk(rough, start, list(shifts(hamiltonian))).back()
+    found = _ReturnSearch(rough, start, list(shifts(hamiltonian))).back()
     for more in _MORE:
         orbit = _polished(Flow(field, digits + more), start, found, digits, count)
         if orbit is not None:
@@ -154,7 +154,7 @@ class _Return:
     reach: float
 
 
-class _Walk:
+class _ReturnSearch:
     """Follows the flow from z₀ until it is back."""
 
     def __init__(self, flow: Flow, start: Start, shifts: list[tuple[Fraction, Fraction]]) -> None:

@@ -44,7 +44,7 @@ def follow(
     with np.errstate(all="ignore"):
         slopes = _slopes(hamiltonian)
         for sign in (1, -1):
-            walk = _Walk(slopes, start, sign, columns)
+            walk = _CommonSteps(slopes, start, sign, columns)
             order = sorted((t for t in set(times) if sign * t > 0 or t == 0), key=abs)
             for time in order:
                 walk.to(WIDE.rational(abs(time)))
@@ -85,7 +85,7 @@ def _short(step: float) -> float:
     return math.ldexp(math.floor(math.ldexp(mantissa, _STEP_BITS)), exponent - _STEP_BITS)
 
 
-class _Walk:
+class _CommonSteps:
     """All points on their way, by common steps."""
 
     def __init__(self, slopes: Slopes, start: Array, sign: int, columns: int) -> None:

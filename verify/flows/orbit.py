@@ -36,14 +36,14 @@ class ExactOrbit:
     """What is known of the orbit through z₀ over a time T.
 
     `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open),
-    leaves every bound (escapes), or not followed to its end (unknown); `told` says more. `centre`
+    leaves every bound (escapes), or not followed to its end (unknown); `summary` says more. `centre`
     and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit runs
     through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest
     ω² = det Hess H on the orbit; `period`: that of a closed one, about.
     """
 
     kind: Kind
-    told: str
+    summary: str
     centre: tuple[Fraction, Fraction]
     reach: tuple[Fraction, Fraction]
     turns: tuple[bool, bool]
@@ -55,25 +55,27 @@ class ExactOrbit:
 @lru_cache(maxsize=256)
 def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:
     """The orbit through (p, q) until `time`."""
-    orbit = _Follow(hamiltonian, (p, q), time).orbit()
+    orbit = _OrbitSearch(hamiltonian, (p, q), time).orbit()
     if orbit.kind not in ("escapes", "open"):
         return orbit
     exactly = _by_algebra(hamiltonian, p, q, time)
     if exactly is None:
         return orbit
-    return replace(orbit, told=exactly if orbit.kind == "escapes" else f"{orbit.told}; {exactly}")
+    return replace(
+        orbit, summary=exactly if orbit.kind == "escapes" else f"{orbit.summary}; {exactly}"
+    )
 
 
 def _by_algebra(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> str | None:
     """How it leaves, of an orbit for which that is known so."""
     try:
-        told = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
+        summary = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
     except (InputError, NoFlowError):
         return None
-    return None if told is None or told == NOT_KNOWN else told.removeprefix("it ")
+    return None if summary is None or summary == NOT_KNOWN else summary.removeprefix("it ")
 
 
-class _Follow:
+class _OrbitSearch:
     def __init__(
         self, hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction], time: Fraction
     ) -> None:
@@ -81,7 +83,7 @@ class _Follow:
         ring = field.ring
         h_pp, h_pq = (ring.diff(field.h_p, n) for n in ("p", "q"))
         stiffness = ring.reduce(h_pp * ring.diff(field.h_q, "q") - h_pq * h_pq)
-        self.flow = Flow(field, _DIGITS + written_digits(start))
+        self.flow = Flow(field, _DIGITS + initial_value_digits(start))
         self.arithmetic = self.flow.arithmetic
         self.at = functions_at(
             self.arithmetic, [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
@@ -111,8 +113,10 @@ class _Follow:
             return self.found("at rest", "stays where it is, an equilibrium")
         if any(self.free):
             names = ("p", "q") if self.free[0] else ("q", "p")
-            told = f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
-            return self.found("rotates", told, self.free)
+            summary = (
+                f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
+            )
+            return self.found("rotates", summary, self.free)
         try:
             return self.followed()
         except NoFlowError as error:
@@ -137,8 +141,8 @@ class _Follow:
                 step = min(2 * step, self.allowed(), left)
             step, after = self.stepped(z, step)
             if after is None or (longest and step < left and step * _FASTER < longest):
-                told = f"becomes ever faster at t = {float(time):.6g}"
-                return self.found("escapes", told)
+                summary = f"becomes ever faster at t = {float(time):.6g}"
+                return self.found("escapes", summary)
             with self.arithmetic.context():
                 time = time + step
                 longest = max(longest or step, step)
@@ -147,16 +151,18 @@ class _Follow:
             self.points.append(after)
             self.note(after)
             if grown > _FAR and outwards >= _OUTWARDS:
-                told = f"is {_FAR:.0e} times as far out as z0 at t = {float(time):.6g}, and goes on"
-                return self.found("escapes", told)
+                summary = (
+                    f"is {_FAR:.0e} times as far out as z0 at t = {float(time):.6g}, and goes on"
+                )
+                return self.found("escapes", summary)
             back = self.returned(z, after)
             if back is not None:
                 shift, part = back
                 with self.arithmetic.context():
                     period = time - (1 - part) * step
                 kind: Kind = "rotates" if any(shift) else "closed"
-                told = f"{kind}, with a period of about {float(period):.3g}"
-                return self.found(kind, told, shift, period=self.arithmetic.exact(period))
+                summary = f"{kind}, with a period of about {float(period):.3g}"
+                return self.found(kind, summary, shift, period=self.arithmetic.exact(period))
             z = after
             if time >= self.time:
                 return self.found("open", f"is still under way at t = {float(time):.6g}")
@@ -231,7 +237,7 @@ class _Follow:
     def found(
         self,
         kind: Kind,
-        told: str,
+        summary: str,
         shift: Sequence[Number] = (0, 0),
         period: Fraction | None = None,
     ) -> ExactOrbit:
@@ -249,7 +255,7 @@ class _Follow:
         scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
         return ExactOrbit(
             kind=kind,
-            told=told,
+            summary=summary,
             centre=(exact(centre[0]), exact(centre[1])),
             reach=(reach[0], reach[1]),
             turns=(bool(shift[0]), bool(shift[1])),
@@ -259,7 +265,7 @@ class _Follow:
         )
 
 
-def written_digits(start: tuple[Fraction, Fraction]) -> int:
+def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:
     """How many digits an initial value is given with, beyond those of ordinary numbers."""
     written = max(len(str(x.numerator).rstrip("0")) for x in start)
     return min(written, _MOST_DIGITS) if written > _DIGITS else 0

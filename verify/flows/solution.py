@@ -64,7 +64,7 @@ def exact_solution(
         motion, parameters = known
         found = closed_form.evaluate(motion, (p, q), time, digits, parameters)
         return Solution(found.p, found.q, found.bound, motion.method)
-    return _followed(hamiltonian, (p, q), time, digits)
+    return _numerical_solution(hamiltonian, (p, q), time, digits)
 
 
 def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction) -> str | None:
@@ -77,7 +77,7 @@ def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
     H is not defined at the initial value.
     """
     told = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
-    return _seen_to_leave(hamiltonian, (p, q)) if told == NOT_KNOWN else told
+    return _reason_to_leave(hamiltonian, (p, q)) if told == NOT_KNOWN else told
 
 
 def leaves_by_algebra(
@@ -108,7 +108,7 @@ def _check(hamiltonian: Hamiltonian, digits: int) -> None:
         raise InputError("digits", digits, f"must be 1 … {closed_form.MOST_DIGITS}")
 
 
-def _seen_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
+def _reason_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
     try:
         orbit = closed_orbit(hamiltonian, start, _ROUGH, _POINTS)
     except NoFlowError as error:
@@ -118,7 +118,9 @@ def _seen_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
     return None
 
 
-def _followed(hamiltonian: Hamiltonian, start: State, time: Fraction, digits: int) -> Solution:
+def _numerical_solution(
+    hamiltonian: Hamiltonian, start: State, time: Fraction, digits: int
+) -> Solution:
     """By the numerical flow with more and more digits, until two of them agree."""
     field, _ = hamiltonian.field()
     before: State | None = None

@@ -15,7 +15,7 @@ from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
 from verify.errors import InputError
-from verify.hamiltonians.lie_derivatives import Along
+from verify.hamiltonians.lie_derivatives import LieDerivatives
 
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
@@ -101,7 +101,7 @@ class Hamiltonian:
         return to_text(self.expression)
 
     @property
-    def written(self) -> dict[str, Any]:
+    def texts(self) -> dict[str, Any]:
         """Its formula and parameter values as text, by the names that results give them."""
         return {
             "hamiltonian": self.formula,
@@ -123,7 +123,7 @@ class Hamiltonian:
         made = sympy.lambdify((p, q), slopes, modules="math", cse=True)
         return made
 
-    def generic(self) -> "Hamiltonian":
+    def with_symbols(self) -> "Hamiltonian":
         """H with its parameters as symbols, but for those of value 0, whose terms vanish.
 
         This is what a kernel is compiled for: the other values are its run-time arguments.
@@ -184,33 +184,33 @@ class VectorField:
         return result
 
     @cached_property
-    def _kept(self) -> Along:
-        return Along(self.ring, self.h_p, self.h_q)
+    def _powers(self) -> LieDerivatives:
+        return LieDerivatives(self.ring, self.h_p, self.h_q)
 
     def power(self, name: str, n: int) -> Poly:
         """Xⁿ y of y = p or q, made once."""
-        return self._kept.power(name, n)
+        return self._powers.power(name, n)
 
-    def along(self, name: str, most: int) -> Sequence[Poly]:
+    def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
         """[y, X y, …, X^most y] of y = p or q, each made once."""
-        return [self._kept.power(name, n) for n in range(most + 1)]
+        return [self._powers.power(name, n) for n in range(most + 1)]
 
     def taylor(self, name: str, most: int) -> dict[int, Poly]:
         """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
-        terms = {n: self._kept.term(name, n) for n in range(most + 1)}
+        terms = {n: self._powers.term(name, n) for n in range(most + 1)}
         return {n: x for n, x in terms.items() if x != 0}
 
     def truncated(self, eta: int) -> tuple[Poly, Poly]:
         """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""
-        return self._kept.truncated(eta)
+        return self._powers.truncated(eta)
 
     def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
         """The η whose `truncated` these very objects are; None for any other elements."""
-        return self._kept.truncated_at(p_next, q_next)
+        return self._powers.truncated_at(p_next, q_next)
 
     def delta_j(self, n: int, eta: int) -> Poly:
         """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
-        return self._kept.delta_j(n, eta)
+        return self._powers.delta_j(n, eta)
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
         """∂(x, y)/∂(p, q)."""

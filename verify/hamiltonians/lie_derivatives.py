@@ -10,7 +10,7 @@ from verify.algebra.ring import Poly, Ring
 _MOST_KEPT = 2000  # terms of a coefficient of ΔJ, beyond which it is made anew for each scheme
 
 
-class Along:
+class LieDerivatives:
     """Xⁿp and Xⁿq of X = H_p ∂_q − H_q ∂_p, their gradients, and ΔJ of their Taylor polynomials."""
 
     def __init__(self, ring: Ring, h_p: Poly, h_q: Poly) -> None:

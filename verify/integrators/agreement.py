@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from verify.integrators.probe import Point, carried_step
+from verify.integrators.probe import Point, dual_step
 from verify.integrators.step import Step
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.functions import copied
@@ -43,7 +43,7 @@ def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Any:
 def by_duals(step: Step) -> Any:
     def made(kind: Duals) -> Any:
         function = copied(step.function, kind)
-        return lambda p, q, h: carried_step(step, function, p, q, h)
+        return lambda p, q, h: dual_step(step, function, p, q, h)
 
     return made
 

@@ -11,7 +11,7 @@ from verify.integrators.agreement import by_duals, by_graph, must_agree
 from verify.integrators.claims import with_claims
 from verify.integrators.faults import Fault, changed_since, examined
 from verify.integrators.measured import of_measured
-from verify.integrators.probe import Point, carried_step, measured
+from verify.integrators.probe import Point, dual_step, measured
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
@@ -112,7 +112,7 @@ def _why(error: Exception) -> str:
 def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
     tape = Tape()
     symbols = [tape.symbol(name) for name in "pqh"]
-    roots = carried_step(step, copied(step.function, tape), *symbols)
+    roots = dual_step(step, copied(step.function, tape), *symbols)
     if tape.refused:  # what is traced is then what it does where that fails
         raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
     p_next, q_next = (x.node for x in roots)

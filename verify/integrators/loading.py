@@ -73,7 +73,7 @@ def _module(place: str, target: str) -> ModuleType:
 # -- its signature --------------------------------------------------------------------------------
 
 
-def made_step(
+def step_from(
     function: Callable[..., Any],
     arguments: str | None = None,
     parameters: Mapping[str, Fraction] | None = None,

@@ -209,7 +209,7 @@ class _Duals:
     def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
         with self.kind.running():
             p, q = self.kind.state(*point)
-            x, y = carried_step(self.step, self.function, p, q, self.kind.rational(h))
+            x, y = dual_step(self.step, self.function, p, q, self.kind.rational(h))
             delta = x.by_p * y.by_q - x.by_q * y.by_p - 1
             size = abs(x.by_p * y.by_q) + abs(x.by_q * y.by_p) + 1
             reach = 1 + abs(x.value) + abs(y.value)
@@ -221,7 +221,7 @@ class _Duals:
             )
 
 
-def carried_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
+def dual_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
     """p' and q' of a copied function at numbers of ours."""
     with step.timed():
         if step.arrays:

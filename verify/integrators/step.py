@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from verify.integrators.tracing.number import Carried
+from verify.integrators.tracing.number import TracedNumber
 
 State = tuple[float, float]
 TIME_LIMIT = 60.0  # seconds for all of the user's code
@@ -157,7 +157,7 @@ def _single(x: Any) -> Any:
 
 
 def _real(x: Any) -> float:
-    if isinstance(x, str | bytes | bytearray) or x is None or isinstance(x, Carried):
+    if isinstance(x, str | bytes | bytearray) or x is None or isinstance(x, TracedNumber):
         raise StepError(f"it returns {'text' if isinstance(x, str) else type(x).__name__}")
     if isinstance(x, complex):
         raise StepError("it returns complex numbers")

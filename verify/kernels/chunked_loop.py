@@ -50,7 +50,7 @@ class ChunkedLoop:
         self.tangents: list[dict[str, Fraction]] = []
         self.series: list[SeriesPoint] = []
         self._seen: dict[str, Fraction] = {}  # extremes since the last note
-        kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.carried)}"
+        kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         self._restore(run.keeper.load(self._label))
@@ -115,9 +115,9 @@ class ChunkedLoop:
     # -- what is noted ------------------------------------------------------------------------
 
     def _note(self) -> None:
-        raw = {n: self._exact(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
+        raw = {n: self._exact(x) for n, x in zip(self.kernel.state_names, self.state, strict=True)}
         radius = self.arithmetic.radius or (lambda _: Fraction(0))
-        for name, x in zip(self.kernel.carried, self.state, strict=True):
+        for name, x in zip(self.kernel.state_names, self.state, strict=True):
             if name in _EXTREMES:
                 low = name.endswith("low")
                 end = raw[name] - radius(x) if low else raw[name] + radius(x)
@@ -157,7 +157,7 @@ class ChunkedLoop:
         radius = self.arithmetic.radius
         if radius is None or self.done < self.run.steps:
             return {}
-        raw = {n: radius(x) for n, x in zip(self.kernel.carried, self.state, strict=True)}
+        raw = {n: radius(x) for n, x in zip(self.kernel.state_names, self.state, strict=True)}
         names = self.run.observables & set(_ACCUMULATORS)
         found = {"p": raw["p"], "q": raw["q"]} | {n: raw[_ACCUMULATORS[n]] for n in names}
         if "mse" in found:

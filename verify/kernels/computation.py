@@ -21,7 +21,7 @@ _STATE = ("p", "q")
 
 
 @dataclass(frozen=True)
-class Asked:
+class Observed:
     """ΔJ; the determinant of the four entries; A − 1 of the tangent map; see `verify.kernels.kernel`.
 
     `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
@@ -70,13 +70,13 @@ def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
     return get(scheme).step_map(hamiltonian)
 
 
-def computed(step_map: StepMap, asked: Asked) -> Computation:
+def computed(step_map: StepMap, asked: Observed) -> Computation:
     """What is asked of a map, made once as long as it is among the last ones."""
     return _computed(_Itself(step_map), asked)
 
 
 @dataclass(frozen=True, eq=False)
-class _Begun:
+class _FirstPart:
     """A program with the inputs, `named`, and ΔJ of the first substep, as `evaluator` wrote it."""
 
     program: Program
@@ -90,7 +90,7 @@ class _Begun:
 
 
 @lru_cache(maxsize=64)
-def _begun(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -> _Begun:
+def _first_part(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -> _FirstPart:
     """What all that is asked of a map has in common: ΔJ is the longest part of it."""
     step_map, program = itself.step_map, Program()
     # A user's parameter may be named like anything; in the source it is x0, x1, ….
@@ -105,13 +105,13 @@ def _begun(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -> _Be
     evaluator = Evaluator(program, first.ring, named, pipelined)
     if delta_j and not first.preserves_area:
         found = _delta_j(evaluator, first, scaled, _common_power(step_map, scaled))
-    return _Begun(program, named, evaluator, found)
+    return _FirstPart(program, named, evaluator, found)
 
 
 @lru_cache(maxsize=64)
-def _computed(itself: _Itself, asked: Asked) -> Computation:
+def _computed(itself: _Itself, asked: Observed) -> Computation:
     step_map, power = itself.step_map, _common_power(itself.step_map, asked.scaled)
-    begun = _begun(itself, asked.pipelined, asked.scaled, asked.delta_j)
+    begun = _first_part(itself, asked.pipelined, asked.scaled, asked.delta_j)
     program, evaluator = begun.copy()
     tangent = Tangent(program) if asked.tangent else None
     total = dict.fromkeys(_STATE, program.constant(Fraction(0)))

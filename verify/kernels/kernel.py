@@ -27,7 +27,7 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import newton
 from verify.kernels import tangent_map as tangent
-from verify.kernels.computation import Asked, Computation, computed, step_map_of
+from verify.kernels.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.lowering import Lowering
 from verify.schemes.step_map import StepMap
 
@@ -43,9 +43,9 @@ LOOP = "    for k in range(steps):"  # what is before this line is the same for 
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """`function(steps, h, *parameters, *scales, *limits, *carried)` → (steps done, *carried).
+    """`function(steps, h, *parameters, *scales, *limits, *state)` → (steps done, *state).
 
-    `carried` names the state and accumulators in their order: p, q, then those of the observables;
+    `state_names` names the state and accumulators in their order: p, q, then those of the observables;
     `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start` has the initial values,
     p and q apart; "p" and "q" there are those in float64. An arithmetic of absolute precision has
     `scales` and `limits`, the numbers that the loop's guard compares with, and `power` is the r of
@@ -57,7 +57,7 @@ class Kernel:
     parameters: tuple[str, ...]
     scales: tuple[str, ...]
     limits: tuple[str, ...]
-    carried: tuple[str, ...]
+    state_names: tuple[str, ...]
     kinds: tuple[str, ...]
     start: tuple[int | str, ...]
     power: int
@@ -81,7 +81,7 @@ def kernel_for(
     observables: frozenset[str],
     compensated: bool = False,
 ) -> Kernel:
-    """The kernel for a generic Hamiltonian (see `Hamiltonian.generic`), compiled once."""
+    """The kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), compiled once."""
     step_map = step_map_of(hamiltonian, scheme)
     return Writer(step_map, arithmetic, observables, compensated).kernel()
 
@@ -102,7 +102,7 @@ class Writer:
         self.scaled = scaled and arithmetic.absolute and needs_delta_j
         self.made: Computation = computed(
             step_map,
-            Asked(
+            Observed(
                 pipelined=arithmetic.pipelined,
                 scaled=self.scaled,
                 delta_j=needs_delta_j,
@@ -115,7 +115,7 @@ class Writer:
             self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
         )
         self.parameters = step_map.hamiltonian.symbols
-        self.carried: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
+        self.state_names: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
 
     # -- what is computed ---------------------------------------------------------------------
 
@@ -133,13 +133,13 @@ class Writer:
             **newton.constants(self.arithmetic.bits, self.arithmetic.number),
             **self.constants_of_tangent(),
         }
-        names, kinds, start = zip(*self.carried, strict=True)
+        names, kinds, start = zip(*self.state_names, strict=True)
         return Kernel(
             function=self.arithmetic.compile(source, "kernel", scope),
             parameters=self.parameters,
             scales=scales,
             limits=limits,
-            carried=names,
+            state_names=names,
             kinds=kinds,
             start=start[2:],
             power=self.made.power,
@@ -229,7 +229,7 @@ class Writer:
         return f"if {first}not {of} {opposite} {name}: {name} = {value}"
 
     def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
-        self.carried.append((name, kind, start))
+        self.state_names.append((name, kind, start))
 
     def accumulate(self, name: str, increment: str) -> list[str]:
         if name not in ("p", "q"):
@@ -252,10 +252,10 @@ class Writer:
         if self.tangent:
             more = self.tangent.lowering.lines(self.tangent.change)
             static, dynamic = static + more[0], dynamic + more[1]
-        names = ", ".join(name for name, _, _ in self.carried)
+        names = ", ".join(name for name, _, _ in self.state_names)
         parameters = [f"x{k}" for k in range(len(self.parameters))]
         given = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]
-        annotated = [f"{name}: '{kind}'" for name, kind, _ in self.carried]
+        annotated = [f"{name}: '{kind}'" for name, kind, _ in self.state_names]
         arguments = ", ".join(["steps: 'int'", "h", *parameters, *given, *annotated])
         guard = self.guard(needed)
         return "\n".join(
@@ -276,7 +276,7 @@ class Writer:
             template = self.arithmetic.guard
             return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
         looked_at = {"p": "reach_p", "q": "reach_q"}
-        products = [name for name, _, _ in self.carried if name in ("part", "plain")]
+        products = [name for name, _, _ in self.state_names if name in ("part", "plain")]
         looked_at |= dict.fromkeys(products, "reach_part")
         for index in self.lowering.live(needed):
             if self.program.ops[index].kind in PARTIAL:

@@ -25,7 +25,7 @@ _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
 Values = Mapping[str, Any]  # by name: "p", "q" and what else is carried; sequences of numbers
 
 
-class LeftError(Exception):
+class LeftRangeError(Exception):
     """A point left the range of the number system or of H; the message says which point."""
 
 
@@ -48,7 +48,7 @@ class PointMap:
         start = {"h": step_size, "p": Fraction(0), "q": Fraction(0)}
         self.kernel_run = KernelRun(hamiltonian, scheme, start, steps, observables, 0)
         self.kernel = kernel_for(
-            self.kernel_run.generic, scheme, arithmetic, observables, compensated
+            self.kernel_run.hamiltonian, scheme, arithmetic, observables, compensated
         )
         if self.kernel.scales or self.kernel.tangent:
             raise UnsupportedError(f"{arithmetic.name} carries no observables for many points")
@@ -60,8 +60,8 @@ class PointMap:
         """
         if self.arithmetic.name == float64.NAME:
             found = self._in_lanes(np.asarray(p, dtype=np.float64), np.asarray(q, np.float64))
-            return dict(zip(self.kernel.carried, found, strict=True))
-        return dict(zip(self.kernel.carried, self._one_by_one(p, q), strict=True))
+            return dict(zip(self.kernel.state_names, found, strict=True))
+        return dict(zip(self.kernel.state_names, self._one_by_one(p, q), strict=True))
 
     def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Any]:
         given = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
@@ -119,8 +119,10 @@ class PointMap:
         return tuple(found)
 
 
-def _left(p: float, q: float, name: str) -> LeftError:
-    return LeftError(f"the point (q, p) = ({q:.6g}, {p:.6g}) leaves the range of {name}, or of H")
+def _left(p: float, q: float, name: str) -> LeftRangeError:
+    return LeftRangeError(
+        f"the point (q, p) = ({q:.6g}, {p:.6g}) leaves the range of {name}, or of H"
+    )
 
 
 @lru_cache(maxsize=64)
@@ -131,7 +133,7 @@ def _compiled(kernel: Kernel) -> Callable[..., None]:
     body = loop.rpartition("    return ")[0].splitlines()
     named = signature[signature.index("(") + 1 : signature.rindex(")")].split(",")
     names = [each.partition(":")[0].strip() for each in named]
-    arrays = [f"{name}_all" if name in kernel.carried else name for name in names]
+    arrays = [f"{name}_all" if name in kernel.state_names else name for name in names]
     source = "\n".join(
         [
             f"def many({', '.join(arrays)}):",
@@ -139,9 +141,9 @@ def _compiled(kernel: Kernel) -> Callable[..., None]:
             f"    for first in range(0, len(p_all), {_LANES}):",
             "        for k in range(steps):",
             f"            for i in range(first, min(first + {_LANES}, len(p_all))):",
-            *(f"                {name} = {name}_all[i]" for name in kernel.carried),
+            *(f"                {name} = {name}_all[i]" for name in kernel.state_names),
             *(f"        {line}" for line in body),
-            *(f"                {name}_all[i] = {name}" for name in kernel.carried),
+            *(f"                {name}_all[i] = {name}" for name in kernel.state_names),
             "",
         ]
     )

@@ -18,7 +18,7 @@ def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
     A scheme may take H for the given values only, as symplectic Euler does (a − 1) p q + … at
     a = 1; then the values are put in.
     """
-    generic = hamiltonian.generic()
+    generic = hamiltonian.with_symbols()
     return generic if _takes(generic, scheme) else Hamiltonian(hamiltonian.exact)
 
 
@@ -48,16 +48,16 @@ class RunInputs:
         keeper: Keeper = NOTHING,
         sections: int = 16,
     ) -> None:
-        self.generic, self.scheme = _compilable(hamiltonian, scheme), scheme
+        self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
         self.sections = points or sections
         self.keeper = keeper
 
     @property
-    def solved(self) -> bool:
+    def implicit(self) -> bool:
         """Whether a step solves equations; there is no certificate of such runs."""
-        return step_map_of(self.generic, self.scheme).solved
+        return step_map_of(self.hamiltonian, self.scheme).implicit
 
     def observing(self, observables: frozenset[str]) -> Self:
         """The same run with other observables, and without a series."""

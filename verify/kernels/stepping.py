@@ -52,10 +52,10 @@ class KernelRun(RunInputs):
 
         Raises UnsupportedError where that lacks a function.
         """
-        made = (self.generic, self.scheme, arithmetic, self.observables | {"tangent"}, False)
+        made = (self.hamiltonian, self.scheme, arithmetic, self.observables | {"tangent"}, False)
         return any(True for _ in self._formats(kernel_for(*made)))
 
-    def go(
+    def run(
         self,
         arithmetic: Arithmetic,
         *,
@@ -72,7 +72,7 @@ class KernelRun(RunInputs):
         """
         observables = self.observables if not compensated else self.observables - {"extremes"}
         observables |= {"tangent"} if tangent else frozenset()
-        made = (self.generic, self.scheme, arithmetic, observables, compensated)
+        made = (self.hamiltonian, self.scheme, arithmetic, observables, compensated)
         kernel = kernel_for(*made)
         if not arithmetic.absolute:
             return self._loop(kernel, arithmetic, (), 0, progress, enough)

@@ -48,17 +48,17 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
     scheme that is known for one H at a time only, or of an order above 14.
     """
     scheme = get(name)
-    if scheme.generic is None:
+    if scheme.every_h is None:
         raise InputError("scheme", name, "is given for one H; it cannot be proved for every H")
     if scheme.order > _MOST_ORDER:
         problem = f"of order {_MOST_ORDER} at most: its polynomials have too many terms"
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
-    separable = separable or scheme.generic.separable
-    if isinstance(scheme.generic, ByConditions):
-        return _of_conditions(scheme, scheme.generic, separable)
-    if isinstance(scheme.generic, StageEquations):
-        return _of_stages(scheme, scheme.generic, separable)
-    return _of_series(scheme, scheme.generic, separable)
+    separable = separable or scheme.every_h.separable
+    if isinstance(scheme.every_h, ByConditions):
+        return _of_conditions(scheme, scheme.every_h, separable)
+    if isinstance(scheme.every_h, StageEquations):
+        return _of_stages(scheme, scheme.every_h, separable)
+    return _of_series(scheme, scheme.every_h, separable)
 
 
 def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> EveryProof:
@@ -88,7 +88,7 @@ def _convergence(jets: Jets, generic: BySeries, most: int) -> int:
     """p', q' agree with the exact flow up to this power of h, looked at up to h^most."""
     agreed = -1
     series = generic.taylor(jets, most)
-    flows = jets.along("p", most), jets.along("q", most)
+    flows = jets.lie_derivatives("p", most), jets.lie_derivatives("q", most)
     for n in range(most + 1):
         if any(s[n] * math.factorial(n) != x[n] for s, x in zip(series, flows, strict=True)):
             break
@@ -183,7 +183,7 @@ def _telescoping(
     if not isinstance(generic, TaylorSeries):
         return telescopes(jets, leading), "", ()
     eta = generic.eta
-    end = [jets.derive(jets.along(name, eta)[-1]) for name in ("p", "q")]
+    end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in ("p", "q")]
     divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
     formula = ""
     checked: tuple[str, ...] = ()

@@ -50,7 +50,7 @@ class EveryProof:
     @property
     def argument(self) -> str:
         """What is proved on paper beside what the machine checked; see the module's text."""
-        if isinstance(get(self.scheme).generic, TaylorSeries):
+        if isinstance(get(self.scheme).every_h, TaylorSeries):
             return ARGUMENT
         return ""
 

@@ -114,7 +114,7 @@ def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
     whole = step_map.whole
     if whole.preserves_area:
         return VANISHES
-    if step_map.solved:
+    if step_map.implicit:
         return Leading(MOST_ORDERS + 1, Decision(None))
     decision = whole.ring.decide(whole.delta_j)
     return Leading(MOST_ORDERS + 1 if decision.zero is None else None, decision)

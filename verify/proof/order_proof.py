@@ -43,7 +43,7 @@ class Proof:
     @property
     def delta_j(self) -> sympy.Expr | None:
         """ΔJ in closed form, written out when it is asked for; None where it is too large."""
-        return self.step_map.delta_j if self.step_map.written else None
+        return self.step_map.delta_j if self.step_map.has_closed_form else None
 
     @property
     def consistent(self) -> bool:

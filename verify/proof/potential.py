@@ -67,7 +67,7 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
         return Potential(
             False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"
         )
-    generic = scheme.generic
+    generic = scheme.every_h
     if isinstance(generic, TaylorSeries) and generic.eta % 2 == 0:
         found: Poly | None = potential_of_lie(field, generic.eta)
         how = "by the formula for every H"

@@ -40,7 +40,7 @@ class Symmetry:
 
 def prove_symmetry(scheme: Scheme) -> Symmetry:
     """By the scheme's coefficients; where they do not say that it is, by the series for one H."""
-    generic = scheme.generic
+    generic = scheme.every_h
     conditions = generic.symmetry_conditions() if isinstance(generic, WithSymmetry) else ()
     wrong = first_wrong(conditions)
     if conditions and wrong is None:

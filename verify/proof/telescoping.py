@@ -27,7 +27,7 @@ from verify.algebra.linear_combination import combination
 class Derivation(Protocol):
     """p and q with their derivatives along the flow: `verify.hamiltonians.hamiltonian.VectorField` is one."""
 
-    def along(self, name: str, most: int) -> Sequence[Poly]:
+    def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
         """[y, X y, …, X^most y] of y = p or q."""
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
@@ -38,7 +38,7 @@ def potential_of_lie(field: Derivation, eta: int) -> Poly:
     """G with X·G = L, the coefficient of h^(η+1) in ΔJ of `lieη`, for even η."""
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
-    p, q = field.along("p", eta), field.along("q", eta)
+    p, q = field.lie_derivatives("p", eta), field.lie_derivatives("q", eta)
     total = sum((-1) ** k * field.bracket(p[eta - k], q[k]) for k in range(eta + 1))
     return total / -math.factorial(eta + 1)
 

@@ -94,7 +94,7 @@ class _Certificate:
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
-        derivatives = Derivatives.of(self.run.generic, self.run.scheme)
+        derivatives = Derivatives.of(self.run.hamiltonian, self.run.scheme)
         steps = self.one_step()
         if derivatives is None or steps is None:
             return None

@@ -57,7 +57,7 @@ def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
         step_map = step_map_of(hamiltonian, scheme)
     except InputError:
         return None
-    if step_map.solved:
+    if step_map.implicit:
         return None
     step = _whole(step_map)
     ring, diff = step.ring, step.ring.diff

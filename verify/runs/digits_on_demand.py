@@ -87,11 +87,11 @@ def certified(
     """The run's values to so many digits with rigorous bounds; where there are none, the arithmetic
     at the precision that was reached. Raises UnsupportedError."""
     own = number_systems.get(name, _first_digits(name, digits, kernel_run))
-    if kernel_run.solved:
+    if kernel_run.implicit:
         return own
     for _ in range(_ATTEMPTS):
         foreseen = _Foresight(kernel_run, own, digits) if kernel_run.steps > _SHORT else None
-        outcome = kernel_run.go(own, tangent=True, progress=progress, enough=foreseen)
+        outcome = kernel_run.run(own, tangent=True, progress=progress, enough=foreseen)
         if foreseen and foreseen.missing > 0:
             own = _finer(own, foreseen.missing)
             continue
@@ -109,7 +109,7 @@ def certified(
 def _estimated(
     kernel_run: KernelRun, own: Arithmetic, digits: int, progress: Progress | None
 ) -> Measured:
-    first = kernel_run.go(own, progress=progress)
+    first = kernel_run.run(own, progress=progress)
     if own.absolute and first.done < kernel_run.steps:
         bounds = Bounds({}, "", "left range", first.done + 1)
     else:

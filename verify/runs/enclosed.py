@@ -22,7 +22,7 @@ def enclosed(
     """The values with the radii of their balls, and the run that they are of."""
     most, last = _MOST_TIMES * digits_of(own), None
     for attempt in range(1, _ATTEMPTS + 1):
-        run = kernel_run.go(own, progress=progress)
+        run = kernel_run.run(own, progress=progress)
         has, wanted = digits_of(own), 2 * digits_of(own)
         if run.done == kernel_run.steps:
             found = {n: (x, run.radii[n]) for n, x in run.values.items()}

@@ -67,14 +67,14 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
     """The values to so many digits, by raising the precision until a rerun confirms them."""
     for _ in range(_ATTEMPTS):
         finer = number_systems.get(own.name, digits_of(own) + _MORE_DIGITS)
-        second = kernel_run.go(finer)
+        second = kernel_run.run(finer)
         method = f"rerun with {_MORE_DIGITS} more digits"
         noise = _noise(own, first, second)
         if first.done != second.done or not second.trail or spread(first, second, noise) > LINEAR:
             if first.done == second.done < kernel_run.steps and not second.trail:
                 return Bounds({}, method, "left range", second.done + 1)
             own = number_systems.get(own.name, 2 * digits_of(own))
-            first = kernel_run.go(own)
+            first = kernel_run.run(own)
             continue
         if second.done < kernel_run.steps:
             return Bounds({}, method, "left range", second.done + 1)
@@ -91,7 +91,7 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
         if missing <= 0:
             return Bounds(found, method)
         own = number_systems.get(own.name, digits_of(own) + missing + 5)
-        first = kernel_run.go(own)
+        first = kernel_run.run(own)
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
 
 

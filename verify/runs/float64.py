@@ -75,7 +75,7 @@ def _from(first: Outcome, true: Bounded) -> Bounded:
 
 def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
     reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
-    second = run.go(reference)
+    second = run.run(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
     if second.done == run.steps and spread(first, second) < LINEAR:
         return Bounds(_differences(first, second.values, run.steps), method)
@@ -91,7 +91,7 @@ def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
 
 def _compensated(run: KernelRun, first: Outcome) -> Bounds:
     method = "four times the difference from a compensated run"
-    second = run.go(number_systems.get("float64", 17), compensated=True)
+    second = run.run(number_systems.get("float64", 17), compensated=True)
     if second.done < run.steps:
         return Bounds({}, f"{method}, which left the range", "unresolved")
     apart = spread(first, second)

@@ -73,7 +73,7 @@ def run(
     if found.status == "finished":
         values |= {n: _printed(*known[n], digits) for n in observables if n in known}
     return RunResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         scheme=scheme,
         arithmetic=done.arithmetic,
         fallback=done.fallback,
@@ -93,7 +93,7 @@ def run(
     )
 
 
-def known_run(
+def proved_run(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
@@ -110,7 +110,7 @@ def known_run(
     if not set(observables) <= set(known):
         return None
     return RunResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         scheme=scheme,
         arithmetic="ball",
         digits=digits,
@@ -134,7 +134,7 @@ def _run(
 ) -> Measured:
     if arithmetic != "float64":
         return measure(kernel_run, arithmetic, digits, progress)
-    first = kernel_run.go(number_systems.get(arithmetic, digits), progress=progress)
+    first = kernel_run.run(number_systems.get(arithmetic, digits), progress=progress)
     return Measured(bounded(kernel_run, first, known), arithmetic, first)
 
 

@@ -29,7 +29,7 @@ class RunTask(InitialValueTask):
         checked = self.arithmetic == "float64" and self.steps <= DIRECT_STEPS
         return self.steps * STEP_COST.get(AUTO if checked else self.arithmetic, _UNLISTED)
 
-    def perform(self, keeper: Keeper) -> RunResult:
+    def compute(self, keeper: Keeper) -> RunResult:
         return run(
             self.exact_hamiltonian(),
             self.scheme,

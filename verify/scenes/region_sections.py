@@ -34,7 +34,7 @@ FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them
 Corner = tuple[Number, Number]
 
 
-class ShapeGiven(Frozen):
+class PlacedShape(Frozen):
     """A shape by its name, as a polygon or as an SVG path; then where it is put, and how large."""
 
     shape: str | None = None
@@ -98,7 +98,7 @@ def _reach(*key: Any) -> Any:
     return max(abs(x) for point in points for x in point)
 
 
-class Flow(ShapeGiven):
+class Flow(PlacedShape):
     """See the module's text for the keys."""
 
     step_size: StepSize
@@ -137,6 +137,6 @@ class Flow(ShapeGiven):
                 raise InputError("steps", count, f"allowed: 1 … {MAX_STEPS}")
         return tuple(sorted(found))
 
-    def shape_given(self) -> ShapeGiven:
+    def shape_given(self) -> PlacedShape:
         """Where which shape is, without the rest."""
-        return ShapeGiven(**{n: getattr(self, n) for n in ShapeGiven.model_fields})
+        return PlacedShape(**{n: getattr(self, n) for n in PlacedShape.model_fields})

@@ -96,7 +96,7 @@ def _at(ring: Ring, x: Poly, point: Sequence[Poly], most: int) -> Poly | None:
     return horner(x, 0)
 
 
-def written_out(ring: Ring, maps: Sequence[Map]) -> int:
+def occurrences(ring: Ring, maps: Sequence[Map]) -> int:
     """How often p and q occur in the composition as a formula: it may double with every map."""
     sizes = dict.fromkeys(map(symbol, STATE), 1)
     for pair in maps:

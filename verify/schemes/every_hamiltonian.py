@@ -43,7 +43,7 @@ class TaylorSeries:
         kept = min(self.eta, most)
 
         def cut(name: str) -> Series:
-            terms = [x / math.factorial(n) for n, x in enumerate(jets.along(name, kept))]
+            terms = [x / math.factorial(n) for n, x in enumerate(jets.lie_derivatives(name, kept))]
             return terms + [jets.zero] * (most - kept)
 
         return cut("p"), cut("q")

@@ -19,7 +19,7 @@ class Scheme:
     `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
     that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
     −h undoes that of h. `source`: where it is defined.
-    `build` raises InputError for an H that the scheme does not take. `generic`: the scheme as it is
+    `build` raises InputError for an H that the scheme does not take. `every_h`: the scheme as it is
     for every H; None where it is known for one H at a time.
     """
 
@@ -30,19 +30,19 @@ class Scheme:
     symmetric: bool
     source: str
     build: Callable[[Hamiltonian], StepMap]
-    generic: BySeries | ByConditions | None = None
+    every_h: BySeries | ByConditions | None = None
 
     @property
     def needs_separable(self) -> bool:
         """Whether it is known to be for H = T(p) + V(q) only."""
-        return bool(getattr(self.generic, "separable", False))
+        return bool(getattr(self.every_h, "separable", False))
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
-        return _made(self.build, hamiltonian)
+        return _step_map(self.build, hamiltonian)
 
 
 # A scene asks for the same map when it is read, when it is proved and when it is run, and what is
 # made of a map is found again by the map. Few, since a map keeps what was derived of it.
 @lru_cache(maxsize=32)
-def _made(build: Callable[[Hamiltonian], StepMap], hamiltonian: Hamiltonian) -> StepMap:
+def _step_map(build: Callable[[Hamiltonian], StepMap], hamiltonian: Hamiltonian) -> StepMap:
     return build(hamiltonian)

@@ -24,7 +24,7 @@ def splitting(
         symmetric=symmetric,
         source=source,
         build=lambda hamiltonian: shears(hamiltonian, name, parts),
-        generic=Splitting(tuple(parts)),
+        every_h=Splitting(tuple(parts)),
     )
 
 

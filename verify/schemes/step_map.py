@@ -17,7 +17,7 @@ from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
-from verify.schemes.composition import composed_polynomials, polynomial, written_out
+from verify.schemes.composition import composed_polynomials, occurrences, polynomial
 from verify.schemes.stages import chained
 from verify.schemes.substep import Substep as Substep
 from verify.schemes.substep import h_inside as h_inside
@@ -48,9 +48,9 @@ class StepMap:
     known_order: Callable[[], int | None] = field(default=lambda: None, compare=False, repr=False)
 
     @cached_property
-    def solved(self) -> bool:
+    def implicit(self) -> bool:
         """Whether it is given by equations, and has no closed form."""
-        return any(step.solved for step in self.substeps)
+        return any(step.implicit for step in self.substeps)
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -103,7 +103,7 @@ class StepMap:
 
     @cached_property
     def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
-        if self.solved:
+        if self.implicit:
             raise InputError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
         p1, q1 = P, Q
         for step in self.substeps:
@@ -122,7 +122,7 @@ class StepMap:
     @cached_property
     def closed(self) -> Substep | None:
         """The whole map as one substep in closed form; None where a composition is too large."""
-        if self.solved:
+        if self.implicit:
             return None
         if not self.of_parts:
             return self.substeps[0]
@@ -132,7 +132,7 @@ class StepMap:
         whole = self.substeps[0].field
         if polynomial(whole.ring, parts) and all(step.field is whole for step in self.substeps):
             found = composed_polynomials(whole.ring, parts, _MOST_COMPOSED)
-        elif written_out(whole.ring, parts) > _MOST_WRITTEN:
+        elif occurrences(whole.ring, parts) > _MOST_WRITTEN:
             return None
         else:
             try:
@@ -158,11 +158,11 @@ class StepMap:
         if self.closed is None:
             shown = str(self.hamiltonian.expression)
             large = "its closed form, all substeps composed, is too large"
-            raise InputError("map", shown, _NOT_WRITTEN if self.solved else large)
+            raise InputError("map", shown, _NOT_WRITTEN if self.implicit else large)
         return self.closed
 
     @property
-    def written(self) -> bool:
+    def has_closed_form(self) -> bool:
         """Whether ΔJ has a closed form that is short enough to be written out."""
         return self.preserves_area or self.closed is not None
 
@@ -194,7 +194,7 @@ class StepMap:
     @cached_property
     def delta_j_text(self) -> str | None:
         """ΔJ as a formula; None where its closed form is too large."""
-        if not self.written:
+        if not self.has_closed_form:
             return None
         if not self.preserves_area and self.flat.degree is not None:
             coefficients = self._coefficients

@@ -55,7 +55,7 @@ class Substep:
         return any(g.kind == "stage" for g in self.ring.used(self.p_next, self.q_next))
 
     @cached_property
-    def solved(self) -> bool:
+    def implicit(self) -> bool:
         """Whether it is given by equations; see `verify.algebra.implicit_unknowns`."""
         return any(g.kind == "solved" for g in self.ring.used(self.p_next, self.q_next))
 
@@ -165,7 +165,7 @@ class Substep:
     @cached_property
     def preserves_area(self) -> bool:
         """True where ΔJ is shown to be the zero function."""
-        if self.conditions or self.solved:
+        if self.conditions or self.implicit:
             return bool(self.conditions) and all(c.holds is True for c in self.conditions)
         ring, degree = self.ring, self.degree
         if degree is None:

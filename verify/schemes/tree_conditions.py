@@ -82,7 +82,7 @@ def symmetry(tree: Tree) -> int:
     return product
 
 
-def written(tree: Tree) -> str:
+def condition_text(tree: Tree) -> str:
     """The left side of the tree's condition."""
     inner = _vector(tree) if tree else "1"
     return f"b·({inner})" if " " in inner else f"b·{inner}"
@@ -218,7 +218,7 @@ class Weights:
         return self.weight(tree) - self.ring.one / density(tree)
 
     def condition(self, tree: Tree, gap: Poly) -> Condition:
-        name = f"{written(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
+        name = f"{condition_text(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
         return self.numbers.condition(name, vertices(tree), gap)
 
     def vector(self, tree: Tree) -> Vector:

@@ -44,15 +44,15 @@ def hamiltonians(
     Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
     exists, when it is called and not when it draws.
     """
-    drawn = drawn_formulas(kinds, degree, terms, size, separable, bounded, with_parameters)
-    return drawn.map(made)
+    drawn = formula_strategy(kinds, degree, terms, size, separable, bounded, with_parameters)
+    return drawn.map(hamiltonian_from)
 
 
-def made(formula: Formula) -> Hamiltonian:
+def hamiltonian_from(formula: Formula) -> Hamiltonian:
     return Hamiltonian.parse(formula.text, dict(formula.parameters))
 
 
-def drawn_formulas(
+def formula_strategy(
     kinds: Sequence[str] = KINDS,
     degree: int = 6,
     terms: int = 4,

@@ -13,7 +13,7 @@ from verify.scenes.values import MAX_STEPS, InitialValue
 from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import strategy_or_none, whole
 from verify.strategies.formulas import Formula
-from verify.strategies.hamiltonians import drawn_formulas, made
+from verify.strategies.hamiltonians import formula_strategy, hamiltonian_from
 from verify.strategies.numbers import initial_values as drawn_values
 from verify.strategies.numbers import parameters
 from verify.strategies.numbers import step_sizes as drawn_steps
@@ -87,9 +87,9 @@ def _of_schemes(
     def drawn(draw: st.DrawFn) -> Scene:
         scheme = draw(schemes)
         formula = draw(separable if scheme.needs_separable else any_formula)
-        if scheme.generic is not None:
+        if scheme.every_h is not None:
             return _scene(formula, scheme, draw(grids))
-        return _fitting(made(formula), scheme, draw(grids))
+        return _fitting(hamiltonian_from(formula), scheme, draw(grids))
 
     return drawn()
 
@@ -115,7 +115,7 @@ def _of_hamiltonians(
 
 def _formulas(separable: bool | None = None) -> st.SearchStrategy[Formula]:
     plain, named = (
-        drawn_formulas(separable=separable, with_parameters=named) for named in (False, True)
+        formula_strategy(separable=separable, with_parameters=named) for named in (False, True)
     )
     return st.one_of(plain, plain, named)
 

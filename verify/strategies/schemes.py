@@ -82,7 +82,7 @@ def takers(found: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
 
 
 def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
-    if scheme.generic is not None:
+    if scheme.every_h is not None:
         return separable or not scheme.needs_separable
     try:  # a scheme of the user's own: nothing else is known of it
         scheme.step_map(hamiltonian)

@@ -14,11 +14,13 @@ from typing import Literal
 from verify.strategies.terms import Drawer, combination, power, times
 
 Shape = Literal["confining", "open", "free"]
-Own = tuple[str, str, bool]  # numerator, denominator, whether the coefficient has to be positive
+TermShape = tuple[
+    str, str, bool
+]  # numerator, denominator, whether the coefficient has to be positive
 
 
 @dataclass(frozen=True)
-class Wanted:
+class TermRequest:
     """`mixed`: of both variables. An open H is so along x → direction·∞."""
 
     shape: Shape
@@ -28,7 +30,7 @@ class Wanted:
     direction: int = 1
 
 
-def trigonometric(d: Drawer, want: Wanted) -> Own:
+def trigonometric(d: Drawer, want: TermRequest) -> TermShape:
     function = d.pick(("cos", "sin"))
     if not want.mixed:
         return f"{function}({times(d.inner(), d.pick((want.x, want.y)))})", "", False
@@ -38,7 +40,7 @@ def trigonometric(d: Drawer, want: Wanted) -> Own:
     return f"{function}({combination(d.inner(), _either(d))})", "", False
 
 
-def exponential(d: Drawer, want: Wanted) -> Own:
+def exponential(d: Drawer, want: TermRequest) -> TermShape:
     bump = d.whole(0, 3) == 3
     if want.mixed:
         if bump:
@@ -55,7 +57,7 @@ def exponential(d: Drawer, want: Wanted) -> Own:
     return f"{function}({times(k, name)})", "", want.shape == "confining"
 
 
-def _mixed_exponential(d: Drawer, want: Wanted) -> Own:
+def _mixed_exponential(d: Drawer, want: TermRequest) -> TermShape:
     if want.shape == "open":
         along, across = -want.direction * d.inner(), _either(d)
         k, m = (along, across) if want.x == "p" else (across, along)
@@ -64,7 +66,7 @@ def _mixed_exponential(d: Drawer, want: Wanted) -> Own:
     return f"{function}({combination(d.inner(), _either(d))})", "", want.shape == "confining"
 
 
-def rational(d: Drawer, want: Wanted) -> Own:
+def rational(d: Drawer, want: TermRequest) -> TermShape:
     """Over 1 + x² and the like, with any number ≥ 1 for the 1: no denominator vanishes."""
     constant = d.whole(1, min(d.limits.size, 9))
     if not want.mixed:
@@ -88,7 +90,7 @@ def _either(d: Drawer) -> int:
     return -(index // 2 + 1) if index % 2 else index // 2 + 1
 
 
-OWN: dict[str, Callable[[Drawer, Wanted], Own]] = {
+OWN: dict[str, Callable[[Drawer, TermRequest], TermShape]] = {
     "trigonometric": trigonometric,
     "exponential": exponential,
     "rational": rational,

@@ -168,7 +168,7 @@ _SECTIONS: tuple[tuple[str, str, Callable[[Scene], object]], ...] = (
 
 
 def _plan_every(plan: Plan, name: str, scheme: str) -> None:
-    if get(scheme).generic is None:
+    if get(scheme).every_h is None:
         plan.leave_out(f"{name}: {scheme} for every H", "it is given for one H")
     else:
         plan.need(EveryTask(scheme=scheme), f"{name}: what holds for every H")

@@ -99,7 +99,7 @@ def test_stages_are_symmetric_where_the_undoing_ones_in_reverse_are_the_same(
     own = StageEquations(rows)
     assert palindromic(own) == (rows == undoing(rows))
     assert palindromic(own) or not doubled
-    scheme = replace(get("implicit-midpoint"), generic=own, order=1)
+    scheme = replace(get("implicit-midpoint"), every_h=own, order=1)
     if palindromic(own):
         assert prove_symmetry(scheme).verdict is Verdict.PROVED
 

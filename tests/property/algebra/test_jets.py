@@ -153,8 +153,8 @@ def test_the_jets_are_all_derivatives_up_to_their_order(order: int, separable: b
         with pytest.raises(OverflowError):
             jets.h(i, j)
     assert [shown(x) for x in (jets.p, jets.q, jets.zero, jets.one)] == ["p", "q", "0", "1"]
-    assert jets.along("p", 1) == [jets.p, -jets.h(0, 1)]
-    assert jets.along("q", 1) == [jets.q, jets.h(1, 0)]
+    assert jets.lie_derivatives("p", 1) == [jets.p, -jets.h(0, 1)]
+    assert jets.lie_derivatives("q", 1) == [jets.q, jets.h(1, 0)]
 
 
 # -- what telescopes ------------------------------------------------------------------------------
@@ -218,7 +218,7 @@ def test_one_product_of_derivatives_telescopes_where_the_ranks_say_so(
 @pytest.mark.parametrize("eta", [1, 2, 3, 4])
 def test_the_truncated_flow_telescopes_for_even_eta_alone(eta: int) -> None:
     jets = Jets(eta + 2)
-    end = [jets.derive(jets.along(name, eta)[-1]) for name in "pq"]
+    end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in "pq"]
     leading = -(jets.diff(end[0], "p") + jets.diff(end[1], "q")) / math.factorial(eta + 1)
     found = telescopes_of_lie(jets, leading, eta)
     assert found.holds == (eta % 2 == 0)

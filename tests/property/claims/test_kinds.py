@@ -35,7 +35,7 @@ from verify.claims.findings import Findings
 from verify.claims.judge import check_claim
 from verify.claims.kinds import KINDS
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 
@@ -188,7 +188,7 @@ def verdicts_of(content: str) -> dict[str, Verdict]:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "claims.toml"
         path.write_text(content)
-        found = prepare(load_claims(path)).run(Store(None), where=HERE)
+        found = prepare(load_claims(path)).run(Store(None), where=THIS_PROCESS)
     return {claim.id: claim.verdict for claim in found}
 
 

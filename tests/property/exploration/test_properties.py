@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 
 from verify import strategies
 from verify.exploration import properties
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.scenes.scene import Scene
 
 SCENES = strategies.scenes(steps=(1, 8))
@@ -21,6 +21,6 @@ def test_a_property_holds_of_drawn_scenes(name: str) -> None:
     @settings(deadline=None, max_examples=12, suppress_health_check=[HealthCheck.too_slow])
     @given(SCENES)
     def holds(scene: Scene) -> None:
-        asked.holds(Example.of(scene))
+        asked.holds(Sample.of(scene))
 
     holds()

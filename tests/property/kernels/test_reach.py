@@ -35,12 +35,12 @@ def check_job(kernel_run: KernelRun) -> Outcome:
 
     Where there is no certificate it is about as near as mpfr is in as many bits.
     """
-    found = kernel_run.go(FIXED, tangent=True)
-    where = f"{kernel_run.generic}, {kernel_run.parameters}, {kernel_run.scheme}, {kernel_run.start}, {kernel_run.steps} steps"
+    found = kernel_run.run(FIXED, tangent=True)
+    where = f"{kernel_run.hamiltonian}, {kernel_run.parameters}, {kernel_run.scheme}, {kernel_run.start}, {kernel_run.steps} steps"
     if found.done < kernel_run.steps:
         assert found.reason, where
         return found
-    true, like = kernel_run.go(TRUE), kernel_run.go(LIKE)
+    true, like = kernel_run.run(TRUE), kernel_run.run(LIKE)
     assert true.done == kernel_run.steps, f"{where}: mpfr leaves its range at step {true.done + 1}"
     known = certify(kernel_run, FIXED, found) or {}
     for name, x in true.values.items():

@@ -136,7 +136,7 @@ def tried(text: str, scheme: str, arithmetic: Arithmetic, at: Sequence[Fraction]
         kernel_run = KernelRun(
             Hamiltonian.parse(text, parameters), scheme, start, 1, observables, 0
         )
-        kernel = kernel_for(kernel_run.generic, scheme, arithmetic, observables)
+        kernel = kernel_for(kernel_run.hamiltonian, scheme, arithmetic, observables)
         inputs = kernel_run.inputs(kernel, 0)
         state = {n: arithmetic.exact(arithmetic.number(x)) for n, x in (("p", p), ("q", q))}
         found = values(kernel, arithmetic, inputs | state)

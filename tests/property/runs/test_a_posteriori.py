@@ -71,7 +71,7 @@ def check(case: Case, arithmetic: Arithmetic, observables: frozenset[str]) -> No
     """Every checkpoint of the run is contained, as far as it has a certificate."""
     try:
         kernel_run = case.kernel_run(observables)
-        walked = kernel_run.go(arithmetic, tangent=True)
+        walked = kernel_run.run(arithmetic, tangent=True)
     except (InputError, UnsupportedError):
         assume(False)
     assume(walked.tangents)

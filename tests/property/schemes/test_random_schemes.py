@@ -101,7 +101,7 @@ def test_a_stage_preserves_area_where_its_shares_add_up_to_1(
 def test_a_tableau_with_one_weight_changed_is_refuted_and_preserves_area_no_more(
     name: str, change: Fraction, separable: bool
 ) -> None:
-    own = getattr(get(name).generic, "tableau", None)
+    own = getattr(get(name).every_h, "tableau", None)
     assert own is not None
     weights = (own.weights[0] + sympy.Rational(str(change)), *own.weights[1:])
     wrong = TreeConditions(type(own)(own.rows, weights))
@@ -109,7 +109,7 @@ def test_a_tableau_with_one_weight_changed_is_refuted_and_preserves_area_no_more
     assert proof.convergence_order == 0
     assert proof.area_preserving is None
     assert proof.verdict is not Verdict.PROVED
-    assert prove_by_conditions(replace(get(name), generic=wrong), wrong).verdict is Verdict.REFUTED
+    assert prove_by_conditions(replace(get(name), every_h=wrong), wrong).verdict is Verdict.REFUTED
 
 
 @few

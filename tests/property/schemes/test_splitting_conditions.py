@@ -239,7 +239,7 @@ def test_a_users_splitting_has_the_parts_the_order_and_the_symmetry_that_were_wr
     claim = [] if order is None else [f"order {order}"]
     scheme = get(" ;".join([*words, *claim, " "]))
     assert scheme.name == "; ".join([*(" ".join(w.split()) for w in words), *claim])
-    assert scheme.generic == splitting_of(parts)
+    assert scheme.every_h == splitting_of(parts)
     assert scheme.order == (order or 1)
     assert (scheme.symmetric, scheme.explicit, scheme.area_preserving) == (
         parts == parts[::-1],
@@ -255,7 +255,7 @@ def test_a_users_splitting_has_the_parts_the_order_and_the_symmetry_that_were_wr
 
 def test_a_users_splitting_has_200_parts_at_most() -> None:
     parts = ["kick 1/200"] * 200
-    assert len(getattr(get("; ".join(parts)).generic, "parts", ())) == 200
+    assert len(getattr(get("; ".join(parts)).every_h, "parts", ())) == 200
     with pytest.raises(InputError):
         get("; ".join([*parts, "kick 1"]))
 

@@ -109,8 +109,8 @@ def test_the_parts_of_a_map_are_its_derivatives_and_its_powers_of_h(
     assert part.terms_of_delta_j >= count
     long, other = (len(sympy.Add.make_args(sympy.expand(x))) for x in step)
     assert part.terms_of_delta_j <= long + other + 2 * long * other
-    assert (part.staged, part.solved, step_map.solved, step_map.of_parts) == (False,) * 4
-    assert step_map.written
+    assert (part.staged, part.implicit, step_map.implicit, step_map.of_parts) == (False,) * 4
+    assert step_map.has_closed_form
     assert step_map.whole is step_map.closed is step_map.flat is part
     shown = grouped(ring, part.p_next)
     assert sympy.expand(shown - step[0]) == 0
@@ -151,7 +151,7 @@ def test_a_composition_is_its_parts_one_after_the_other(
     assert len(step_map.substeps) == len(parts)
     assert step_map.of_parts
     assert step_map.preserves_area
-    assert (step_map.delta_j, step_map.delta_j_text, step_map.written) == (0, "0", True)
+    assert (step_map.delta_j, step_map.delta_j_text, step_map.has_closed_form) == (0, "0", True)
     series = step_map.taylor(3)
     assert series is not None
     field, *own = series

@@ -24,12 +24,12 @@ from verify.schemes.tree_conditions import (
     Tree,
     TreeConditions,
     _cancels,
+    condition_text,
     density,
     gaps_of,
     symmetry,
     trees,
     vertices,
-    written,
 )
 from verify.schemes.tree_order import order_of
 
@@ -70,7 +70,7 @@ def test_elementary_differentials_add_up_to_the_flow(order: int, separable: bool
     own = Differentials(jets)
     for part, name in enumerate("pq"):
         terms = (own.of(t)[part] * monotone(t).numerator for t in trees(order))
-        assert sum(terms, jets.zero) == jets.along(name, order)[-1]
+        assert sum(terms, jets.zero) == jets.lie_derivatives(name, order)[-1]
 
 
 @quick
@@ -79,8 +79,11 @@ def test_only_what_cancels_for_every_h_is_taken_for_nothing(
     size: int, other: Tree | None, separable: bool
 ) -> None:
     """In the plane f''(f, f'f'f) = f'f'f''(f, f), and no other two trees of five are alike."""
-    alike = [next(t for t in trees(5) if written(t) == x) for x in ("b·(c A(A(c)))", "b·A(A(c^2))")]
-    numbers = getattr(get("gauss4").generic, "tableau").numbers  # noqa: B009 - of several kinds
+    alike = [
+        next(t for t in trees(5) if condition_text(t) == x)
+        for x in ("b·(c A(A(c)))", "b·A(A(c^2))")
+    ]
+    numbers = getattr(get("gauss4").every_h, "tableau").numbers  # noqa: B009 - of several kinds
     one = numbers.a[0][1]  # 1/4 − √3/6
     gaps = {t: one * symmetry(t) * size * sign for t, sign in zip(alike, (1, -1), strict=True)}
     if other is not None:
@@ -141,7 +144,7 @@ def test_a_trees_condition_is_by_its_definition_and_its_name_says_which(
         for tree, x in found.items():
             true = gap(rows, weights, tree)
             assert ring.expression(x) == sympy.Rational(true.numerator, true.denominator)
-            assert read(written(tree), rows, weights) - Fraction(1, density(tree)) == true
+            assert read(condition_text(tree), rows, weights) - Fraction(1, density(tree)) == true
     own = TreeConditions(tableau)
     assert own.order_conditions(4)[0].name == "b·1 = 1"
     for condition in own.order_conditions(4):
@@ -246,7 +249,7 @@ def test_a_truncated_flow_agrees_with_it_up_to_its_order(eta: int, most: int) ->
     jets = Jets(most + 1)
     p, q = TaylorSeries(eta).taylor(jets, most)
     for name, own in zip("pq", (p, q), strict=True):
-        flow = jets.along(name, most)
+        flow = jets.lie_derivatives(name, most)
         assert len(own) == most + 1
         for n, x in enumerate(own):
             assert x * math.factorial(n) == (flow[n] if n <= eta else jets.zero)

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from verify.claims.area import Known, judge_area, judge_order
+from verify.claims.area import ProvedOrder, judge_area, judge_order
 from verify.claims.findings import Findings
 from verify.claims.judge import check_claim
 from verify.claims.kinds import AreaClaim, ConvergenceOrderClaim, DeltaJClaim, OrderClaim
@@ -129,14 +129,16 @@ def test_the_exact_flow_has_every_order_looked_at(r: int) -> None:
 @pytest.mark.parametrize(
     ("known", "exactly", "at_least"),
     [
-        (Known(3, True, False, "e"), {2: REFUTED, 3: PROVED, 4: REFUTED}, {3: PROVED, 4: REFUTED}),
-        (Known(3, False, None, "e"), {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED},
+        (ProvedOrder(3, True, False, "e"), {2: REFUTED, 3: PROVED, 4: REFUTED}, {3: PROVED, 4: REFUTED}),
+        (ProvedOrder(3, False, None, "e"), {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED},
          {3: PROVED, 4: UNDECIDED}),
-        (Known(3, False, False, "e"), {2: REFUTED, 3: UNDECIDED}, {3: PROVED, 4: UNDECIDED}),
-        (Known(0, False, True, "e"), {1: REFUTED}, {1: PROVED, 40: PROVED}),
+        (ProvedOrder(3, False, False, "e"), {2: REFUTED, 3: UNDECIDED}, {3: PROVED, 4: UNDECIDED}),
+        (ProvedOrder(0, False, True, "e"), {1: REFUTED}, {1: PROVED, 40: PROVED}),
     ],
 )  # fmt: skip
-def test_orders_are_judged_by_what_is_known(known: Known, exactly: Any, at_least: Any) -> None:
+def test_orders_are_judged_by_what_is_known(
+    known: ProvedOrder, exactly: Any, at_least: Any
+) -> None:
     for r, verdict in exactly.items():
         assert judge_order(order(r, "lie2"), r, known).verdict is verdict
     for r, verdict in at_least.items():

@@ -6,7 +6,7 @@ from pathlib import Path
 from verify.claims.check import prepare
 from verify.claims.file import load_claims
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -29,7 +29,9 @@ p = 0
 def check_file(folder: Path, content: str) -> dict[str, ClaimResult]:
     path = folder / "claims.toml"
     path.write_text(content)
-    return {found.id: found for found in prepare(load_claims(path)).run(Store(None), where=HERE)}
+    return {
+        found.id: found for found in prepare(load_claims(path)).run(Store(None), where=THIS_PROCESS)
+    }
 
 
 def test_numbers_of_one_run_are_enclosed_or_refuted_in_a_file_that_stands_alone(

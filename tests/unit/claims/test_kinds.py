@@ -22,7 +22,7 @@ from verify.claims.judge import check_claims
 from verify.claims.kinds import Claim
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.plan import plan_scenes
@@ -49,7 +49,9 @@ def proofs_alone(scene: Scene) -> Scene:
 def proved() -> Findings:
     """The paper's scenes with their proofs and no run."""
     scenes = {name: proofs_alone(scene) for name, scene in SCENES.items()}
-    return Findings(scenes, execute(plan_scenes(list(scenes.values())), Store(None), where=HERE))
+    return Findings(
+        scenes, execute(plan_scenes(list(scenes.values())), Store(None), where=THIS_PROCESS)
+    )
 
 
 # -- what is true, without verify -----------------------------------------------------------------
@@ -227,7 +229,7 @@ def test_an_equation_of_one_scheme_is_refuted_for_another(
 ) -> None:
     scenes = {n: s.model_copy(update={"schemes": (scheme,)}) for n, s in proved.scenes.items()}
     findings = Findings(
-        scenes, execute(plan_scenes(list(scenes.values())), Store(None), where=HERE)
+        scenes, execute(plan_scenes(list(scenes.values())), Store(None), where=THIS_PROCESS)
     )
     claim = CLAIMS[id_].model_copy(update={"scheme": scheme})
     assert verdicts([claim], findings) == [Verdict.REFUTED]
@@ -250,7 +252,7 @@ def short() -> tuple[Findings, dict[str, ClaimResult]]:
         assert scene.grid is not None
         grid = scene.grid.model_copy(update={"time": Fraction(2), "separate": False})
         scenes[name] = proofs_alone(scene).model_copy(update={"grid": grid})
-    results = execute(plan_scenes(list(scenes.values())), Store(None), where=HERE)
+    results = execute(plan_scenes(list(scenes.values())), Store(None), where=THIS_PROCESS)
     findings = Findings(scenes, results)
     return findings, {r.id: r for r in check_claims(list(CLAIMS.values()), findings)}
 

@@ -22,7 +22,7 @@ from verify.claims.findings import Findings
 from verify.claims.judge import check_claims
 from verify.claims.kinds import TableClaim
 from verify.execution.execute import Store, execute
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.studies.plan import plan_scenes
 from verify.verdict import Verdict
 
@@ -98,7 +98,9 @@ def test_a_table_row_from_our_own_runs_is_measured_and_refuted_with_a_digit_chan
     scene = made_scene(step_sizes=("0.05", "0.1"), starts=(("1.5", "0"),))
     grid = scene.grid.model_copy(update={"time": Fraction(5)})  # type: ignore[union-attr]
     scene = scene.model_copy(update={"grid": grid})
-    findings = Findings({"made": scene}, execute(plan_scenes([scene]), Store(None), where=HERE))
+    findings = Findings(
+        {"made": scene}, execute(plan_scenes([scene]), Store(None), where=THIS_PROCESS)
+    )
     runs = findings.runs(scene, "lie2")
     logarithms = [mpmath.nstr(mpmath.log10(r.values["mse"].value), 15) for r in runs]
     printed = [f"{Decimal(x):.4f}" for x in logarithms]

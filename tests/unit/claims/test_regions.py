@@ -54,7 +54,7 @@ def findings(scene: Scene, given: Any = None) -> Findings:
     for task in plan_flows([scene]).tasks.values():
         assert isinstance(task, FlowTask)
         if given is None:
-            results[task.key] = task.perform(NOTHING)
+            results[task.key] = task.compute(NOTHING)
         else:
             results[task.key] = image(task, **given[count % len(given)])
             count += 1

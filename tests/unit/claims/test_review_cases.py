@@ -8,7 +8,7 @@ import pytest
 from verify.claims.report import make_report
 from verify.errors import InputError
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.runs.run import run
@@ -41,7 +41,7 @@ def test_where_the_solution_blows_up_criteria_3_and_4_are_not_proved_for_the_sce
         },
         "test",
     )  # fmt: skip
-    report = make_report("t", [scene], [], Store(None), command="test", where=HERE)
+    report = make_report("t", [scene], [], Store(None), command="test", where=THIS_PROCESS)
     (result,) = report.scenes
     assert all(r.status == "left range" for r in result.runs)
     verdicts = {c.number: c.verdict for c in result.criteria}
@@ -87,7 +87,7 @@ def test_the_api_names_what_is_no_text() -> None:
 
 def test_results_json_holds_no_float(tmp_path: Path) -> None:
     scene = scene_from({"name": "s", "system": "pendulum", "schemes": ["lie2"], "grid": GRID}, "t")
-    report = make_report("t", [scene], [], Store(tmp_path), command="test", where=HERE)
+    report = make_report("t", [scene], [], Store(tmp_path), command="test", where=THIS_PROCESS)
 
     def floats(x: object) -> bool:
         if isinstance(x, dict):

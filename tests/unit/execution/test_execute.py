@@ -20,7 +20,7 @@ from verify import content as shipped
 from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import Store, execute
-from verify.execution.executors import HERE, Where
+from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import fingerprint, write_atomically
 from verify.execution.plan import Plan
 from verify.scenes.frozen import Frozen
@@ -54,13 +54,13 @@ def plain(results: dict[str, Frozen]) -> dict[str, dict[str, Any]]:
 def count_tasks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The tasks that are performed in this process from now on."""
     seen: list[Any] = []
-    perform = execution.perform
+    perform = execution.compute_task
 
     def counting(task: Any, *more: Any) -> Frozen:
         seen.append(task)
         return perform(task, *more)
 
-    monkeypatch.setattr(execution, "perform", counting)
+    monkeypatch.setattr(execution, "compute_task", counting)
     return seen
 
 
@@ -71,7 +71,7 @@ def test_every_task_is_performed_once_and_its_result_kept(
     tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen = count_tasks(monkeypatch)
-    results = execute(plan, kept_in(tmp_path), where=HERE)
+    results = execute(plan, kept_in(tmp_path), where=THIS_PROCESS)
     assert set(results) == set(plan.tasks)
     assert sorted(map(str, seen)) == sorted(map(str, plan.tasks.values()))
     files = list((tmp_path / "kept").iterdir())
@@ -82,9 +82,11 @@ def test_every_task_is_performed_once_and_its_result_kept(
 def test_kept_results_are_taken_up_and_nothing_is_done_again(
     tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first = execute(plan, kept_in(tmp_path), where=HERE)
+    first = execute(plan, kept_in(tmp_path), where=THIS_PROCESS)
     seen, told = count_tasks(monkeypatch), []
-    again = execute(plan, kept_in(tmp_path), where=HERE, done=lambda name, _: told.append(name))
+    again = execute(
+        plan, kept_in(tmp_path), where=THIS_PROCESS, done=lambda name, _: told.append(name)
+    )
     assert seen == []
     assert again == first, "even the seconds are those of the first time"
     assert sorted(told) == sorted(plan.tasks)
@@ -94,14 +96,14 @@ def test_what_is_missing_alone_is_done(
     tmp_path: Path, plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = kept_in(tmp_path)
-    first = execute(plan, store, where=HERE)
+    first = execute(plan, store, where=THIS_PROCESS)
     missing = sorted(plan.tasks)[:3]
     for name in missing:
         path = store.path(name)
         assert path is not None
         path.unlink()
     seen = count_tasks(monkeypatch)
-    assert plain(execute(plan, store, where=HERE)) == plain(first)
+    assert plain(execute(plan, store, where=THIS_PROCESS)) == plain(first)
     assert sorted(map(str, seen)) == sorted(str(plan.tasks[n]) for n in missing)
 
 
@@ -126,12 +128,12 @@ def test_a_damaged_result_is_computed_again_and_mended(
     tmp_path: Path, plan: Plan, damage: Callable[[bytes], bytes]
 ) -> None:
     store = kept_in(tmp_path)
-    first = execute(plan, store, where=HERE)
+    first = execute(plan, store, where=THIS_PROCESS)
     for file in (tmp_path / "kept").iterdir():
         before = file.read_bytes()
         file.write_bytes(damage(before))
         assert file.read_bytes() != before
-    assert plain(execute(plan, store, where=HERE)) == plain(first)
+    assert plain(execute(plan, store, where=THIS_PROCESS)) == plain(first)
     for name, task in plan.tasks.items():
         kept = store.get(name, task)
         assert kept is not None
@@ -140,7 +142,7 @@ def test_a_damaged_result_is_computed_again_and_mended(
 
 def test_a_store_without_a_folder_keeps_nothing(tmp_path: Path, plan: Plan) -> None:
     before = sorted(tmp_path.rglob("*"))
-    execute(plan, Store(None), where=HERE)
+    execute(plan, Store(None), where=THIS_PROCESS)
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -155,9 +157,9 @@ def test_an_interruption_keeps_what_was_finished(
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        execute(plan, kept_in(tmp_path), where=HERE, done=interrupt)
+        execute(plan, kept_in(tmp_path), where=THIS_PROCESS, done=interrupt)
     seen = count_tasks(monkeypatch)
-    execute(plan, kept_in(tmp_path), where=HERE)
+    execute(plan, kept_in(tmp_path), where=THIS_PROCESS)
     assert len(seen) == len(plan.tasks) - 3
     assert not {str(plan.tasks[n]) for n in finished} & set(map(str, seen))
 
@@ -228,7 +230,7 @@ def test_another_source_does_not_take_up_the_results_of_this_one(
     tmp_path: Path, plan: Plan, copy: Path
 ) -> None:
     store = kept_in(tmp_path)
-    execute(plan, store, where=HERE)
+    execute(plan, store, where=THIS_PROCESS)
     assert all(store.get(name, task) is not None for name, task in plan.tasks.items())
     path = copy / "verify" / "schemes" / "methods" / "taylor" / "lie.py"
     path.write_text(path.read_text() + "\n")
@@ -293,8 +295,8 @@ def test_a_failed_write_leaves_the_old_content_and_nothing_else(
 
 
 def test_two_workers_find_what_one_finds(tmp_path: Path, plan: Plan) -> None:
-    one = execute(plan, Store(None), where=HERE)
-    two = execute(plan, kept_in(tmp_path), where=Where(2))
+    one = execute(plan, Store(None), where=THIS_PROCESS)
+    two = execute(plan, kept_in(tmp_path), where=Placement(2))
     assert plain(two) == plain(one)
     assert len(list((tmp_path / "kept").iterdir())) == len(plan.tasks)
 
@@ -305,14 +307,14 @@ def test_bad_input_found_by_a_worker_is_still_an_input_error(workers: int) -> No
     rough = "p_next = p - q*sqrt(h); q_next = q"
     plan.need(ProofTask(hamiltonian="p**2/2 + q**2/2", parameters={}, scheme=rough), "asked")
     with pytest.raises(InputError, match="not smooth in h"):
-        execute(plan, Store(None), where=Where(workers))
+        execute(plan, Store(None), where=Placement(workers))
 
 
 INTERRUPTED = """
 import sys, time
 from fractions import Fraction
 from verify.execution.execute import Store, execute
-from verify.execution.executors import Where
+from verify.execution.executors import Placement
 from verify.execution.plan import Plan
 from verify.runs.task import RunTask
 
@@ -326,7 +328,7 @@ if __name__ == "__main__":
             step_size=Fraction(1, 100), steps=10**11 if k == 1 else 10**3, q=Fraction(k), p=0,
             arithmetic="float64", digits=17, observables=("mse",), points=0), "asked")
     try:
-        execute(plan, Store(None), where=Where(2), done=stop)
+        execute(plan, Store(None), where=Placement(2), done=stop)
     except KeyboardInterrupt:
         sys.exit(130)
 """

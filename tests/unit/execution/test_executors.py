@@ -14,12 +14,20 @@ import pytest
 from tests.helpers.worker_functions import killed, killed_once, loaded, process, square, wrong
 from tests.paths import ROOT
 from verify.errors import InputError, PlaceError
-from verify.execution.executors import ANYWHERE, HERE, Call, Where, opened, performed, there
+from verify.execution.executors import (
+    ANYWHERE,
+    THIS_PROCESS,
+    FunctionCall,
+    Placement,
+    call_in_worker,
+    open_place,
+    results_of,
+)
 from verify.execution.keeping import fingerprint
 
 
-def squares(count: int, seconds: float = 0.0, log: str = "") -> list[Call]:
-    return [Call(str(k), square, (k, seconds, log)) for k in range(count)]
+def squares(count: int, seconds: float = 0.0, log: str = "") -> list[FunctionCall]:
+    return [FunctionCall(str(k), square, (k, seconds, log)) for k in range(count)]
 
 
 def right(found: list[tuple[str, int]], count: int) -> bool:
@@ -27,10 +35,10 @@ def right(found: list[tuple[str, int]], count: int) -> bool:
     return sorted(found) == sorted((str(k), k * k) for k in range(count))
 
 
-def collect(found: list[tuple[str, int]], workers: int, calls: list[Call]) -> None:
+def collect(found: list[tuple[str, int]], workers: int, calls: list[FunctionCall]) -> None:
     """Puts the results into `found` as they come."""
-    with opened(Where(workers)) as place:
-        for each in performed(place, calls):
+    with open_place(Placement(workers)) as place:
+        for each in results_of(place, calls):
             found.append(each)
 
 
@@ -55,22 +63,22 @@ def test_a_place_that_cannot_be_is_bad_input(
     workers: int | None, cluster: str | None, named: str
 ) -> None:
     with pytest.raises(InputError, match=named) as caught:
-        Where(workers, cluster)
+        Placement(workers, cluster)
     assert "\n" not in str(caught.value)
 
 
 def test_a_place_that_can_be_is_none() -> None:
-    assert Where() == ANYWHERE
-    assert Where(1) == HERE
+    assert Placement() == ANYWHERE
+    assert Placement(1) == THIS_PROCESS
     for address in ("tcp://10.0.0.1:8786", "tls://here.org:1", "tcp://[::1]:8786"):
-        assert Where(cluster=address).cluster == address
+        assert Placement(cluster=address).cluster == address
 
 
 def test_without_distributed_the_error_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with (
         pytest.raises(InputError, match=r"pip install 'areaproof\[cluster\]'"),
-        opened(Where(cluster="tcp://127.0.0.1:1")),
+        open_place(Placement(cluster="tcp://127.0.0.1:1")),
     ):
         pass
 
@@ -82,8 +90,8 @@ def test_distributed_is_imported_for_a_cluster_only() -> None:
         "from tests.helpers.worker_functions import square\n"
         "if __name__ == '__main__':\n"
         "    for n in (1, 2):\n"
-        "        with opened(Where(n)) as place:\n"
-        "            assert list(performed(place, [Call('a', square, (3,))])) == [('a', 9)]\n"
+        "        with open_place(Placement(n)) as place:\n"
+        "            assert list(results_of(place, [FunctionCall('a', square, (3,))])) == [('a', 9)]\n"
         "    assert not {'distributed', 'dask', 'tornado'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
@@ -94,38 +102,38 @@ def test_distributed_is_imported_for_a_cluster_only() -> None:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_each_result_is_yielded_once_under_its_name(workers: int) -> None:
-    with opened(Where(workers)) as place:
-        assert right(list(performed(place, squares(30))), 30)
-        assert right(list(performed(place, squares(5), one_by_one=True)), 5), "and again"
-        assert list(performed(place, [])) == []
+    with open_place(Placement(workers)) as place:
+        assert right(list(results_of(place, squares(30))), 30)
+        assert right(list(results_of(place, squares(5), one_by_one=True)), 5), "and again"
+        assert list(results_of(place, [])) == []
 
 
 def test_no_more_calls_are_taken_than_there_is_room_for() -> None:
     """So that a million calls are never in memory."""
     taken = 0
 
-    def calls() -> Iterator[Call]:
+    def calls() -> Iterator[FunctionCall]:
         nonlocal taken
         for call in squares(20):
             taken += 1
             yield call
 
-    with opened(Where(2)) as place:
-        for count, _ in enumerate(performed(place, calls()), start=1):
+    with open_place(Placement(2)) as place:
+        for count, _ in enumerate(results_of(place, calls()), start=1):
             assert taken <= count + 2 * place.room
         assert taken == 20
 
 
 def test_one_by_one_no_two_are_under_way(tmp_path: Path) -> None:
     log = tmp_path / "log"
-    with opened(Where(2)) as place:
-        for count, _ in enumerate(performed(place, squares(4, 0.1, str(log)), one_by_one=True), 1):
+    with open_place(Placement(2)) as place:
+        for count, _ in enumerate(results_of(place, squares(4, 0.1, str(log)), one_by_one=True), 1):
             assert len(log.read_text().splitlines()) == count
 
 
 def test_what_a_call_raises_is_raised_and_what_is_finished_is_not_lost() -> None:
     found: list[tuple[str, int]] = []
-    calls = [Call("wrong", wrong, (0.5,)), *squares(3)]
+    calls = [FunctionCall("wrong", wrong, (0.5,)), *squares(3)]
     with pytest.raises(ValueError, match="wrong input"):
         collect(found, 2, calls)
     assert right(found, 3)
@@ -147,9 +155,9 @@ def test_after_an_interruption_what_is_finished_is_yielded(
 
 
 def test_other_code_in_a_worker_is_an_error() -> None:
-    assert there(fingerprint(), square, (3,)) == 9
+    assert call_in_worker(fingerprint(), square, (3,)) == 9
     with pytest.raises(PlaceError, match=f"process {os.getpid()}: its areaproof") as caught:
-        there("0" * 12, square, (3,))
+        call_in_worker("0" * 12, square, (3,))
     assert "\n" not in str(caught.value)
 
 
@@ -159,8 +167,8 @@ def test_other_code_in_a_worker_is_an_error() -> None:
 def test_nothing_is_lost_or_done_twice_when_a_worker_is_killed(tmp_path: Path) -> None:
     log = tmp_path / "log"
     found: list[tuple[str, int]] = []
-    with opened(Where(2)) as place:
-        for each in performed(place, squares(12, 0.1, str(log))):
+    with open_place(Placement(2)) as place:
+        for each in results_of(place, squares(12, 0.1, str(log))):
             found.append(each)
             if len(found) == 4:  # that one has begun last, and is at it
                 victim = int(log.read_text().split()[-1])
@@ -172,17 +180,19 @@ def test_nothing_is_lost_or_done_twice_when_a_worker_is_killed(tmp_path: Path) -
 
 
 def test_a_worker_that_is_lost_while_it_is_idle_costs_nothing() -> None:
-    with opened(Where(2)) as place:
-        ids = {pid for _, pid in performed(place, [Call(str(k), process) for k in range(2)])}
+    with open_place(Placement(2)) as place:
+        ids = {
+            pid for _, pid in results_of(place, [FunctionCall(str(k), process) for k in range(2)])
+        }
         for pid in ids:
             os.kill(pid, signal.SIGKILL)
-        assert right(list(performed(place, squares(6))), 6)
+        assert right(list(results_of(place, squares(6))), 6)
 
 
 def test_a_call_that_loses_its_worker_once_is_done_by_another(tmp_path: Path) -> None:
-    calls = [Call("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)]
-    with opened(Where(2)) as place:
-        found = dict(performed(place, calls))
+    calls = [FunctionCall("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)]
+    with open_place(Placement(2)) as place:
+        found = dict(results_of(place, calls))
     assert found.pop("twice") == "well"
     assert right(list(found.items()), 4)
 
@@ -190,7 +200,7 @@ def test_a_call_that_loses_its_worker_once_is_done_by_another(tmp_path: Path) ->
 def test_a_call_that_always_loses_its_worker_is_named_and_no_other_is_lost() -> None:
     found: list[tuple[str, int]] = []
     # The others first: what is still under way when a call is given up is not waited for.
-    calls = [*squares(2, 0.1), Call("x", killed, told="run of lie2")]
+    calls = [*squares(2, 0.1), FunctionCall("x", killed, description="run of lie2")]
     with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again"):
         collect(found, 2, calls)
     assert right(found, 2)
@@ -202,8 +212,12 @@ def test_workers_are_forked_beside_this_process_from_one_that_has_imported_what_
 ) -> None:
     if methods is not None:
         monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: methods)
-    with opened(Where(2)) as place:
-        found = dict(performed(place, [Call("pid", process), Call("has", loaded, ("sympy",))]))
+    with open_place(Placement(2)) as place:
+        found = dict(
+            results_of(
+                place, [FunctionCall("pid", process), FunctionCall("has", loaded, ("sympy",))]
+            )
+        )
         assert begun in Path(f"/proc/{found['pid']}/cmdline").read_text()
     assert found["has"] is (methods is None)
 
@@ -227,11 +241,11 @@ def test_workers_end_when_their_parent_is_killed() -> None:
 _HAS_WORKERS = """
 import time
 from tests.helpers.worker_functions import process
-from verify.execution.executors import Call, Where, opened, performed
+from verify.execution.executors import FunctionCall, Placement, open_place, results_of
 
 if __name__ == "__main__":
-    with opened(Where(2)) as place:
-        print(*{pid for _, pid in performed(place, [Call(str(k), process) for k in range(2)])},
+    with open_place(Placement(2)) as place:
+        print(*{pid for _, pid in results_of(place, [FunctionCall(str(k), process) for k in range(2)])},
               flush=True)
         time.sleep(60)
 """

@@ -29,15 +29,15 @@ LOG = "executed.log"
 ENTRY = """
 import contextlib, multiprocessing
 from verify.execution import processes
-from verify.execution.executors import Call, Where, opened, performed
+from verify.execution.executors import FunctionCall, Placement, open_place, results_of
 from tests.helpers.worker_functions import square
 if {method!r} == "spawn":
     processes._forked_beside_this = lambda _: multiprocessing.get_context("spawn")
 if {unsafe}:
     processes.safe_path = contextlib.nullcontext
 if __name__ == "__main__":
-    with opened(Where(2)) as place:
-        assert len(list(performed(place, [Call(str(k), square, (k,)) for k in range(4)]))) == 4
+    with open_place(Placement(2)) as place:
+        assert len(list(results_of(place, [FunctionCall(str(k), square, (k,)) for k in range(4)]))) == 4
 """
 
 

@@ -44,9 +44,9 @@ def test_there_are_kinds_and_no_two_have_one_name() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_says_what_it_gives_and_performs_itself(kind: type[Task]) -> None:
     assert issubclass(kind.result, Frozen)
-    returned = inspect.signature(kind.perform).return_annotation
+    returned = inspect.signature(kind.compute).return_annotation
     assert returned in (kind.result, kind.result.__name__)
-    assert list(inspect.signature(kind.perform).parameters) == ["self", "keeper"]
+    assert list(inspect.signature(kind.compute).parameters) == ["self", "keeper"]
 
 
 def run(**changes: Any) -> RunTask:

@@ -10,13 +10,13 @@ from tests.unit.exploration.test_explore import exploration
 from verify.claims.file import load_claims
 from verify.errors import InputError
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
-from verify.exploration.claims import claim_property, claim_texts, left_out
-from verify.exploration.explore import explore, found_earlier, keep_found
+from verify.execution.executors import THIS_PROCESS
+from verify.exploration.claims import claim_property, claim_texts, claims_left_out
+from verify.exploration.explore import explore, load_failures, save_failures
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import drawn_scene
+from verify.exploration.scenes import sample_scene
 from verify.scenes.scene import load_scene, scene_from
 
 PAPER = ROOT / "reports" / "paper"
@@ -59,7 +59,7 @@ def claims_of(tmp_path: Path, text: str = CLAIMS) -> tuple[str, ...]:
 def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
     texts = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "small"')])
     asked = exploration(properties=(), claims=texts, examples=25)
-    report = explore(asked, Store(None), where=HERE)
+    report = explore(asked, Store(None), where=THIS_PROCESS)
     true, false = report.properties
     assert (true.name, true.failures) == ("third-order", 0)
     assert true.looked_at == 25
@@ -72,11 +72,11 @@ def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
 def test_a_claim_on_a_run_is_asked_of_the_drawn_run(tmp_path: Path) -> None:
     text = CLAIMS.partition("[[claim]]")[0] + CLAIMS[CLAIMS.index('[[claim]]\nid = "small"') :]
     (claim,) = claims_of(tmp_path, text)
-    scene = drawn_scene(SampleSpace(schemes=("lie2",), degree=3), 5, 0)
-    assert claim_property(claim).holds(Example.of(scene))
+    scene = sample_scene(SampleSpace(schemes=("lie2",), degree=3), 5, 0)
+    assert claim_property(claim).holds(Sample.of(scene))
     (zero,) = claims_of(tmp_path, text.replace("1e300", "0"))
     with pytest.raises(Violation):
-        claim_property(zero).holds(Example.of(scene))
+        claim_property(zero).holds(Sample.of(scene))
 
 
 OF_EVERY = (
@@ -135,7 +135,7 @@ def test_a_true_claim_of_every_h_holds_of_each_and_a_false_one_fails(tmp_path: P
         examples=25,
         drawn=SampleSpace(degree=3),
     )
-    report = explore(asked, Store(None), where=HERE)
+    report = explore(asked, Store(None), where=THIS_PROCESS)
     failing = {each.name for each in report.properties if each.failures}
     assert failing == {"wrong-order", "a-lost-term"}
     looked_at = {each.name: each.looked_at for each in report.properties}
@@ -167,7 +167,7 @@ steps = 5
 q = 1
 p = 0
 """
-    example = Example.of(
+    example = Sample.of(
         scene_from(
             {
                 "hamiltonian": "p**2/2 + q**4/4",
@@ -186,7 +186,7 @@ p = 0
 
 def test_claims_of_one_scene_are_left_out_with_the_reason() -> None:
     claims = load_claims(PAPER / "claims.toml").claims
-    texts, without = claim_texts(claims), left_out(claims)
+    texts, without = claim_texts(claims), claims_left_out(claims)
     asked = {json.loads(text)["kind"] for text in texts}
     assert asked == {"monotone", "less", "criteria"}
     assert len(texts) + sum(map(len, without.values())) == len(claims)
@@ -205,12 +205,12 @@ def test_a_claim_is_written_under_a_name_that_a_file_can_have(tmp_path: Path) ->
     text = CLAIMS.partition('[[claim]]\nid = "small"')[0].replace("fourth-order", "../§2/eq.3")
     asked = exploration(properties=(), claims=claims_of(tmp_path, text), examples=15,
                         drawn=SampleSpace(schemes=("lie1",), degree=3))  # fmt: skip
-    report = explore(asked, Store(None), where=HERE)
+    report = explore(asked, Store(None), where=THIS_PROCESS)
     folder = tmp_path / "found"
-    (path,) = keep_found(report, folder)
+    (path,) = save_failures(report, folder)
     assert path.parent == folder
     assert load_scene(path).schemes == ("lie2",), "the claim's, not the one drawn"
-    again = explore(asked, Store(None), where=HERE, earlier=found_earlier(folder))
+    again = explore(asked, Store(None), where=THIS_PROCESS, earlier=load_failures(folder))
     assert [found.property for found in again.again] == ["../§2/eq.3"]
     assert again.again[0].message
 
@@ -223,5 +223,5 @@ def test_a_claim_of_a_theorem_is_refused(tmp_path: Path) -> None:
 
 def test_a_claim_keeps_its_own_scheme(tmp_path: Path) -> None:
     (text, *_) = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "fourth')])
-    scene = drawn_scene(SampleSpace(schemes=("lie1",)), 5, 0)
-    assert claim_property(text).holds(Example.of(scene)), "of lie2, though lie1 was drawn"
+    scene = sample_scene(SampleSpace(schemes=("lie1",)), 5, 0)
+    assert claim_property(text).holds(Sample.of(scene)), "of lie2, though lie1 was drawn"

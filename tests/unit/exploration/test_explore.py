@@ -6,13 +6,13 @@ import pytest
 
 from verify.errors import InputError
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.exploration import properties
-from verify.exploration.explore import Exploration, explore, found_earlier, keep_found
+from verify.exploration.explore import Exploration, explore, load_failures, save_failures
 from verify.exploration.property import Property, Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
-from verify.exploration.scenes import drawn_scene
+from verify.exploration.scenes import sample_scene
 from verify.scenes.results.exploration import ExploreReport
 from verify.scenes.scene import load_scene
 from verify.scenes.toml_text import scene_text
@@ -40,7 +40,7 @@ def plant(monkeypatch: pytest.MonkeyPatch, planted: Property) -> None:
 def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A property with a planted falsehood: no H has q³ in it."""
 
-    def holds(example: Example) -> bool:
+    def holds(example: Sample) -> bool:
         if "q**3" in (example.scene.hamiltonian or ""):
             raise Violation("it has q**3")
         return True
@@ -53,46 +53,46 @@ def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_scene_k_of_a_seed_is_always_the_same() -> None:
-    forwards = [scene_text(drawn_scene(LIES, 7, k)) for k in range(12)]
-    backwards = [scene_text(drawn_scene(LIES, 7, k)) for k in reversed(range(12))]
+    forwards = [scene_text(sample_scene(LIES, 7, k)) for k in range(12)]
+    backwards = [scene_text(sample_scene(LIES, 7, k)) for k in reversed(range(12))]
     assert forwards == backwards[::-1]
     assert len(set(forwards)) > 8
-    assert forwards != [scene_text(drawn_scene(LIES, 8, k)) for k in range(12)]
+    assert forwards != [scene_text(sample_scene(LIES, 8, k)) for k in range(12)]
 
 
 def test_what_is_asked_for_is_drawn() -> None:
-    scenes = [drawn_scene(LIES, 3, k) for k in range(40)]
+    scenes = [sample_scene(LIES, 3, k) for k in range(40)]
     assert {scene.schemes for scene in scenes} == {("lie1",), ("lie2",)}
     rational = SampleSpace(kinds=("rational",), schemes=("lie1",))
-    assert all("/(" in (drawn_scene(rational, 3, k).hamiltonian or "") for k in range(10))
+    assert all("/(" in (sample_scene(rational, 3, k).hamiltonian or "") for k in range(10))
 
 
 def test_separable_schemes_get_separable_hamiltonians() -> None:
     asked = SampleSpace(schemes=("stormer-verlet",), degree=4)
     for k in range(20):
-        assert drawn_scene(asked, 1, k).exact_hamiltonian().field()[0].separable()
+        assert sample_scene(asked, 1, k).exact_hamiltonian().field()[0].separable()
 
 
 # -- counting, shrinking --------------------------------------------------------------------------
 
 
 def test_examples_are_counted_and_properties_hold() -> None:
-    report = explore(exploration(), Store(None), where=HERE)
+    report = explore(exploration(), Store(None), where=THIS_PROCESS)
     assert (report.seed, report.examples, report.failures) == (7, 30, ())
     assert [p.name for p in report.properties] == list(CHEAP)
     assert all(p.failures == 0 and 0 < p.looked_at <= 30 for p in report.properties)
 
 
 def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = explore(exploration(), Store(None), where=HERE)
+    whole = explore(exploration(), Store(None), where=THIS_PROCESS)
     monkeypatch.setattr("verify.exploration.explore._STRETCH", 7)
     assert len(exploration().plan.tasks) == 5
-    assert explore(exploration(), Store(None), where=HERE) == whole
+    assert explore(exploration(), Store(None), where=THIS_PROCESS) == whole
 
 
 def failing(**changes: object) -> ExploreReport:
     asked = exploration(properties=("no-cubes",), examples=120, **changes)
-    return explore(asked, Store(None), where=HERE)
+    return explore(asked, Store(None), where=THIS_PROCESS)
 
 
 @pytest.mark.usefixtures("odd_is_wrong")
@@ -102,7 +102,7 @@ def test_a_failure_is_shrunk_to_the_simplest_scene(tmp_path: Path) -> None:
     assert summary.looked_at == 120
     assert 0 < summary.failures < 120
     assert failure.message == "it has q**3"
-    (path,) = keep_found(report, tmp_path)
+    (path,) = save_failures(report, tmp_path)
     scene = load_scene(path)
     assert "q**3" in (scene.hamiltonian or "")
     assert len(scene.hamiltonian or "") <= 20, "shrunk"
@@ -114,31 +114,33 @@ def test_a_failure_is_shrunk_to_the_simplest_scene(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("odd_is_wrong")
 def test_found_scenes_are_looked_at_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    keep_found(failing(), tmp_path)
+    save_failures(failing(), tmp_path)
     asked = exploration(properties=("no-cubes",), examples=1)
-    report = explore(asked, Store(None), where=HERE, earlier=found_earlier(tmp_path))
+    report = explore(asked, Store(None), where=THIS_PROCESS, earlier=load_failures(tmp_path))
     assert [again.message for again in report.again] == ["it has q**3"]
     mended = Property("no-cubes", "Now anything goes with it.", lambda _: True)
     plant(monkeypatch, mended)
-    report = explore(asked, Store(None), where=HERE, earlier=found_earlier(tmp_path))
+    report = explore(asked, Store(None), where=THIS_PROCESS, earlier=load_failures(tmp_path))
     assert [again.message for again in report.again] == [""]
 
 
 def test_an_exception_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
-    def holds(_: Example) -> bool:
+    def holds(_: Sample) -> bool:
         raise ZeroDivisionError("by\nzero")
 
     made = Property("raises", "It divides by zero in every scene.", holds)
     plant(monkeypatch, made)
-    report = explore(exploration(properties=("raises",), examples=2), Store(None), where=HERE)
+    report = explore(
+        exploration(properties=("raises",), examples=2), Store(None), where=THIS_PROCESS
+    )
     assert report.properties[0].failures == 2
     assert report.failures[0].message == "raised ZeroDivisionError: by zero"
 
 
 def test_kept_results_are_taken_up_and_give_the_same_report(tmp_path: Path) -> None:
-    first = explore(exploration(), Store(tmp_path), where=HERE)
+    first = explore(exploration(), Store(tmp_path), where=THIS_PROCESS)
     store = Store(tmp_path)
-    assert explore(exploration(), store, where=HERE) == first
+    assert explore(exploration(), store, where=THIS_PROCESS) == first
     assert store.taken == len(exploration().plan.tasks)
 
 
@@ -163,11 +165,11 @@ def test_bad_arguments_are_named(changes: dict[str, object], name: str) -> None:
 def test_other_files_in_the_folder_are_no_found_scenes(tmp_path: Path) -> None:
     (tmp_path / "claims.toml").write_text("[[claim]]\n")
     (tmp_path / "worst-1.toml").write_text("x =")
-    assert found_earlier(tmp_path) == []
+    assert load_failures(tmp_path) == []
     broken = tmp_path / "time-scaling.0123abcd.toml"
     broken.write_text("x =")
     with pytest.raises(InputError, match="is not TOML"):
-        found_earlier(tmp_path)
+        load_failures(tmp_path)
     broken.write_text('hamiltonian = "p**2"\nschemes = ["lie1"]\n')
     with pytest.raises(InputError, match=r"time-scaling.0123abcd.toml: has no \[grid\]"):
-        found_earlier(tmp_path)
+        load_failures(tmp_path)

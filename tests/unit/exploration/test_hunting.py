@@ -12,14 +12,14 @@ from hypothesis.internal.conjecture.data import ConjectureData
 from verify import strategies
 from verify.errors import InputError
 from verify.execution.execute import Store
-from verify.execution.executors import HERE, Where
+from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
 from verify.exploration import hunting, island_search
 from verify.exploration.hunting import Hunt, hunt
 from verify.exploration.island_search import by_shape, scene_of
 from verify.exploration.measures import MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.tasks import HuntTask
 from verify.scenes.results.exploration import HuntResult, Worst
@@ -36,12 +36,12 @@ def task(**changes: Any) -> HuntTask:
 
 # -- a planted worst case -------------------------------------------------------------------------
 
-Plant = Callable[[Callable[[Example], float | None]], None]
+Plant = Callable[[Callable[[Sample], float | None]], None]
 
 
 @pytest.fixture
 def plant(monkeypatch: pytest.MonkeyPatch) -> Plant:
-    def planted(value: Callable[[Example], float | None]) -> None:
+    def planted(value: Callable[[Sample], float | None]) -> None:
         measure = Measure("planted", "planted", lambda example, _: value(example))
         monkeypatch.setitem(MEASURES, "planted", measure)
 
@@ -49,13 +49,13 @@ def plant(monkeypatch: pytest.MonkeyPatch) -> Plant:
 
 
 def search(task: HuntTask) -> HuntResult:
-    return task.perform(NOTHING)
+    return task.compute(NOTHING)
 
 
-def near(q: str, p: str) -> Callable[[Example], float]:
+def near(q: str, p: str) -> Callable[[Sample], float]:
     """By far the greatest at one initial value, and ever greater towards it."""
 
-    def value(example: Example) -> float:
+    def value(example: Sample) -> float:
         far = abs(example.q - Fraction(q)) + abs(example.p - Fraction(p))
         return -math.log10(far + Fraction(1, 10**9))
 
@@ -66,7 +66,7 @@ def test_a_planted_worst_scene_is_found(plant: Plant) -> None:
     plant(near("1.37", "-0.74"))  # tenths are drawn: hundredths are found by the local search
     worst = search(task()).worst[0]
     assert worst.value == pytest.approx(9)
-    found = Example.of(scene_of(worst))
+    found = Sample.of(scene_of(worst))
     assert (found.q, found.p) == (Fraction("1.37"), Fraction("-0.74"))
 
 
@@ -81,13 +81,13 @@ def test_without_the_local_search_it_is_not_found(
 def test_what_is_out_of_bounds_is_not_found(plant: Plant) -> None:
     plant(near("2.5", "0"))
     worst = search(task()).worst[0]
-    assert Example.of(scene_of(worst)).q == 2
+    assert Sample.of(scene_of(worst)).q == 2
 
 
 def test_a_planted_term_of_h_is_found(plant: Plant) -> None:
     """A needle that no slope leads to: only drawing finds it, and its coefficient is then moved."""
 
-    def value(example: Example) -> float:
+    def value(example: Sample) -> float:
         term = {str(t): c for t, c in example.hamiltonian.exact.as_coefficients_dict().items()}
         c = abs(Fraction(str(term.get("p**3", 0))))
         return 5 + float(min(c, Fraction(50))) if c else 0.0
@@ -100,7 +100,7 @@ def test_a_planted_term_of_h_is_found(plant: Plant) -> None:
 def test_a_value_that_another_precision_does_not_confirm_is_dropped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def value(example: Example, digits: int) -> float:
+    def value(example: Sample, digits: int) -> float:
         return float(example.q) + (digits > 40) * (example.q > 0)
 
     monkeypatch.setitem(MEASURES, "planted", Measure("planted", "", value))
@@ -121,7 +121,7 @@ def test_no_scene_with_a_value_is_an_empty_find(plant: Plant) -> None:
 
 def test_no_more_scenes_are_measured_than_asked_for(plant: Plant) -> None:
     for count in (1, 2, 30):
-        seen: list[Example] = []
+        seen: list[Sample] = []
         plant(lambda example, seen=seen: seen.append(example) or 0.0)  # type: ignore[misc]
         found = search(task(count=count))
         assert found.examples <= count
@@ -129,7 +129,7 @@ def test_no_more_scenes_are_measured_than_asked_for(plant: Plant) -> None:
 
 
 def test_all_scenes_that_are_looked_at_are_within_the_bounds(plant: Plant) -> None:
-    seen: list[Example] = []
+    seen: list[Sample] = []
     plant(lambda example: seen.append(example) or float(sum(map(abs, example.start.values()))))  # type: ignore[func-returns-value]
     search(task())
     least, most = island_search.STEP_SIZES
@@ -225,11 +225,11 @@ def test_one_worker_and_two_find_the_same(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(hunting, "_ISLAND", 8)
     asked = Hunt(measure="growth", seed=5, examples=16, steps=2, drawn=POLYNOMIAL)
     assert len(asked.plan.tasks) == 2
-    alone, two = (hunt(asked, Store(None), where=Where(n)) for n in (1, 2))
+    alone, two = (hunt(asked, Store(None), where=Placement(n)) for n in (1, 2))
     assert alone == two
     assert alone.worst
     other = Hunt(measure="growth", seed=6, examples=16, steps=2, drawn=POLYNOMIAL)
-    assert hunt(other, Store(None), where=HERE) != alone
+    assert hunt(other, Store(None), where=THIS_PROCESS) != alone
 
 
 @pytest.mark.parametrize(

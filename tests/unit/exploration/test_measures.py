@@ -6,14 +6,14 @@ from fractions import Fraction
 import pytest
 
 from verify.exploration.measures import MEASURES, _greatest, digits_lost, growth, rounding_share
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.scenes.scene import scene_from
 from verify.studies.separation.separate import separate
 
 
-def example(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Example:
+def example(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:
     grid = {"steps": steps, "step_sizes": [h], "initial_values": [{"q": q, "p": p}]}
-    return Example.of(scene_from({"hamiltonian": formula, "schemes": [scheme], "grid": grid}, "x"))
+    return Sample.of(scene_from({"hamiltonian": formula, "schemes": [scheme], "grid": grid}, "x"))
 
 
 def test_growth_of_the_oscillator_is_its_closed_form() -> None:

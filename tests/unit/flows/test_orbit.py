@@ -63,7 +63,7 @@ def test_only_a_coordinate_that_the_orbit_runs_through_is_without_bound() -> Non
 
 def test_a_blow_up_is_told_with_its_time() -> None:
     # q'' = −q + q² from 3/2 at rest: q = 3/2 sec²(t/2), which ends at t = π.
-    assert orbit(CUBIC, "3/2").told == "blows up at t = 3.14159"
+    assert orbit(CUBIC, "3/2").summary == "blows up at t = 3.14159"
 
 
 def test_before_its_end_a_solution_that_blows_up_is_still_under_way() -> None:

@@ -14,7 +14,7 @@ from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import made_step
+from verify.integrators.loading import step_from
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.proof.order import prove
 from verify.schemes import get
@@ -24,7 +24,7 @@ Function = Callable[..., Any]
 
 
 def found_of(function: Function, claims: Claims = NOTHING, limit: float = 20) -> Finding:
-    step, _ = made_step(function, time_limit=limit)
+    step, _ = step_from(function, time_limit=limit)
     return check_integrator(step, PENDULUM, claims)
 
 
@@ -180,7 +180,7 @@ def test_a_parameter_of_the_hamiltonian_is_given_by_name() -> None:
         p = p - h * c * q**3
         return p, q + h * p
 
-    made, _ = made_step(step, parameters=dict(quartic.values))
+    made, _ = step_from(step, parameters=dict(quartic.values))
     assert check_integrator(made, quartic).verdict == "PROVED"
     with pytest.raises(InputError, match="has no value"):
         check_integrator(made, Hamiltonian.parse("p**2/2 + c*q**4/4"))
@@ -274,7 +274,7 @@ def test_a_traced_scheme_is_proved_as_the_scheme_itself_is(name: str, scheme: st
         c = slope(z + h / 2 * b)
         return z + h / 6 * (a + 2 * b + 2 * c + slope(z + h * c))
 
-    made, _ = made_step(step)
+    made, _ = step_from(step)
     found = check_integrator(made, hamiltonian)
     known = prove(get(scheme).step_map(hamiltonian))
     assert (found.how, found.verdict) == ("proof", known.verdict), found.notes

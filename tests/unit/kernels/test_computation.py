@@ -17,7 +17,7 @@ from verify.algebra.ring import Poly
 from verify.arithmetic.balls import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import Asked, computed, step_map_of
+from verify.kernels.computation import Observed, computed, step_map_of
 from verify.kernels.kernel import OBSERVABLES, kernel_for
 from verify.kernels.program import Evaluator, Program, _nest
 from verify.runs import derivatives
@@ -155,7 +155,7 @@ def test_all_precisions_and_number_systems_share_a_program_and_leave_it_as_it_is
 
 def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
     """A map is known by itself: one with a planted error is another one."""
-    asked = Asked(pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False)
+    asked = Observed(pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False)
     one, two = (get("lie2").build(MIXED) for _ in range(2))
     assert computed(one, asked) is computed(one, asked)
     assert computed(one, asked) is not computed(two, asked)

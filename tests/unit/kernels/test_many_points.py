@@ -9,7 +9,7 @@ import pytest
 from tests.helpers.known_areas import DUFFING, PENDULUM
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.many_points import LeftError, PointMap
+from verify.kernels.many_points import LeftRangeError, PointMap
 from verify.runs.run import run
 
 H, N = Fraction(1, 20), 40
@@ -78,7 +78,9 @@ def test_a_point_that_leaves_the_range_is_named(name: str) -> None:
     system = arithmetic.get(name, 25)
     p, q = [0, Fraction(1, 4)], [Fraction(1, 10), 3]
     given = [[system.number(Fraction(x)) for x in z] for z in (p, q)]
-    with pytest.raises(LeftError, match=r"^the point \(q, p\) = \(3, 0\.25\) leaves the range of"):
+    with pytest.raises(
+        LeftRangeError, match=r"^the point \(q, p\) = \(3, 0\.25\) leaves the range of"
+    ):
         made(soft, "lie2", name, steps=100)(p=given[0], q=given[1])
 
 
@@ -86,5 +88,7 @@ def test_what_is_outside_of_h_is_left_too() -> None:
     root = Hamiltonian.parse("p**2/2 + sqrt(q)")
     one, far, near = np.zeros(1), np.array([50.0]), np.array([50.0, 0.1])
     assert made(root, "lie1")(p=one, q=far)["q"][0] > 49
-    with pytest.raises(LeftError, match=r"\(q, p\) = \(0\.1, 0\) leaves the range of float64, or"):
+    with pytest.raises(
+        LeftRangeError, match=r"\(q, p\) = \(0\.1, 0\) leaves the range of float64, or"
+    ):
         made(root, "lie1")(p=np.zeros(2), q=near)

@@ -74,7 +74,7 @@ def test_a_coefficient_that_is_off_by_very_little_makes_another_step() -> None:
 @each_arithmetic
 def test_symplectic_euler_satisfies_its_equations(text: str, arithmetic: str, digits: int) -> None:
     made = step_map("implicit-symplectic-euler", text)
-    assert made.solved
+    assert made.implicit
     p, q = steps(made, arithmetic, digits, AT, H)
     put = {P: sympy.Rational(*p.as_integer_ratio()), Q: sympy.Rational(*AT[1].as_integer_ratio())}
     slopes = [plain(text).diff(z).subs(put).evalf(digits + 20) for z in (Q, P)]
@@ -93,8 +93,8 @@ def test_the_closed_form_of_a_quadratic_h_is_what_newton_finds(name: str, text: 
     hamiltonian = Hamiltonian.parse(text)
     closed = implicit_map(hamiltonian, TABLEAUS[name])
     solved = _Equations(hamiltonian, TABLEAUS[name]).step_map()
-    assert solved.solved
-    assert not closed.solved
+    assert solved.implicit
+    assert not closed.implicit
     found = [steps(made, "mpfr", 50, AT, H) for made in (closed, solved)]
     # The ring writes a quotient by its partial fractions, which cancel in part.
     assert apart(*found) < Fraction(100, 10**50)
@@ -191,7 +191,7 @@ def test_few_updates_are_needed(
     count = 20  # the one with exp(p) goes to infinity at last
     needed = counted(made, arithmetic, digits, AT, Fraction(1, 20), count)
     assert needed <= most
-    if made.solved:
+    if made.implicit:
         assert needed >= 2, "they were counted"
 
 

@@ -36,7 +36,12 @@ Matrix = list[Fraction]
 
 def states(kernel_run: KernelRun, arithmetic: Arithmetic) -> Iterator[dict[str, Fraction]]:
     """The carried numbers before the first step, and after each."""
-    made = kernel_run.generic, kernel_run.scheme, arithmetic, kernel_run.observables | {"tangent"}
+    made = (
+        kernel_run.hamiltonian,
+        kernel_run.scheme,
+        arithmetic,
+        kernel_run.observables | {"tangent"},
+    )
     kernel = kernel_for(*made)
     shift, limits = next(kernel_run._formats(kernel)) if arithmetic.absolute else (0, ())
     walk = ChunkedLoop(kernel_run, kernel, arithmetic, tuple(limits), shift)
@@ -46,7 +51,7 @@ def states(kernel_run: KernelRun, arithmetic: Arithmetic) -> Iterator[dict[str, 
             assert after is not None
             walk.state, walk.done = after, step
             walk._note()
-        yield {n: walk._exact(x) for n, x in zip(kernel.carried, walk.state, strict=True)}
+        yield {n: walk._exact(x) for n, x in zip(kernel.state_names, walk.state, strict=True)}
 
 
 def matrix(at: dict[str, Fraction]) -> Matrix:
@@ -100,7 +105,7 @@ def test_the_tangent_map_is_as_near_as_is_counted_and_its_sums_are_its_own(
 
 def rho(kernel_run: KernelRun, arithmetic: Arithmetic) -> Fraction:
     """ρ for the whole run."""
-    run = kernel_run.go(arithmetic, tangent=True)
+    run = kernel_run.run(arithmetic, tangent=True)
     with working_precision(96):
         steps = _Certificate(kernel_run, arithmetic, run, len(run.trail) - 1).one_step()
         assert steps is not None

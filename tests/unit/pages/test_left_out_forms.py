@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from verify.claims.report import make_report
 from verify.commands.main import cli
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.pages.page import render
 from verify.scenes.results.report import Report
 from verify.scenes.scene import scene_from
@@ -25,7 +25,7 @@ def scene_report(hamiltonian: str, schemes: list[str]) -> Report:
         },
     }  # fmt: skip
     scenes = [scene_from(scene, "mine.toml")]
-    return make_report("Mine", scenes, (), Store(None), command="verify report", where=HERE)
+    return make_report("Mine", scenes, (), Store(None), command="verify report", where=THIS_PROCESS)
 
 
 def test_the_command_says_that_it_is_left_out() -> None:

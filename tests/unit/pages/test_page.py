@@ -16,7 +16,7 @@ from tests.helpers.imported_modules import imported_by
 from verify.claims.kinds import Claim, MonotoneClaim, TableClaim
 from verify.claims.report import make_report
 from verify.execution.execute import Store
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.pages.environment import TEMPLATES
 from verify.pages.page import render, write
 from verify.pages.text.typography import number
@@ -117,7 +117,9 @@ def real() -> Report:
                       "direction": "increases"}
         ),
     ]  # fmt: skip
-    return make_report("Tiny", [tiny], claims, Store(None), command="verify report", where=HERE)
+    return make_report(
+        "Tiny", [tiny], claims, Store(None), command="verify report", where=THIS_PROCESS
+    )
 
 
 # -- reading a page -------------------------------------------------------------------------------
@@ -290,7 +292,7 @@ def test_what_holds_for_every_h_is_shown_where_it_was_asked_for() -> None:
     pages = []
     for every in (True, False):
         given = scene_from({**asked, "every_hamiltonian": every}, "mine.toml")
-        made = make_report("Mine", [given], [], Store(None), command="test", where=HERE)
+        made = make_report("Mine", [given], [], Store(None), command="test", where=THIS_PROCESS)
         pages.append(render(made))
     with_every, without = pages
     assert with_every.count("For every smooth H") == 2

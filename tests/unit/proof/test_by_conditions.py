@@ -35,7 +35,7 @@ class Made:
 def made(wrong: dict[int, bool | None], order: int, separable: bool = False) -> Scheme:
     return Scheme(
         name="made", order=order, area_preserving=True, explicit=False, symmetric=False,
-        source="this test", build=lambda _: None, generic=Made(wrong, separable),
+        source="this test", build=lambda _: None, every_h=Made(wrong, separable),
     )  # fmt: skip
 
 
@@ -57,7 +57,7 @@ def test_the_verdict_follows_from_the_conditions(
     wrong: dict[int, bool | None], order: int, verdict: Verdict, agreed: int, preserves: bool | None
 ) -> None:
     scheme = made(wrong, order)
-    proof = prove_by_conditions(scheme, scheme.generic)
+    proof = prove_by_conditions(scheme, scheme.every_h)
     assert (proof.verdict, proof.convergence_order) == (verdict, agreed)
     assert (proof.area_preserving, proof.order) == (preserves, None)
     assert [c.order for c in proof.conditions] == [*range(1, order + 1), 0]
@@ -68,7 +68,7 @@ def test_the_verdict_follows_from_the_conditions(
 def test_no_conditions_on_area_say_nothing_of_area(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Made, "area_conditions", lambda _: ())
     scheme = made({3: False}, 2)
-    assert prove_by_conditions(scheme, scheme.generic).area_preserving is None
+    assert prove_by_conditions(scheme, scheme.every_h).area_preserving is None
 
 
 def test_what_fails_for_some_h_may_hold_for_every_separable_one(

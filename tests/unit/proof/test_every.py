@@ -33,7 +33,7 @@ VERLET = StageEquations((Stage(HALF, NONE), Stage(NONE, ONE), Stage(HALF, NONE))
 def made(generic: object, order: int, area_preserving: bool = False) -> Scheme:
     return Scheme(
         name="made", order=order, area_preserving=area_preserving, explicit=True, symmetric=False,
-        source="this test", build=lambda _: None, generic=generic,
+        source="this test", build=lambda _: None, every_h=generic,
     )  # fmt: skip
 
 
@@ -74,7 +74,7 @@ SEPARABLE = plain("p**3/3 + p**2/2 - 2*q**4 + q")
 def test_derivatives_along_the_flow_are_those_of_any_hamiltonian() -> None:
     jets = Jets(5)
     for name, y in (("p", P), ("q", Q)):
-        for x in jets.along(name, 4):
+        for x in jets.lie_derivatives(name, 4):
             assert at(jets, x, CUBIC) == sympy.expand(y)
             y = along(y, CUBIC)
 
@@ -82,13 +82,13 @@ def test_derivatives_along_the_flow_are_those_of_any_hamiltonian() -> None:
 def test_a_separable_hamiltonian_has_no_mixed_derivatives() -> None:
     jets = Jets(4, separable=True)
     assert jets.h(1, 1) == 0
-    for x, y in zip(jets.along("p", 3), Jets(4).along("p", 3), strict=True):
+    for x, y in zip(jets.lie_derivatives("p", 3), Jets(4).lie_derivatives("p", 3), strict=True):
         assert at(jets, x, SEPARABLE) == at(Jets(4), y, SEPARABLE)
 
 
 def test_a_derivative_beyond_those_there_are_is_refused() -> None:
     with pytest.raises(OverflowError):
-        Jets(2).along("p", 3)
+        Jets(2).lie_derivatives("p", 3)
 
 
 def test_a_shifted_derivative_is_taylors_formula() -> None:
@@ -248,5 +248,5 @@ def test_a_users_own_map_is_known_for_one_hamiltonian_only() -> None:
 
 def test_all_named_schemes_hold_what_they_claim_for_every_hamiltonian() -> None:
     for name in schemes.names():
-        if schemes.get(name).generic is not None:
+        if schemes.get(name).every_h is not None:
             assert prove_every(name).verdict is Verdict.PROVED, name

@@ -36,7 +36,7 @@ systems = pytest.mark.parametrize("arithmetic", SYSTEMS, ids=lambda a: f"{a.name
 
 def certified(kernel_run: KernelRun, arithmetic: Arithmetic) -> tuple[Outcome, dict[str, Fraction]]:
     """A run to its end, and its certificate."""
-    run = kernel_run.go(arithmetic, tangent=True)
+    run = kernel_run.run(arithmetic, tangent=True)
     assert run.done == kernel_run.steps
     errors = certify(kernel_run, arithmetic, run)
     assert errors is not None
@@ -97,7 +97,7 @@ WINDOWS = {
 def test_a_window_contains_what_balls_give(name: str, arithmetic: Arithmetic) -> None:
     at = WINDOWS[name]
     kernel_run = at.kernel_run()
-    run = kernel_run.go(arithmetic, tangent=True)
+    run = kernel_run.run(arithmetic, tangent=True)
     errors = certify(kernel_run, arithmetic, run)
     assert errors is not None or arithmetic.bits == 24, "with 24 bits an error may be too large"
     if errors is not None:
@@ -108,13 +108,13 @@ def test_a_window_contains_what_balls_give(name: str, arithmetic: Arithmetic) ->
 def test_ball_arithmetic_and_every_checkpoint_of_a_certified_run_overlap(name: str) -> None:
     at, wide = WINDOWS[name], ball.at_bits(1000)
     kernel_run, own = at.kernel_run(), mpfr.at_bits(100)
-    run = kernel_run.go(own, tangent=True)
+    run = kernel_run.run(own, tangent=True)
     steps = [int(note["done"]) for note in run.tangents]
     for note in (0, len(steps) // 2, len(steps) - 1):
         errors = certify_at(kernel_run, own, run, note)
         assert errors is not None
         here = Case(at.text, at.scheme, at.q, at.p, at.h, steps[note], at.parameters)
-        true = here.kernel_run().go(wide)
+        true = here.kernel_run().run(wide)
         found: dict[str, True_] = {n: (x, true.radii[n]) for n, x in true.values.items()}
         assert_contained(run.trail[note], errors, found, here)
 
@@ -180,7 +180,7 @@ def test_every_checkpoint_of_a_long_run_contains_what_64_more_bits_give(
     arithmetic: Arithmetic,
 ) -> None:
     kernel_run = case(PENDULUM, "lie2", "3/2", "3/2", "1/100", 100_000).kernel_run()
-    run, finer = (kernel_run.go(a, tangent=True) for a in (arithmetic, fixed.at_bits(BITS)))
+    run, finer = (kernel_run.run(a, tangent=True) for a in (arithmetic, fixed.at_bits(BITS)))
     for note, (rough, fine) in enumerate(zip(run.trail, finer.trail, strict=True)):
         errors, small = (
             certify_at(kernel_run, *pair, note)
@@ -213,7 +213,7 @@ def test_where_errors_grow_exponentially_a_certificate_holds_as_long_as_there_is
     for doublings in range(1, 13):
         at = Case(*EXPONENTIAL[name], 2**doublings)
         kernel_run = at.kernel_run()
-        run = kernel_run.go(arithmetic, tangent=True)
+        run = kernel_run.run(arithmetic, tangent=True)
         errors = certify(kernel_run, arithmetic, run) if run.done == at.steps else None
         if errors is None:
             break
@@ -230,4 +230,4 @@ def test_an_arithmetic_whose_rounding_is_not_known_gets_no_certificate() -> None
         case(PENDULUM, "lie2", "3/2", 0, "1/10", 20).kernel_run(),
         replace(mpfr.at_bits(60), name="new"),
     )
-    assert certify(kernel_run, new, kernel_run.go(new, tangent=True)) is None
+    assert certify(kernel_run, new, kernel_run.run(new, tangent=True)) is None

@@ -48,7 +48,7 @@ class Orbit:
         return self.again()
 
     def again(self) -> Outcome:
-        run = self.case.kernel_run().go(self.arithmetic, tangent=True)
+        run = self.case.kernel_run().run(self.arithmetic, tangent=True)
         assert run.done == self.case.steps
         return run
 

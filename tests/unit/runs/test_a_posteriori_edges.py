@@ -29,7 +29,7 @@ WIDE = fixed.at_bits(112)
 def certified_and_contained(at: Any, arithmetic: Arithmetic) -> dict[str, Fraction]:
     """What is certified of a run, which contains the true values."""
     kernel_run = at.kernel_run()
-    made = kernel_run.go(arithmetic, tangent=True)
+    made = kernel_run.run(arithmetic, tangent=True)
     assert made.done == at.steps
     errors = certify(kernel_run, arithmetic, made)
     assert errors is not None
@@ -107,7 +107,7 @@ def test_an_area_that_nearly_vanishes_or_doubles_at_every_step_is_certified(
 def test_a_factor_that_is_not_near_1_gives_no_certificate_of_the_product(factor: str) -> None:
     at = case(FREE, area(factor), "1/3", "1/7", 1, 5)
     kernel_run = at.kernel_run()
-    made = kernel_run.go(mpfr.at_bits(60), tangent=True)
+    made = kernel_run.run(mpfr.at_bits(60), tangent=True)
     errors = certify(kernel_run, mpfr.at_bits(60), made) or {}
     assert "lambda" not in errors
     assert not errors or {"delta_j_max", "mse"} <= set(errors)
@@ -124,7 +124,7 @@ def test_step_sizes_far_from_those_in_use_are_certified(h: str, arithmetic: Arit
 def test_what_is_certified_is_what_was_asked_for(asked: tuple[str, ...]) -> None:
     kernel_run = case("p**2/2 - cos(q)", "lie2", "1.5", 0, "0.1", 30).kernel_run(frozenset(asked))
     for arithmetic in (WIDE, mpfr.at_bits(60)):
-        made = kernel_run.go(arithmetic, tangent=True)
+        made = kernel_run.run(arithmetic, tangent=True)
         assert set(certify(kernel_run, arithmetic, made) or {}) == {"p", "q", *asked}
 
 
@@ -181,7 +181,7 @@ def test_a_run_in_few_bits_has_a_certificate_that_holds_or_none(bits: int) -> No
     for steps in (10, 30, 100, 300):
         at = case("p**2/2 - cos(q)", "lie2", "1.5", "0.5", "1/10", steps)
         kernel_run, made = at.kernel_run(), mpfr.at_bits(bits)
-        walked = kernel_run.go(made, tangent=True)
+        walked = kernel_run.run(made, tangent=True)
         errors = certify(kernel_run, made, walked) or {}
         assert_contained(walked.values, errors, enclosed_finely(at, errors), at)
 
@@ -218,11 +218,11 @@ def test_a_run_that_was_interrupted_is_certified_as_the_one_that_was_not(
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        kernel_run(Keeper(tmp_path, "run")).go(arithmetic, tangent=True, progress=interrupt)
+        kernel_run(Keeper(tmp_path, "run")).run(arithmetic, tangent=True, progress=interrupt)
     went_on: list[int] = []
     of = kernel_run(Keeper(tmp_path, "run"))
-    second = of.go(arithmetic, tangent=True, progress=went_on.append)
-    whole = kernel_run(Keeper(None, "")).go(arithmetic, tangent=True)
+    second = of.run(arithmetic, tangent=True, progress=went_on.append)
+    whole = kernel_run(Keeper(None, "")).run(arithmetic, tangent=True)
     assert went_on[0] > 1000
     assert (second.trail, second.tangents) == (whole.trail, whole.tangents)
     assert certify(of, arithmetic, second) == certify(of, arithmetic, whole) is not None

@@ -12,7 +12,7 @@ from verify.claims.file import load_claims
 from verify.claims.report import make_report
 from verify.errors import InputError
 from verify.execution import execute
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.scenes.frozen import Frozen
 from verify.scenes.results import claim, growth, proof, separation, value
 from verify.scenes.results import regions as flow_results
@@ -277,7 +277,7 @@ def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     file = load_claims(folder / "claims.toml")
     store, figures = execute.Store(None), file.figures
     made = make_report(
-        "All", [scene], file.claims, store, figures=figures, command="test", where=HERE
+        "All", [scene], file.claims, store, figures=figures, command="test", where=THIS_PROCESS
     )
     with_ratio = tuple(map(_with_ratio, made.scenes))
     return made.model_copy(update={"gallery": gallery(shown()), "scenes": with_ratio})

@@ -7,7 +7,7 @@ import sympy
 from tests.helpers.random_formulas import P, Q
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.composition import composed_polynomials, polynomial, written_out
+from verify.schemes.composition import composed_polynomials, occurrences, polynomial
 from verify.studies.stability.linear import linear_stability
 
 DUFFING, PENDULUM = "p**2/2 + q**2/2 + q**4/4", "p**2/2 - cos(q)"
@@ -45,8 +45,8 @@ def test_how_long_a_composition_is_written_out_is_known_before() -> None:
         formulas = [list(sympy.preorder_traversal(x)) for x in step_map.composed]
         occurring = sum(f.count(y) for f in formulas for y in (P, Q))
         # sympy gathers some terms while it substitutes
-        assert occurring <= written_out(ring, parts) <= 2 * occurring
-        longer = [written_out(ring, parts * n) for n in (1, 2, 4, 8)]
+        assert occurring <= occurrences(ring, parts) <= 2 * occurring
+        longer = [occurrences(ring, parts * n) for n in (1, 2, 4, 8)]
         assert all(2 * x < y for x, y in pairwise(longer))
 
 

@@ -10,7 +10,7 @@ from tests.helpers.random_formulas import P, Q, plain
 from verify import schemes
 from verify.algebra.conditions import Condition
 from verify.errors import InputError
-from verify.execution.execute import perform
+from verify.execution.execute import compute_task
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
@@ -88,9 +88,9 @@ def test_an_equation_is_solved_only_where_it_has_to_be() -> None:
     taken = {"implicit-symplectic-euler": ("p**2/2 - cos(q)", "exp(p) + p*q"), "gauss6": QUADRATIC}
     for name, texts in taken.items():
         for text in texts:
-            assert not schemes.get(name).step_map(Hamiltonian.parse(text)).solved
+            assert not schemes.get(name).step_map(Hamiltonian.parse(text)).implicit
     for name in IMPLICIT:
-        assert schemes.get(name).step_map(Hamiltonian.parse("p**2*q**2 + p**3")).solved
+        assert schemes.get(name).step_map(Hamiltonian.parse("p**2*q**2 + p**3")).implicit
 
 
 # -- proofs ---------------------------------------------------------------------------------------
@@ -106,7 +106,7 @@ def test_order_and_area_are_proved_for_one_h(name: str, text: str) -> None:
     assert proof.convergence_order == schemes.get(name).order
     assert (proof.area_preserving, proof.order) == (True, None)
     assert proof.step_map.delta_j_text == "0"
-    if proof.step_map.solved:
+    if proof.step_map.implicit:
         assert "exactly" in proof.reason
 
 
@@ -157,7 +157,7 @@ def test_a_proof_task_has_no_closed_form_and_is_done() -> None:
 
     for name in IMPLICIT:
         task = ProofTask(hamiltonian="p**2*q**2/2 + p**3", parameters={}, scheme=name)
-        found = perform(task)
+        found = compute_task(task)
         assert found.verdict is Verdict.PROVED  # type: ignore[union-attr]
         assert (found.p_next, found.delta_j) == (None, "0")  # type: ignore[union-attr]
 

@@ -65,4 +65,4 @@ def test_an_error_of_ten_to_the_minus_11_is_proved_where_it_cannot_be_measured()
     wrong = with_hidden_error("suzuki4", sympy.Rational(1, 10**11))
     assert wrong is not None
     assert abs(measured(wrong, "duffing") - 4) < WITHIN
-    assert prove_by_conditions(wrong, wrong.generic).verdict is Verdict.REFUTED
+    assert prove_by_conditions(wrong, wrong.every_h).verdict is Verdict.REFUTED

@@ -46,7 +46,7 @@ OF_VERLET = {
 def test_a_composition_makes_the_steps_of_verlet_one_after_the_other(name: str) -> None:
     verlet = schemes.get("stormer-verlet")
     hamiltonian = Hamiltonian.parse(NONLINEAR)
-    parts = [(kind, step * x) for step in OF_VERLET[name] for kind, x in verlet.generic.parts]
+    parts = [(kind, step * x) for step in OF_VERLET[name] for kind, x in verlet.every_h.parts]
     at = {"p": Fraction(3, 7), "q": Fraction(5, 11), "h": Fraction(1, 9), "steps": 3}
     one, other, wrong = (
         Stepper(step_map).run(**at)

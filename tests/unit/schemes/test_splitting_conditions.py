@@ -43,7 +43,7 @@ TINY, SMALL = sympy.Rational(1, 10**11), sympy.Rational(1, 10**6)
 
 
 def proof_of(scheme: Scheme):
-    return prove_by_conditions(scheme, scheme.generic)
+    return prove_by_conditions(scheme, scheme.every_h)
 
 
 def residues(scheme: Scheme) -> list[float]:
@@ -159,15 +159,15 @@ def test_no_splitting_has_a_higher_order_than_it_claims(name: str) -> None:
     assert (proof.verdict, proof.convergence_order) == (Verdict.REFUTED, scheme.order)
 
 
-RATIONAL = [n for n in SPLITTINGS if schemes.get(n).generic.stages is not None]
+RATIONAL = [n for n in SPLITTINGS if schemes.get(n).every_h.stages is not None]
 
 
 @pytest.mark.parametrize("name", RATIONAL)
 def test_the_series_over_the_jets_has_the_same_order(name: str) -> None:
     scheme = schemes.get(name)
     jets = Jets(scheme.order + 3, separable=True)
-    series = scheme.generic.stages.taylor(jets, scheme.order + 1)
-    flow = [jets.along(x, scheme.order + 1) for x in ("p", "q")]
+    series = scheme.every_h.stages.taylor(jets, scheme.order + 1)
+    flow = [jets.lie_derivatives(x, scheme.order + 1) for x in ("p", "q")]
     for n in range(scheme.order + 2):
         agree = [s[n] * factorial(n) == x[n] for s, x in zip(series, flow, strict=True)]
         assert all(agree) is (n <= scheme.order)
@@ -224,7 +224,7 @@ def test_other_compositions_of_three_verlet_steps_have_order_2(steps) -> None:
 def test_an_error_in_any_coefficient_is_found_with_its_residue(name: str, error) -> None:
     for at in range(len(parts_of(name))):
         scheme = with_error(name, at, error)
-        first = scheme.generic.order_conditions(1)
+        first = scheme.every_h.order_conditions(1)
         assert [c.holds for c in first].count(False) == 1
         wrong = next(c for c in first if not c.holds)
         assert Fraction(wrong.residue) == Fraction(int(error.p), int(error.q))

@@ -25,11 +25,11 @@ from verify.schemes.tree_conditions import (
     Differentials,
     TreeConditions,
     _cancels,
+    condition_text,
     density,
     symmetry,
     trees,
     vertices,
-    written,
 )
 from verify.schemes.tree_order import order_of
 from verify.verdict import Verdict
@@ -61,7 +61,7 @@ def made(tableau: ImplicitTableau, order: int) -> Scheme:
     return Scheme(
         name="made", order=order, area_preserving=True, explicit=False, symmetric=True,
         source="this test", build=lambda h: implicit_map(h, tableau),
-        generic=TreeConditions(tableau),
+        every_h=TreeConditions(tableau),
     )  # fmt: skip
 
 
@@ -96,13 +96,15 @@ def test_differentials_over_density_and_symmetry_are_the_exact_flow(order: int) 
         total = differentials.jets.zero
         for tree in trees(order):
             total += differentials.of(tree)[part] * flint.fmpq(1, density(tree) * symmetry(tree))
-        assert total * math.factorial(order) == differentials.jets.along(name, order)[order]
+        assert (
+            total * math.factorial(order) == differentials.jets.lie_derivatives(name, order)[order]
+        )
 
 
 def test_conditions_are_written_as_in_the_literature() -> None:
-    few = [written(t) for n in (1, 2, 3) for t in trees(n)]
+    few = [condition_text(t) for n in (1, 2, 3) for t in trees(n)]
     assert few == ["b·1", "b·c", "b·A(c)", "b·c^2"]
-    assert {written(t): density(t) for t in trees(4)} == {
+    assert {condition_text(t): density(t) for t in trees(4)} == {
         "b·A(A(c))": 24, "b·A(c^2)": 12, "b·(c A(c))": 8, "b·c^3": 4,
     }  # fmt: skip
 
@@ -150,7 +152,7 @@ def test_the_residue_is_that_of_plain_arithmetic() -> None:
 @pytest.mark.parametrize("name", ["gauss4", "gauss6"])
 def test_gauss_methods_are_proved_for_every_h(name: str) -> None:
     proof, scheme = prove_every(name), schemes.get(name)
-    assert isinstance(scheme.generic, ByConditions)
+    assert isinstance(scheme.every_h, ByConditions)
     assert proof.verdict is Verdict.PROVED
     assert (proof.convergence_order, proof.area_preserving) == (scheme.order, True)
     count = {"gauss4": 8 + 3, "gauss6": 37 + 6}[name]
@@ -279,7 +281,7 @@ def test_in_the_plane_some_trees_depend_on_each_other_from_five_vertices_on(
 
 def test_only_what_cancels_for_every_h_is_taken_for_nothing() -> None:
     """f''(f, f'f'f) = f'f'f''(f, f) in the plane, and nothing else of five vertices is alike."""
-    one, other = (next(t for t in trees(5) if written(t) == text)
+    one, other = (next(t for t in trees(5) if condition_text(t) == text)
                   for text in ("b·(c A(A(c)))", "b·A(A(c^2))"))  # fmt: skip
     ring = TABLEAUS["gauss4"].numbers.ring
     gap = TABLEAUS["gauss4"].numbers.a[0][1]

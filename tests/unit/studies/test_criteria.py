@@ -8,7 +8,7 @@ import mpmath
 import pytest
 
 from tests.helpers.constructed_runs import STEP_SIZES, Given, made_proof, made_run
-from verify.execution.execute import perform
+from verify.execution.execute import compute_task
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
 from verify.studies.criteria import judge, measured_slopes
@@ -25,7 +25,7 @@ PENDULUM = "p**2/2 - cos(q)"
 
 def proof_of(hamiltonian: str, scheme: str) -> ProofResult:
     values = {"delta": "7/3"} if "delta" in hamiltonian else {}
-    found = perform(ProofTask(hamiltonian=hamiltonian, parameters=values, scheme=scheme))
+    found = compute_task(ProofTask(hamiltonian=hamiltonian, parameters=values, scheme=scheme))
     assert isinstance(found, ProofResult)
     return found
 

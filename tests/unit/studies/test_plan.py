@@ -8,7 +8,7 @@ import pytest
 
 from tests.unit.scenes.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
-from verify.execution.execute import perform
+from verify.execution.execute import compute_task
 from verify.execution.plan import Plan
 from verify.reference.make.scene_plan import plan_references
 from verify.runs.task import RunTask
@@ -145,7 +145,7 @@ def test_a_proof_for_reference_data_writes_no_formulas_out(tmp_path: Path) -> No
                  'initial_values = [{ q = 1, p = 0 }]\n')  # fmt: skip
     (short,) = (t for t in plan_references([scene]).tasks.values() if isinstance(t, ProofTask))
     long = short.model_copy(update={"formulas": True})
-    brief, full = perform(short), perform(long)
+    brief, full = compute_task(short), compute_task(long)
     assert isinstance(brief, ProofResult)
     assert isinstance(full, ProofResult)
     left = {"delta_j": None, "p_next": None, "q_next": None, "jacobian": None}

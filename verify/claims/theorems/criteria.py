@@ -14,7 +14,7 @@ from verify.claims.theorems.criteria_examples import (
     NOT_UNIFORM,
     TO_AND_FRO,
     TO_AND_FRO_ODD,
-    Example,
+    ExampleMap,
 )
 from verify.claims.theorems.exact_maps import Areas
 from verify.verdict import Verdict
@@ -24,7 +24,7 @@ is m = o(h), criterion 3 is MSE = (1/N) Σ x_k² = o(h), criterion 4 is Λ = Π 
 → 0."""
 
 
-def _inequalities(example: Example) -> Check:
+def _inequalities(example: ExampleMap) -> Check:
     """MSE ≤ m² and |log| bounds, in Fractions: |Λ| ≤ Π(1 + |x|) − 1, (Σ|x|)² ≤ N² MSE."""
     holds = all(map(inequalities_hold, (example.run(n) for n in example.steps)))
     return Check(
@@ -46,7 +46,7 @@ def inequalities_hold(found: Areas) -> bool:
     )
 
 
-def two_implies_three(not_uniform: Example = NOT_UNIFORM) -> Argument:
+def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Criterion 2 is sufficient for criterion 3."""
     return concluded(
         "criterion-2-implies-3",
@@ -73,8 +73,8 @@ def two_implies_three(not_uniform: Example = NOT_UNIFORM) -> Argument:
 
 
 def connection(
-    friction: Example = FRICTION,
-    alternating: Sequence[Example] = (TO_AND_FRO, TO_AND_FRO_ODD),
+    friction: ExampleMap = FRICTION,
+    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Criterion 4 follows from 2, and from MSE = o(h²), but not from 3; it implies neither."""
     examples = (friction, *alternating)
@@ -101,8 +101,8 @@ def connection(
 
 
 def stronger(
-    compensated: Example = COMPENSATED,
-    alternating: Sequence[Example] = (TO_AND_FRO, TO_AND_FRO_ODD),
+    compensated: ExampleMap = COMPENSATED,
+    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Criterion 4 is weaker than criterion 2, and neither weaker nor stronger than criterion 3."""
     between = [0 < compensated.run(n).lam < Fraction(1, n) for n in compensated.steps]

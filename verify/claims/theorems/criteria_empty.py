@@ -8,7 +8,7 @@ import flint
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
-from verify.claims.theorems.differential import Differential, generic
+from verify.claims.theorems.differential import Differential, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Areas, Point, areas
 from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians import systems
@@ -41,7 +41,7 @@ def consistent_map(hamiltonian: bool = True) -> dict[int, object]:
 def empty(hamiltonian: bool = True) -> Argument:
     """Explicit Euler satisfies criteria 2, 3 and 4, and blows every area up."""
     powers = consistent_map(hamiltonian)
-    zero = generic(1).ring.zero
+    zero = flow_of_every_hamiltonian(1).ring.zero
     checks = [
         vanishes(
             "the coefficients of h⁰ and h¹ in ΔJ of a generic consistent map of a generic H",
@@ -105,7 +105,7 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
     duffing = systems.get("duffing").hamiltonian().with_values({"delta": 1})
     found = areas(lie_map(duffing, 2), start, h, steps).delta_j
     totals = [abs(Areas(found[:n]).lam) for n in range(1, steps + 1)]
-    flow = generic(4)
+    flow = flow_of_every_hamiltonian(4)
     leading = flow.delta_j(*flow.lie(2))[3]
     checks = [
         Check(

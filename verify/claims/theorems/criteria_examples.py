@@ -10,13 +10,13 @@ from functools import cache
 
 from verify.arithmetic.exact import decimal
 from verify.claims.theorems.argument import Check
-from verify.claims.theorems.exact_maps import Areas, Point, areas, made_map
+from verify.claims.theorems.exact_maps import Areas, Point, areas, map_from_formulas
 
 Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ
 
 
 @dataclass(frozen=True)
-class Example:
+class ExampleMap:
     """A map from `start`, run over T = 1 with N steps for each N in `steps`.
 
     `closed(h)`: what max |ΔJ|, MSE and Λ are; `says`: the same in words, and what follows.
@@ -49,7 +49,7 @@ class Example:
 
 @cache
 def _run(p_next: str, q_next: str, start: Point, steps: int) -> Areas:
-    return areas(made_map(p_next, q_next), start, Fraction(1, steps), steps)
+    return areas(map_from_formulas(p_next, q_next), start, Fraction(1, steps), steps)
 
 
 def _short(x: Fraction) -> str:
@@ -108,7 +108,7 @@ def _not_uniform(h: Fraction) -> Numbers:
 _ORIGIN = Point(p=Fraction(0), q=Fraction(0))
 _UNIT = Point(p=Fraction(0), q=Fraction(1))
 
-FRICTION = Example(
+FRICTION = ExampleMap(
     "friction",
     "p - h*(q + p)",
     "q + h*p",
@@ -117,7 +117,7 @@ FRICTION = Example(
     _friction,
     "ΔJ = −h + h², so MSE = o(h) while Λ → 1/e − 1",
 )
-TO_AND_FRO = Example(
+TO_AND_FRO = ExampleMap(
     "to and fro",
     "-p*(1 - sqrt(h)*q)/(1 + sqrt(h)*q)",
     "-q",
@@ -126,7 +126,7 @@ TO_AND_FRO = Example(
     _to_and_fro,
     "max |ΔJ| > 2√h and MSE > 4h, while Λ = 0 for even N",
 )
-TO_AND_FRO_ODD = Example(
+TO_AND_FRO_ODD = ExampleMap(
     "to and fro, odd N",
     TO_AND_FRO.p_next,
     TO_AND_FRO.q_next,
@@ -135,7 +135,7 @@ TO_AND_FRO_ODD = Example(
     _to_and_fro_odd,
     "Λ = −2√h/(1 + √h) → 0 for odd N",
 )
-COMPENSATED = Example(
+COMPENSATED = ExampleMap(
     "near the identity, compensated",
     "p*(1 + h*(1/2 - q))",
     "q + h",
@@ -144,7 +144,7 @@ COMPENSATED = Example(
     _compensated,
     "max |ΔJ| = h/2, Σ ΔJ = h/2 and 0 < Λ < h, so that Λ → 0",
 )
-NOT_UNIFORM = Example(
+NOT_UNIFORM = ExampleMap(
     "small for each k, not uniformly",
     "p*(1 + q**2)",
     "q + h",

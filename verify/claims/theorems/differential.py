@@ -92,7 +92,7 @@ class Flow:
         diff = self.ring.diff
         return self.ring.reduce(self.h_p * diff(y, "q") - self.h_q * diff(y, "p"))
 
-    def along(self, name: str, most: int) -> list[Poly]:
+    def lie_derivatives(self, name: str, most: int) -> list[Poly]:
         """[y, X y, …, X^most y] of y = p or q."""
         result = [self.ring[name]]
         for _ in range(most):
@@ -123,14 +123,14 @@ class Flow:
         both = []
         for name in ("p", "q"):
             total, factor = self.ring.zero, self.ring.context.constant(1)
-            for n, term in enumerate(self.along(name, eta)):
+            for n, term in enumerate(self.lie_derivatives(name, eta)):
                 factor = factor * h / n if n else factor
                 total += factor * term
             both.append(total)
         return both[0], both[1]
 
 
-def generic(order: int, more: Sequence[str] = ()) -> Flow:
+def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     """The flow of a generic H, whose partial derivatives up to `order` are variables."""
     pairs = [(i, n - i) for n in range(1, order + 1) for i in range(n, -1, -1)]
     ring = Differential(["h", *more, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])

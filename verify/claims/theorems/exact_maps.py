@@ -68,6 +68,6 @@ def areas(step: StepMap, start: Point, h: Fraction, steps: int) -> Areas:
     return Areas(tuple(found))
 
 
-def made_map(p_next: str, q_next: str) -> StepMap:
+def map_from_formulas(p_next: str, q_next: str) -> StepMap:
     """A map by formulas in p, q and h; the H that it is made with says nothing of it."""
     return StepMap.from_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), p_next, q_next)

@@ -5,7 +5,12 @@ the plane N = adj(Hess H) w, and J = 1 + hA − (h²/2) N' with A = (−H_q, H_p
 """
 
 from verify.claims.theorems.argument import Check, vanishes
-from verify.claims.theorems.differential import Differential, Flow, generic, of_one_function
+from verify.claims.theorems.differential import (
+    Differential,
+    Flow,
+    flow_of_every_hamiltonian,
+    of_one_function,
+)
 
 LINEAR = ("a*p + b*q", "c*p + d*q")  # H = F(u) + rest
 PARABOLIC = ("a*p + b*q + (c*p + d*q)**2/2", "0")
@@ -30,7 +35,7 @@ def parabolic() -> Check:
 def exact_flow() -> Check:
     """lie2 is the flow itself where X³z = 0."""
     flow = of_one_function(_CONSTANTS, *PARABOLIC, 5)
-    third = [flow.along(z, 3)[3] for z in ("p", "q")]
+    third = [flow.lie_derivatives(z, 3)[3] for z in ("p", "q")]
     return vanishes("X³p and X³q for H = F(ap + bq + (cp + dq)²/2): lie2 is its exact flow", *third)
 
 
@@ -57,7 +62,7 @@ def separable() -> Check:
 
 def equilibrium() -> Check:
     """At a critical point of a generic H, ΔJ of lie2 is h⁴D²/4."""
-    flow = generic(4)
+    flow = flow_of_every_hamiltonian(4)
     at = {"H1_0": 0, "H0_1": 0}
     delta_j = {n: x.subs(at) for n, x in flow.delta_j(*flow.lie(2)).items()}
     fourth = delta_j.pop(4) - flow.hessian_determinant**2 / 4
@@ -66,7 +71,7 @@ def equilibrium() -> Check:
 
 def coefficients() -> Check:
     """ΔJ = (h³/2) X D + (h⁴/4)(D² + det T), T_ij = Σ_k ∂_j adj(Hess H)_ik w_k, for a generic H."""
-    flow = generic(4)
+    flow = flow_of_every_hamiltonian(4)
     ring, w = flow.ring, (flow.h_p, flow.h_q)
     pp, pq, qq = flow.hessian
     adjugate = ((qq, -pq), (-pq, pp))
@@ -87,9 +92,9 @@ def coefficients() -> Check:
 
 def acceleration() -> Check:
     """−X²z = adj(Hess H) ∇H, and div N = 2 D, for a generic H."""
-    flow = generic(4)
+    flow = flow_of_every_hamiltonian(4)
     pp, pq, qq = flow.hessian
-    n_p, n_q = (-flow.along(z, 2)[2] for z in ("p", "q"))
+    n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
     return vanishes(
         "−X²z = adj(Hess H) ∇H, and its divergence is 2 D, for a generic H",
         n_p - (qq * flow.h_p - pq * flow.h_q),

@@ -7,7 +7,7 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.algebra.generators import embed
 from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
-from verify.claims.theorems.differential import Flow, Poly, generic
+from verify.claims.theorems.differential import Flow, Poly, flow_of_every_hamiltonian
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
@@ -41,7 +41,7 @@ def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.
 
 def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
-    flow = generic(MOST)
+    flow = flow_of_every_hamiltonian(MOST)
     checks = [_generic(flow, name, recursion) for name in ("p", "q")]
     for name in SYSTEMS:
         hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
@@ -69,7 +69,7 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
 
 
 def _generic(flow: Flow, name: str, recursion: Recursion) -> Check:
-    powers = flow.along(name, MOST)
+    powers = flow.lie_derivatives(name, MOST)
     gaps = [recursion(flow, powers[n - 1]) - powers[n] for n in range(1, MOST + 1)]
     return vanishes(f"Eq. 4 and 5 give Lⁿ = Xⁿ {name} for a generic H, n = 1 … {MOST}", *gaps)
 
@@ -89,7 +89,7 @@ def eq_3(coordinate: str = "p") -> Argument:
 
     With `q` the equation is right, and so it is not refuted.
     """
-    flow = generic(2)
+    flow = flow_of_every_hamiltonian(2)
     ring, h_p = flow.ring, flow.h_p
     literal = h_p * ring.diff(ring["q"], coordinate)
     by_eq_5 = h_p * ring.diff(ring[coordinate], "q")

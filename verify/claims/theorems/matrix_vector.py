@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import text
 from verify.claims.theorems.argument import Argument, Check, concluded
-from verify.claims.theorems.exact_maps import Point, areas, jacobian, made_map, next_point
+from verify.claims.theorems.exact_maps import Point, areas, jacobian, map_from_formulas, next_point
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
@@ -73,7 +73,7 @@ def _is_linear(step: StepMap) -> bool:
 
 def near_identity(p_next: str = "-q", q_next: str = "p") -> Argument:
     """ΔJ → 0 does not make a near-identity map: a map with ΔJ = 0 that moves a point by 1."""
-    step = made_map(p_next, q_next)
+    step = map_from_formulas(p_next, q_next)
     sizes = (Fraction(1, 10), Fraction(1, 1000))
     delta_j = [areas(step, POINT, h, 4).largest for h in sizes]
     moved = [next_point(step, POINT, h) for h in sizes]

@@ -6,9 +6,14 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal
 from verify.integrators.check import POINTS
 from verify.integrators.others import reproductions
-from verify.integrators.others.integrator import Compared, ExactTableau, FloatStep, Subject
+from verify.integrators.others.integrator import (
+    Compared,
+    ExactTableau,
+    FloatStep,
+    ReleasedIntegrator,
+)
 from verify.integrators.others.measured import finding
-from verify.integrators.others.printed_order import WITHIN, Judged, judged
+from verify.integrators.others.printed_order import WITHIN, OrderVerdict, judge_order
 from verify.integrators.others.printed_table import PrintedTable
 from verify.integrators.others.tableau import (
     WRONG,
@@ -26,7 +31,7 @@ _Found = tuple[Verdict, str, tuple[tuple[str, ...], ...]]
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
 
 
-def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResult]:
+def claims_of(subject: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
     """One claim for the order and one for symplecticity, where they are made; of a printed table
     one for the order and one for its digits. `prefix` begins the ids."""
     method = subject.method
@@ -52,7 +57,7 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
         return
     if isinstance(method, PrintedTable):
         assert subject.order is not None  # noqa: S101 - of printed tables it is always claimed
-        found = judged(method, subject.order)
+        found = judge_order(method, subject.order)
         said = of_printed(found, subject.order, method)
         yield claim("order", f"order {subject.order}", said, subject.reproduction)
         if found.verdict is not Verdict.REFUTED and method.units:
@@ -70,7 +75,7 @@ def claims_of(subject: Subject, section: str, prefix: str) -> Iterator[ClaimResu
         yield claim("area", "symplectic: det J ≡ 1", _area(subject), shown)
 
 
-def _order(subject: Subject) -> _Found:
+def _order(subject: ReleasedIntegrator) -> _Found:
     assert subject.order is not None  # noqa: S101 - as it is called
     if isinstance(subject.method, ExactTableau):
         table = subject.method
@@ -84,7 +89,7 @@ def _order(subject: Subject) -> _Found:
     return of_measured_order(subject.order, finding(subject.method), subject.area_preserving)
 
 
-def _area(subject: Subject) -> _Found:
+def _area(subject: ReleasedIntegrator) -> _Found:
     if isinstance(subject.method, ExactTableau):
         found = symplecticity(subject.method.tableau, subject.method.rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
@@ -128,7 +133,7 @@ def of_tableau(
 # -- printed tables -------------------------------------------------------------------------------
 
 
-def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
+def of_printed(found: OrderVerdict, claimed: int, table: PrintedTable) -> _Found:
     """Whether the order can be had within ten units of the digits."""
     count = f"{found.checked} condition{'' if found.checked == 1 else 's'}"
     if found.verdict is Verdict.PROVED:
@@ -150,7 +155,7 @@ def of_printed(found: Judged, claimed: int, table: PrintedTable) -> _Found:
     return Verdict.REFUTED, _excluded(found, claimed, table), _moved(found, table)
 
 
-def _excluded(found: Judged, claimed: int, table: PrintedTable) -> str:
+def _excluded(found: OrderVerdict, claimed: int, table: PrintedTable) -> str:
     if found.order >= claimed:  # each condition alone could hold; together they cannot
         far = f"; the nearest exact ones are {_far(found, table)} away" if found.off else ""
         return (
@@ -166,7 +171,7 @@ def _excluded(found: Judged, claimed: int, table: PrintedTable) -> str:
     return said + _alone(found, table)
 
 
-def _alone(found: Judged, table: PrintedTable) -> str:
+def _alone(found: OrderVerdict, table: PrintedTable) -> str:
     """The one misprinted number, where one alone explains what is found."""
     m = found.misprint
     if m is None:
@@ -177,7 +182,7 @@ def _alone(found: Judged, table: PrintedTable) -> str:
     )
 
 
-def of_digits(found: Judged, table: PrintedTable) -> _Found:
+def of_digits(found: OrderVerdict, table: PrintedTable) -> _Found:
     """Whether all digits are right to one unit of the last."""
     if found.digits is None:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
@@ -195,7 +200,7 @@ def of_digits(found: Judged, table: PrintedTable) -> _Found:
     return Verdict.REFUTED, said, _moved(found, table)
 
 
-def _moved(found: Judged, table: PrintedTable) -> tuple[tuple[str, ...], ...]:
+def _moved(found: OrderVerdict, table: PrintedTable) -> tuple[tuple[str, ...], ...]:
     """The numbers whose last digits are off by more than a unit."""
     if found.nearest is None:
         return ()
@@ -216,7 +221,7 @@ def _rounded(x: Fraction, unit: Fraction) -> str:
     return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
-def _far(found: Judged, table: PrintedTable) -> str:
+def _far(found: OrderVerdict, table: PrintedTable) -> str:
     """How far the nearest exact coefficients are: in units, or, where it is far, absolutely."""
     assert found.off is not None  # noqa: S101 - the callers have one
     assert found.nearest is not None  # noqa: S101 - and so its numbers

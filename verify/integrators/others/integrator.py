@@ -46,7 +46,7 @@ class Compared:
 
 
 @dataclass(frozen=True)
-class Subject:
+class ReleasedIntegrator:
     """`driven`: one sentence on how it is made a one-step map. `order`: the claimed order of
     convergence; `area_preserving`: whether it is claimed to be symplectic; None where nothing is
     claimed. `source`: where. `reproduction`: a few lines of Python that show what was found with

@@ -26,7 +26,7 @@ class Misprint:
     value: Fraction
 
 
-class Near:
+class NearbyCoefficients:
     """The residues near the printed numbers: values, derivatives, a bound of the second ones."""
 
     def __init__(self, table: PrintedTable, asked: Sequence[LogCondition]) -> None:

@@ -16,7 +16,7 @@ import flint
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.integrators.others.nearby_coefficients import Misprint, Near
+from verify.integrators.others.nearby_coefficients import Misprint, NearbyCoefficients
 from verify.integrators.others.printed_table import PrintedTable
 from verify.schemes.free_lie_words import MOST_ORDER, LogCondition, conditions, residue, step
 from verify.verdict import Verdict
@@ -27,7 +27,7 @@ OF_DIGITS = Fraction(1, 10**9)  # a residue below it is of wrong digits, and not
 
 
 @dataclass(frozen=True)
-class Judged:
+class OrderVerdict:
     """What was found of one claimed order.
 
     `order`: the highest that is not excluded, of those looked at. `failing`: the first condition
@@ -49,7 +49,7 @@ class Judged:
     misprint: Misprint | None = None
 
 
-def judged(table: PrintedTable, order: int) -> Judged:
+def judge_order(table: PrintedTable, order: int) -> OrderVerdict:
     """Whether the table can have that order. InputError where it cannot be looked at so far."""
     most = MOST_ORDER[table.kind]
     if not 1 <= order <= most:
@@ -58,10 +58,10 @@ def judged(table: PrintedTable, order: int) -> Judged:
         return _exactly(table, order)
     with working_precision(_BITS):
         highest = min(order + 1, most)
-        return _of(Near(table, table.asked(highest)), order, highest)
+        return _of(NearbyCoefficients(table, table.asked(highest)), order, highest)
 
 
-def _of(near: Near, order: int, highest: int) -> Judged:
+def _of(near: NearbyCoefficients, order: int, highest: int) -> OrderVerdict:
     own = [k for k, c in enumerate(near.asked) if c.order <= order]
     checked = len(conditions(near.table.kind, order))
     wrong = near.excluded(range(len(near.asked)), WITHIN)
@@ -75,14 +75,14 @@ def _of(near: Near, order: int, highest: int) -> Judged:
     size = Fraction(0) if failing is None else near.at_print[failing]
     if allowed < order and largest > OF_DIGITS:
         one = near.misprint(own)
-        return Judged(
+        return OrderVerdict(
             Verdict.REFUTED, allowed, checked, condition, size, largest, digits=False, misprint=one
         )
     found = near.nearest(own)
     if found is None:  # more conditions than numbers, of which some alone may show wrong digits
         digits = False if near.excluded(own, 1) else None
         one = near.misprint(own) if allowed < order else None
-        return Judged(
+        return OrderVerdict(
             Verdict.MEASURED,
             allowed,
             checked,
@@ -101,12 +101,12 @@ def _of(near: Near, order: int, highest: int) -> Judged:
     if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):
         verdict = Verdict.REFUTED
     order_found = max(allowed, order) if verdict is Verdict.ENCLOSED else allowed
-    return Judged(
+    return OrderVerdict(
         verdict, order_found, checked, condition, size, largest, off, numbers, digits, one
     )  # fmt: skip
 
 
-def _exactly(table: PrintedTable, order: int) -> Judged:
+def _exactly(table: PrintedTable, order: int) -> OrderVerdict:
     """Of rational coefficients."""
     if not all(size.is_Rational for size in table.sizes):
         raise InputError("table", table.numbers, "has irrational coefficients and no decimals")
@@ -119,5 +119,5 @@ def _exactly(table: PrintedTable, order: int) -> Judged:
         if gap != 0:
             verdict = Verdict.PROVED if c.order > order else Verdict.REFUTED
             size = Fraction(int(gap.p), int(gap.q))
-            return Judged(verdict, c.order - 1, checked, c, size)
-    return Judged(Verdict.PROVED, most, checked)
+            return OrderVerdict(verdict, c.order - 1, checked, c, size)
+    return OrderVerdict(Verdict.PROVED, most, checked)

@@ -11,7 +11,7 @@ from verify.algebra.conditions import Condition
 from verify.execution.keeping import machine, versions
 from verify.integrators.others import libraries as others
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import Subject
+from verify.integrators.others.integrator import ReleasedIntegrator
 from verify.integrators.others.measured import FAILURES
 from verify.integrators.step import last_line, quiet
 from verify.scenes.results.claim import ClaimResult
@@ -85,7 +85,7 @@ def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[st
     return claims, failed
 
 
-def _subjects(module: Any, failed: list[tuple[str, str]]) -> Iterator[Subject]:
+def _subjects(module: Any, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
     """Its subjects, up to where the library fails: most fail when they are imported."""
     try:
         if module.LIBRARY is not None:

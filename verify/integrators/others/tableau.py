@@ -23,11 +23,11 @@ from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
 from verify.schemes.tree_conditions import (
     MOST_ORDER,
     Weights,
+    condition_text,
     density,
     gaps_of,
     trees,
     vertices,
-    written,
 )
 
 ROUNDING = Fraction(1, 10**13)  # a residue below it is that of rounded coefficients
@@ -62,7 +62,7 @@ def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> Tabl
             if size == 0 or (rounded and size < float(ROUNDING)):
                 largest = max(largest, size)
                 continue
-            name = f"{written(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
+            name = f"{condition_text(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
             return TableauOrder(n - 1, name, size, largest, "the conditions of all rooted trees")
     return TableauOrder(
         min(most + 1, MOST_ORDER), "", 0.0, largest, "the conditions of all rooted trees"
@@ -143,8 +143,8 @@ def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplectic
         )  # fmt: skip
         size = abs(value(tableau.numbers, tableau.numbers.ring.reduce(gap)))
         if size > least:
-            left = f"{written((*u, v))} + {written((*v, u))}"
-            right = f"({written(u) if u else 'b·1'})({written(v) if v else 'b·1'})"
+            left = f"{condition_text((*u, v))} + {condition_text((*v, u))}"
+            right = f"({condition_text(u) if u else 'b·1'})({condition_text(v) if v else 'b·1'})"
             return Symplecticity(False, f"{left} = {right} fails by {size:.3g}")
     return Symplecticity(None, "no pair of trees that was looked at fails")
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import gmpy2
 
-from verify.integrators.tracing.number import Carried, UntraceableError
+from verify.integrators.tracing.number import TracedNumber, UntraceableError
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
 BITS = 200
@@ -46,7 +46,7 @@ class Duals:
         return Dual(self, x.value, one, x.by_q), Dual(self, y.value, y.by_p, one)
 
 
-class Dual(Carried):
+class Dual(TracedNumber):
     """`value`, and `by_p` and `by_q`, its partial derivatives."""
 
     __slots__ = ("by_p", "by_q", "value")

@@ -17,7 +17,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from verify.integrators.tracing.number import FUNCTIONS, Carried, Kind, constant
+from verify.integrators.tracing.number import FUNCTIONS, Kind, TracedNumber, constant
 
 _MODULES = ("math", "cmath", "numpy")
 _FOREIGN = ("numpy", "scipy", "numba")
@@ -168,14 +168,14 @@ class _Self:
 
 class _FloatType(type):
     def __instancecheck__(cls, x: object) -> bool:
-        return isinstance(x, float | Carried)
+        return isinstance(x, float | TracedNumber)
 
 
 class _Float(float, metaclass=_FloatType):
     """`float` that lets our numbers through; as an array's type it is that of objects."""
 
     def __new__(cls, x: Any = 0.0) -> Any:
-        return x if isinstance(x, Carried) else float(x)
+        return x if isinstance(x, TracedNumber) else float(x)
 
 
 def _of_objects(original: Callable[..., Any]) -> Callable[..., Any]:
@@ -193,7 +193,7 @@ def _applied(kind: Kind, name: str, original: Callable[..., Any]) -> Callable[..
     """The function of ours for our numbers and for plain ones, whose value stays exact."""
 
     def call(x: Any, *others: Any, **options: Any) -> Any:
-        if not others and not options and isinstance(x, Carried | _PLAIN):
+        if not others and not options and isinstance(x, TracedNumber | _PLAIN):
             lifted = constant(kind, x)
             if lifted is not None:
                 return lifted.applied(name)
@@ -206,13 +206,13 @@ def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[
     """`own` where one of our numbers is given, else the original."""
 
     def call(*given: Any, **options: Any) -> Any:
-        if any(isinstance(x, Carried) for x in given):
+        if any(isinstance(x, TracedNumber) for x in given):
             return own(*given, **options)
         if (
             not options
             and len(given) == 1
             and isinstance(given[0], list | tuple)
-            and any(isinstance(x, Carried) for x in given[0])
+            and any(isinstance(x, TracedNumber) for x in given[0])
         ):
             return own(*given)
         return original(*given, **options)

@@ -67,20 +67,20 @@ def reading(value: float) -> Fraction | None:
 class Kind(Protocol):
     """What makes numbers of one kind, and what it took floats for."""
 
-    def rational(self, value: Fraction) -> "Carried": ...
+    def rational(self, value: Fraction) -> "TracedNumber": ...
 
-    def pi(self) -> "Carried": ...
+    def pi(self) -> "TracedNumber": ...
 
     readings: dict[float, Fraction]  # floats that were read as another number than their value
     rounded: set[float]  # floats that were taken by their binary value, and are no integers
     refused: list[str]  # what was asked of its numbers and cannot be had: code may catch the error
 
 
-def constant(kind: Kind, value: Any) -> "Carried | None":
+def constant(kind: Kind, value: Any) -> "TracedNumber | None":
     """A user's number as one of ours; None for what is no number. Raises UntraceableError."""
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()  # one of numpy's scalars
-    if isinstance(value, Carried):
+    if isinstance(value, TracedNumber):
         return value
     if isinstance(value, int | Fraction | Decimal):
         return kind.rational(Fraction(value))
@@ -100,7 +100,7 @@ def constant(kind: Kind, value: Any) -> "Carried | None":
     return kind.rational(read)
 
 
-class Carried(ABC):
+class TracedNumber(ABC):
     """A number of one `kind`; subclasses say what an operation on it is."""
 
     __slots__ = ("kind",)
@@ -112,15 +112,15 @@ class Carried(ABC):
     # -- what a subclass says -----------------------------------------------------------------
 
     @abstractmethod
-    def combined(self, name: str, other: Any) -> "Carried":
+    def combined(self, name: str, other: Any) -> "TracedNumber":
         """self + other for "add", and so "subtract", "multiply", "divide"; of the same kind."""
 
     @abstractmethod
-    def applied(self, name: str) -> "Carried":
+    def applied(self, name: str) -> "TracedNumber":
         """The function of `FUNCTIONS` at it."""
 
     @abstractmethod
-    def raised(self, exponent: Fraction) -> "Carried": ...
+    def raised(self, exponent: Fraction) -> "TracedNumber": ...
 
     @abstractmethod
     def known(self) -> Fraction | None:

@@ -11,7 +11,7 @@ from typing import Any
 import sympy
 
 from verify.algebra.formula import FUNCTIONS, MAX_EXPONENT, symbol
-from verify.integrators.tracing.number import Carried, UntraceableError
+from verify.integrators.tracing.number import TracedNumber, UntraceableError
 
 MOST_NODES = 20_000
 _MOST_BITS = 20_000  # of a folded number
@@ -61,7 +61,7 @@ class Tape:
         return self._nodes[key]
 
 
-class Traced(Carried):
+class Traced(TracedNumber):
     """A number that records what is done to it."""
 
     __slots__ = ("node",)

@@ -11,7 +11,7 @@ from verify.pages.figures.axes import decades, grid_lines, line_style, mark_plac
 from verify.pages.figures.figures import Line, canvas, plot_line
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.separation_caption import WAYS, short, ways_of
-from verify.pages.figures.svg import drawn
+from verify.pages.figures.svg import drawing
 from verify.pages.text.typography import NBSP
 from verify.scenes.results.separation import SeparationGrid
 
@@ -48,7 +48,7 @@ def truncation_against_rounding(
     plotted: Sequence[Line], marks: Sequence[Mark], *, name: str, label: str
 ) -> Markup:
     """The lines on logarithmic axes; a dashed vertical line, labelled above them, for each mark."""
-    return drawn(lambda: draw_truncation_against_rounding(plotted, marks), name=name, label=label)
+    return drawing(lambda: draw_truncation_against_rounding(plotted, marks), name=name, label=label)
 
 
 def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Mark]) -> Figure:

@@ -26,7 +26,7 @@ from verify.pages.figures.axes import (
 )
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.plot_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawn
+from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.pages.text.typography import start, superscript
 from verify.scenes.results.run import RunResult, SeriesPoint
 from verify.scenes.results.value import Value
@@ -73,7 +73,9 @@ def against_step_size(
     plotted: Sequence[Line], *, quantity: str, guides: Sequence[int], name: str, label: str
 ) -> Markup:
     """The lines on logarithmic axes, with a grey guide for each slope in `guides`."""
-    return drawn(lambda: draw_against_step_size(plotted, quantity, guides), name=name, label=label)
+    return drawing(
+        lambda: draw_against_step_size(plotted, quantity, guides), name=name, label=label
+    )
 
 
 def draw_against_step_size(plotted: Sequence[Line], quantity: str, guides: Sequence[int]) -> Figure:
@@ -91,7 +93,7 @@ def printed_against_computed(
     computed: Sequence[Line], printed: Line, *, name: str, label: str
 ) -> Markup:
     """lg MSE as it is printed and as it is computed."""
-    return drawn(lambda: draw_printed_against_computed(computed, printed), name=name, label=label)
+    return drawing(lambda: draw_printed_against_computed(computed, printed), name=name, label=label)
 
 
 def draw_printed_against_computed(computed: Sequence[Line], printed: Line) -> Figure:
@@ -156,7 +158,7 @@ def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
 
 def over_time(run: RunResult, *, name: str, label: str) -> Markup:
     """det J, ΔJ and Λ over t, each as the band between its least and greatest in a bucket."""
-    return drawn(lambda: draw_over_time(run), name=name, label=label)
+    return drawing(lambda: draw_over_time(run), name=name, label=label)
 
 
 def draw_over_time(run: RunResult) -> Figure:

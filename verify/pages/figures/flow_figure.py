@@ -19,7 +19,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from verify.pages.figures.axes import grid_lines
 from verify.pages.figures.label_place import Box, dots, place_of
 from verify.pages.figures.plot_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawn
+from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.pages.text.typography import number, whole
 from verify.scenes.results.regions import CarriedOutline, DrawnOutline, FlowImage, FlowResult
 from verify.studies.regions.polyline import parsed, thinned
@@ -70,7 +70,7 @@ class Grid:
 
 
 def flow_panels(grid: Grid, *, name: str, label: str) -> Markup:
-    return drawn(lambda: draw_flow(grid), name=name, label=label)
+    return drawing(lambda: draw_flow(grid), name=name, label=label)
 
 
 # -- what stands where ----------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from verify.pages.figures.axes import decades, grid_lines, line_style, mark_places
 from verify.pages.figures.figures import canvas
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.svg import INK, SERIES, drawn
+from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.pages.text.typography import NBSP, whole
 from verify.scenes.results.exploration import GalleryScene
 
@@ -28,7 +28,7 @@ _ASIDE = 0.5  # of the axes: what a mark's label takes
 
 def orbit(points: Sequence[tuple[str, str]], steps: int, *, name: str, label: str) -> Markup:
     """The points (q, p) in turn, q to the right and p upwards; its two ends are marked."""
-    return drawn(lambda: draw_orbit(points, steps), name=name, label=label)
+    return drawing(lambda: draw_orbit(points, steps), name=name, label=label)
 
 
 def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
@@ -87,7 +87,7 @@ class Mark:
 
 def parts(each: GalleryScene, *, name: str, label: str) -> Markup:
     """|truncation| and |rounding| on logarithmic axes; a dashed line where one overtakes."""
-    return drawn(lambda: draw_parts(each), name=name, label=label)
+    return drawing(lambda: draw_parts(each), name=name, label=label)
 
 
 def draw_parts(each: GalleryScene) -> Figure:

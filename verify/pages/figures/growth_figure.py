@@ -11,7 +11,7 @@ from verify.pages.figures.axes import MOST_STYLES, decades, grid_lines, line_sty
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.plot_figure import Drawing
-from verify.pages.figures.svg import INK, drawn
+from verify.pages.figures.svg import INK, drawing
 
 _POINT = 1 / 72
 _WIDTH, _HEIGHT = 370, 520
@@ -30,7 +30,7 @@ class Orbit:
 
 def predicted_against_measured(orbits: Sequence[Orbit], *, name: str, label: str) -> Markup:
     """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
-    return drawn(lambda: draw_predicted_against_measured(orbits), name=name, label=label)
+    return drawing(lambda: draw_predicted_against_measured(orbits), name=name, label=label)
 
 
 def draw_predicted_against_measured(orbits: Sequence[Orbit]) -> Figure:

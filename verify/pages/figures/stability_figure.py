@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from verify.pages.figures.axes import decades, grid_lines
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.plot_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawn
+from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.scenes.results.stability import Kind, StabilityMapResult
 
 _POINT = 1 / 72
@@ -49,7 +49,7 @@ def plane_of(over: StabilityMapResult) -> Plane:
 
 def stability_plane(plane: Plane, *, name: str, label: str) -> Markup:
     """Each cell by its verdict's mark; the line is linear theory's step size."""
-    return drawn(lambda: draw_plane(plane), name=name, label=label)
+    return drawing(lambda: draw_plane(plane), name=name, label=label)
 
 
 def draw_plane(plane: Plane) -> Figure:

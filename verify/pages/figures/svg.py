@@ -65,7 +65,7 @@ def styled(**changes: object) -> Iterator[None]:
         yield
 
 
-def drawn(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
+def drawing(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
     """The figure that `draw` makes, as an inline SVG image.
 
     `name` prefixes every id, so it must be unique on the page; `label` is the text alternative.

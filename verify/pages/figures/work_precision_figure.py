@@ -20,7 +20,7 @@ from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
 from verify.pages.figures.plot_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawn
+from verify.pages.figures.svg import INK, SERIES, drawing
 
 _POINT = 1 / 72
 _WIDTH = 400
@@ -50,7 +50,7 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnLine:
     """One line of marks. `place`: which of the looks it has, the same in every figure; those of
     peers are apart."""
 
@@ -66,7 +66,7 @@ class Panel:
 
     title: str
     axis: str
-    lines: tuple[Drawn, ...]
+    lines: tuple[DrawnLine, ...]
     floor: tuple[tuple[float, float], ...] = ()
     logarithmic: bool = True
 
@@ -77,7 +77,7 @@ class Panel:
 
 def panels(shown: Sequence[Panel], *, name: str, label: str) -> Markup:
     """The panels below one another, with one legend for all: the labels of the first."""
-    return drawn(lambda: draw_panels(shown), name=name, label=label)
+    return drawing(lambda: draw_panels(shown), name=name, label=label)
 
 
 def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
@@ -101,7 +101,7 @@ def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
     return figure
 
 
-def style(line: Drawn) -> dict[str, Any]:
+def style(line: DrawnLine) -> dict[str, Any]:
     """Colour, mark and dash of a line; beyond the colours they combine anew."""
     index = line.place
     if line.peer:
@@ -138,7 +138,7 @@ def _panel(axes: Any, panel: Panel) -> None:
     axes.set_xlabel(panel.axis)
 
 
-def _line(axes: Any, panel: Panel, line: Drawn) -> None:
+def _line(axes: Any, panel: Panel, line: DrawnLine) -> None:
     look = style(line)
     known = [m for m in line.marks if m.y is not None and isfinite(m.y)]
     bare = {k: v for k, v in look.items() if k not in ("marker", "markersize")}

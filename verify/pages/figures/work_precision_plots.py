@@ -47,7 +47,7 @@ def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
         "(a) error against run time",
         f"run time over [0, {found.time}] in seconds",
         tuple(
-            figure.Drawn(
+            figure.DrawnLine(
                 _labelled(line), tuple(_marks(line, "error")), _place(found, line), line.peer
             )
             for line in lines
@@ -57,7 +57,9 @@ def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
     against_h = figure.Panel(
         "(b) error against h",
         "step size h",
-        tuple(figure.Drawn(line.name, tuple(_by_step(line)), _place(found, line)) for line in own),
+        tuple(
+            figure.DrawnLine(line.name, tuple(_by_step(line)), _place(found, line)) for line in own
+        ),
         tuple(_floor(own, by_step=True)),
     )
     return [against_time, against_h] if own else [against_time]
@@ -72,7 +74,7 @@ def _areas(found: WorkPrecisionResult, name: str) -> Plot:
         "(c) |Λ| against run time",
         f"run time over [0, {found.time}] in seconds",
         tuple(
-            figure.Drawn(_labelled(line, of_area=True), tuple(_area(line)), _place(found, line))
+            figure.DrawnLine(_labelled(line, of_area=True), tuple(_area(line)), _place(found, line))
             for line in lines
         ),
     )
@@ -94,7 +96,7 @@ def _digits(found: WorkPrecisionResult, name: str) -> Plot:
 
     names = dict.fromkeys(p.arithmetic for p in found.systems if p.certified)
     lines = tuple(
-        figure.Drawn(
+        figure.DrawnLine(
             arithmetic,
             tuple(
                 figure.Mark(log10(p.seconds_median), float(p.certified))

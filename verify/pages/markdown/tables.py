@@ -112,13 +112,13 @@ def largest_steps(view: "StabilityView") -> Markdown:
     return table(heads, [(r.scheme, r.measured, r.linear, r.ratio) for r in view.largest], "l")
 
 
-def judged(view: "StabilityView") -> Markdown:
+def stability_table(view: "StabilityView") -> Markdown:
     heads = ("case", "scheme", "h", "N", "verdict", "evidence")
     rows = [(r.name, r.scheme, r.step_size, r.steps, r.verdict, r.detail) for r in view.cases]
     return table(heads, rows, "llrrll")
 
 
-def carried(view: "CarriedView") -> Markdown:
+def region_table(view: "CarriedView") -> Markdown:
     heads = ("map", "N", "t", "change of area", "mean of Λ", "distance", "arithmetic")
     rows = [
         (r.map, r.steps, r.time, _pair(r.change), _pair(r.mean), _pair(r.distance), r.arithmetic)

@@ -12,7 +12,7 @@ _SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture; 
 
 # -- sentences on all of a scene ------------------------------------------------------------------
 
-Found = tuple[FlowResult, FlowImage]
+FlowFinding = tuple[FlowResult, FlowImage]
 
 
 def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
@@ -31,7 +31,7 @@ def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
         yield f"{whole(len(problems))} {count} no known change of area; the table says why."
 
 
-def _largest(known: Sequence[Found]) -> str:
+def _largest(known: Sequence[FlowFinding]) -> str:
     flow, image = max(known, key=lambda each: _size(each[1].area_change))
     return (
         f"The largest relative change of area is that by {image.map} with {_at(flow, image)}: "
@@ -39,7 +39,7 @@ def _largest(known: Sequence[Found]) -> str:
     )
 
 
-def _probe(known: Sequence[Found]) -> str:
+def _probe(known: Sequence[FlowFinding]) -> str:
     """How far below the change the probe's error is, in the worst case."""
     ratios = [
         _size(image.area_change) / Fraction(image.probe_error)
@@ -61,7 +61,7 @@ def _floor_of(ratio: Fraction) -> int:
     return count // unit * unit
 
 
-def _means(known: Sequence[Found]) -> Iterator[str]:
+def _means(known: Sequence[FlowFinding]) -> Iterator[str]:
     compared = [image for _, image in known if image.agree is not None]
     if not compared:
         return
@@ -79,7 +79,7 @@ def _means(known: Sequence[Found]) -> Iterator[str]:
         )
 
 
-def _preserved(images: Sequence[Found]) -> Iterator[str]:
+def _preserved(images: Sequence[FlowFinding]) -> Iterator[str]:
     schemes = list(dict.fromkeys(i.map for _, i in images if i.map != EXACT_FLOW))
     exact = any(image.map == EXACT_FLOW for _, image in images)
     whose = [f"det J ≡ 1 is proved for {listed(schemes)}"] if schemes else []
@@ -107,9 +107,9 @@ def _capital(text: str) -> str:
     return text if text.startswith("det") else text[0].upper() + text[1:]
 
 
-def _distances(images: Sequence[Found]) -> Iterator[str]:
+def _distances(images: Sequence[FlowFinding]) -> Iterator[str]:
     """For each scheme, how far its outlines are from the exact ones at most."""
-    by_map: dict[str, list[Found]] = {}
+    by_map: dict[str, list[FlowFinding]] = {}
     for each in images:
         by_map.setdefault(each[1].map, []).append(each)
     parts = []

@@ -13,7 +13,7 @@ _NEAR = 2  # widths of a line: what lies so near hides what it lies on, nearly
 _NOTED = 1.5  # times as long: an outline drawn out so far is spoken of
 
 
-def seen(flow: FlowResult, grid: Grid) -> Iterator[str]:
+def picture_sentences(flow: FlowResult, grid: Grid) -> Iterator[str]:
     yield from _drawn_out(grid)
     yield from _upon_each_other(flow, line_width(grid))
     yield from _upon_before(grid)

@@ -117,12 +117,12 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
     if not flow.before or not any(image.outlines for image in flow.images):
         return None
     from verify.pages.figures.flow_figure import flow_panels, grid_of
-    from verify.pages.sections.flow_pictures import seen
+    from verify.pages.sections.flow_pictures import picture_sentences
 
     grid, what = grid_of(flow), _the(flow)
     maps = listed(f"the {name}" if name == EXACT_FLOW else name for name in grid.columns)
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
-    found = " ".join(seen(flow, grid))
+    found = " ".join(picture_sentences(flow, grid))
     svg = flow_panels(grid, name=f"panels-of-{anchor}", label=f"{lead}. {found}".strip())
     caption = f"{_caption(flow, len(grid.rows))} {found}".strip()
     return Plot(svg, f"{lead}.", caption, wide=len(grid.columns) > 1)

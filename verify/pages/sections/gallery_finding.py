@@ -17,7 +17,7 @@ _PLAIN = (-2, 3)  # lg of what is written without a power of ten
 # -- the measure ----------------------------------------------------------------------------------
 
 
-def told(measure: str, sentence: str, value: float) -> str:
+def findings(measure: str, sentence: str, value: float) -> str:
     """What a measure's lg says, as a clause that begins with a small letter."""
     size = power(value)
     if measure == "rounding-share":

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify.pages.figures.plot import Plot
-from verify.pages.sections.gallery_finding import in_short, lambda_of, run_beyond, told
+from verify.pages.sections.gallery_finding import findings, in_short, lambda_of, run_beyond
 from verify.pages.text import mathml
 from verify.pages.text.typography import NBSP, start, step, whole
 from verify.scenes.results.exploration import Gallery, GalleryScene
@@ -60,7 +60,7 @@ def _finding(gallery: Gallery, cards: Sequence[CardView]) -> str:
     worst = gallery.scenes[0].separation
     return (
         f"In the worst of {count} ({where}), "
-        f"{told(gallery.measure, gallery.sentence, gallery.scenes[0].value)}: {worst.scheme} with "
+        f"{findings(gallery.measure, gallery.sentence, gallery.scenes[0].value)}: {worst.scheme} with "
         f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
 
@@ -92,7 +92,7 @@ def _hunted(gallery: Gallery) -> Iterator[str]:
 
 def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
     anchor = f"worst-{place}"
-    said = told(gallery.measure, gallery.sentence, each.value)
+    said = findings(gallery.measure, gallery.sentence, each.value)
     return CardView(
         result=each,
         anchor=anchor,

@@ -84,7 +84,7 @@ class Algebra:
             for m, d in self.image(name, by).items()
         )
 
-    def along(self, x: Poly) -> Poly:
+    def lie_derivatives(self, x: Poly) -> Poly:
         return add(mul(self.h_p, self.diff(x, "q")), mul(self.h_q, self.diff(x, "p")), -1)
 
     def zero(self, x: Poly, cofactors: Any, what: str) -> None:
@@ -136,7 +136,7 @@ def check(data: Any) -> None:
     for by, flow in (("p", single("p")), ("q", single("q"))):
         for n in range(agreed + 1):
             a.zero(add(series[by][n], flow, Fraction(-1, factorial(n))), zeros, f"{by} {n}")
-            flow = a.along(flow)
+            flow = a.lie_derivatives(flow)
     slopes = {by: [(a.diff(c, "p"), a.diff(c, "q")) for c in series[by][: last + 1]] for by in "pq"}
     for n in range(1, last + 1):
         det = add({}, leading if n == order else {}, -1)
@@ -147,4 +147,4 @@ def check(data: Any) -> None:
         value = a.value(leading, {n: (Fraction(x), NOUGHT) for n, x in data["witness"].items()})
         need(abs(value[0]) > value[1], "the leading coefficient may be zero at the witness")
     if data.get("potential") is not None:
-        a.zero(add(a.along(poly(data["potential"])), leading, -1), zeros, "potential")
+        a.zero(add(a.lie_derivatives(poly(data["potential"])), leading, -1), zeros, "potential")

@@ -37,7 +37,7 @@ from verify.verdict import Verdict
 def of_every(proof: EveryProof) -> dict[str, Any]:
     """The certificate of a proof for every H; InputError where nothing is proved."""
     scheme = get(proof.scheme)
-    generic = scheme.generic
+    generic = scheme.every_h
     if proof.verdict is not Verdict.PROVED or generic is None or proof.convergence_order is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
     data: dict[str, Any] = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}

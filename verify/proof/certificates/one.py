@@ -146,7 +146,7 @@ def _zeros(
     ring, order = plain.ring, data["order"]
     h_p, h_q = plain.diff(h, "p"), plain.diff(h, "q")
 
-    def along(y: Poly) -> Poly:
+    def lie_derivatives(y: Poly) -> Poly:
         return h_p * plain.diff(y, "q") - h_q * plain.diff(y, "p")
 
     last = order or sum(map(len, series))
@@ -154,7 +154,7 @@ def _zeros(
         flow = ring.variable(by)
         for n in range(data["convergence_order"] + 1):
             yield f"{by} {n}", (own[n] if n < len(own) else ring.zero) - flow / math.factorial(n)
-            flow = along(flow)
+            flow = lie_derivatives(flow)
     slopes = [
         [(plain.diff(x, "p"), plain.diff(x, "q")) for x in own] + [(ring.zero, ring.zero)] * last
         for own in series
@@ -166,4 +166,4 @@ def _zeros(
             det += p_p * q_q - p_q * q_p
         yield f"det {n}", det
     if "potential" in data:
-        yield "potential", along(potential) - leading
+        yield "potential", lie_derivatives(potential) - leading

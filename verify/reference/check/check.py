@@ -16,10 +16,17 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from verify.errors import InputError
-from verify.execution.executors import ANYWHERE, HERE, Call, Where, opened, performed
+from verify.execution.executors import (
+    ANYWHERE,
+    THIS_PROCESS,
+    FunctionCall,
+    Placement,
+    open_place,
+    results_of,
+)
 from verify.execution.keeping import versions
 from verify.reference.check import consistency
-from verify.reference.check.difference import Difference, Found
+from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import Data, Manifest
 from verify.reference.make.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
@@ -62,7 +69,7 @@ def check(
     seed: int,
     own: Path | None = None,
     most_steps: int | None = None,
-    where: Where = ANYWHERE,
+    where: Placement = ANYWHERE,
     done: Callable[[int, int], None] | None = None,
 ) -> Checked:
     """Everything of the folder by itself, and a random share of its data computed again.
@@ -81,11 +88,11 @@ def check(
     if found.differences:  # what is asked for may not even be known
         return found
     chosen = _affordable(_chosen(units, share, seed), most_steps, found)
-    calls = [Call(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
-    parts: dict[str, Found] = {}
+    calls = [FunctionCall(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
+    parts: dict[str, Findings] = {}
     few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
-    with opened(HERE if few else where) as place:
-        for name, part in performed(place, calls):
+    with open_place(THIS_PROCESS if few else where) as place:
+        for name, part in results_of(place, calls):
             parts[name] = part
             if done:
                 done(len(parts), len(calls))

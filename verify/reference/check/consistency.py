@@ -62,7 +62,7 @@ def of_data(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
 
 def _inputs(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
     """Names and inputs, against those of the scene."""
-    written = scene.exact_hamiltonian().written
+    written = scene.exact_hamiltonian().texts
     wanted: dict[str, Any] = {"name": scene.name, **written}
     wanted["proofs"] = [task.scheme for task in proof_tasks(scene)]
     wanted["runs"] = [

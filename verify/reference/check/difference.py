@@ -32,14 +32,14 @@ def _short(text: str) -> str:
 
 
 @dataclass
-class Found:
+class Findings:
     """What one recomputation found: differences, and what could not be recomputed, and why."""
 
     rows: int = 0
     differences: list[Difference] = field(default_factory=list)
     not_recomputed: list[str] = field(default_factory=list)
 
-    def add(self, other: "Found") -> None:
+    def add(self, other: "Findings") -> None:
         """Takes up what another one found."""
         self.rows += other.rows
         self.differences += other.differences

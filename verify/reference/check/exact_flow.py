@@ -22,23 +22,23 @@ _BURST, _STOPPED = 40, 60  # |z| above its first size, and steps below the first
 State = tuple[Number, Number]
 
 
-class NotFollowedError(Exception):
+class NoSolutionError(Exception):
     """The solution could not be followed; the message says why."""
 
 
-class BlowsUpError(NotFollowedError):
+class BlowsUpError(NoSolutionError):
     """The solution grows beyond every bound before the last of the times."""
 
 
 def states_at(
     field: Field, p: Fraction, q: Fraction, times: Sequence[Fraction], digits: int
-) -> tuple[list[State], NotFollowedError | None]:
+) -> tuple[list[State], NoSolutionError | None]:
     """Balls of (p, q) at the times, which ascend from 0, and why not at all of them, if so."""
     bits = math.ceil(3.33 * (digits + _MORE)) + 64
     with flint.ctx.workprec(bits):
         start = flint.arb(number(p)), flint.arb(number(q))
-        rough, why = _followed(field, start, times, digits)
-        fine, also = _followed(field, start, times, digits + _MORE)
+        rough, why = _taylor_solution(field, start, times, digits)
+        fine, also = _taylor_solution(field, start, times, digits + _MORE)
         both = [_around(*pair, digits) for pair in zip(rough, fine, strict=False)]
         return both, why or also
 
@@ -51,9 +51,9 @@ def _around(rough: State, fine: State, digits: int) -> State:
     return p, q
 
 
-def _followed(
+def _taylor_solution(
     field: Field, start: State, times: Sequence[Fraction], digits: int
-) -> tuple[list[State], NotFollowedError | None]:
+) -> tuple[list[State], NoSolutionError | None]:
     order = digits + digits // 4 + 10
     p, q = start
     first, done, found = _largest(start), Fraction(0), []
@@ -68,7 +68,7 @@ def _followed(
         ps, qs = flow_series(field, p, q, order)
         reach = _reach(ps, qs, digits)
         if not all(x.is_finite() for x in (*ps, *qs)):
-            return found, NotFollowedError("H is not defined there")
+            return found, NoSolutionError("H is not defined there")
         shortest = reach if shortest is None else shortest
         if _largest((p, q)) > first + _BURST and reach < shortest - _STOPPED:
             return found, BlowsUpError("the solution blows up before")
@@ -78,7 +78,7 @@ def _followed(
             found.append((_sum(ps, at), _sum(qs, at)))
         h = flint.arb(number(after - done))
         p, q, done = _sum(ps, h), _sum(qs, h), after
-    return found, NotFollowedError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
+    return found, NoSolutionError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
 
 
 def _reach(ps: list[Number], qs: list[Number], digits: int) -> float:

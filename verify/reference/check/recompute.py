@@ -13,7 +13,7 @@ import flint
 
 from verify.arithmetic.exact import magnitude
 from verify.reference.check.consistency import flow_label, run_label
-from verify.reference.check.difference import Difference, Found
+from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.exact_flow import BlowsUpError, State, states_at
 from verify.reference.check.recompute_proof import proof_again, shown
 from verify.reference.check.tape import NotReadError
@@ -33,9 +33,9 @@ class _TooWide(Exception):  # noqa: N818 - no error: the same is done with more 
     """A ball too wide to tell."""
 
 
-def recomputed(data: Data, file: str, kind: str, index: int) -> Found:
+def recomputed(data: Data, file: str, kind: str, index: int) -> Findings:
     """One run, flow or proof of the data again."""
-    found = Found()
+    found = Findings()
     try:
         given = {name: Fraction(value) for name, value in data.parameters.items()}
         known = Field(data.hamiltonian, given)
@@ -53,11 +53,11 @@ def recomputed(data: Data, file: str, kind: str, index: int) -> Found:
 # -- a scheme's orbit -----------------------------------------------------------------------------
 
 
-def _run(known: Field, run: Run, file: str, found: Found) -> None:
+def _run(known: Field, run: Run, file: str, found: Findings) -> None:
     step = step_of(run.scheme, known)
     bits = _FIRST_BITS + _MORE_PER_DIGIT * run.digits
     for attempt in range(_DOUBLINGS):
-        again = Found()
+        again = Findings()
         try:
             with flint.ctx.workprec(bits):
                 _orbit(step, run, file, again, final=attempt == _DOUBLINGS - 1)
@@ -70,7 +70,7 @@ def _run(known: Field, run: Run, file: str, found: Found) -> None:
     found.not_recomputed.append(f"{file}: {label}: {bits // 2} bits do not tell")
 
 
-def _orbit(step: Step, run: Run, file: str, found: Found, *, final: bool) -> None:
+def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> None:
     """Every row of a run; _TooWide where a ball does not tell. `final`: there is no further try."""
     orbit = _Orbit(step, Fraction(run.p), Fraction(run.q), Fraction(run.step_size))
     size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
@@ -139,7 +139,7 @@ class _Orbit:
 
 
 def _left(
-    orbit: _Orbit, row: OrbitPoint, file: str, label: str, found: Found, final: bool
+    orbit: _Orbit, row: OrbitPoint, file: str, label: str, found: Findings, final: bool
 ) -> int | None:
     """The step after which the orbit is beyond 2^4000, or not defined; None where it is neither.
 
@@ -177,7 +177,7 @@ def _compare(
     digits: int,
     size: Fraction,
     where: tuple[str, str, str],
-    found: Found,
+    found: Findings,
     places: int = 0,
 ) -> None:
     """Whether the printed number is the one to which every number of the ball rounds.
@@ -207,14 +207,14 @@ def _compare(
 # -- the exact flow -------------------------------------------------------------------------------
 
 
-def _flow(known: Field, flow: Flow, file: str, found: Found) -> None:
+def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
     rows = [row for row in flow.rows if row.status != "not followed"]
     for row in flow.rows:
         if row.status == "not followed":
             found.not_recomputed.append(f"{file}: {flow_label(flow, row.step)}: has no values")
     times = [row.step * Fraction(flow.step_size) for row in rows]
     for more in _FLOW_DIGITS:
-        again, digits = Found(), flow.digits + more
+        again, digits = Findings(), flow.digits + more
         states, why = states_at(known, Fraction(flow.p), Fraction(flow.q), times, digits)
         try:
             with flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
@@ -233,7 +233,7 @@ def _flow(known: Field, flow: Flow, file: str, found: Found) -> None:
 
 
 def _reached(
-    flow: Flow, row: FlowPoint, state: State, where: tuple[str, str], found: Found
+    flow: Flow, row: FlowPoint, state: State, where: tuple[str, str], found: Findings
 ) -> None:
     """A row whose time was reached."""
     found.rows += 1
@@ -252,7 +252,7 @@ def _not_reached(
     row: FlowPoint,
     why: Exception | None,
     where: tuple[str, str],
-    found: Found,
+    found: Findings,
 ) -> None:
     """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
     if row.status == "blows up" and isinstance(why, BlowsUpError):

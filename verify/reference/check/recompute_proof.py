@@ -8,7 +8,7 @@ from typing import Any
 
 import flint
 
-from verify.reference.check.difference import Difference, Found
+from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, flow_series, step_of
 from verify.reference.make.models import Data, Proof
@@ -18,7 +18,7 @@ _ANY_ORDER = 100  # beyond which no proof goes
 _BITS = 512
 
 
-def proof_again(known: Field, data: Data, proof: Proof, file: str, found: Found) -> None:
+def proof_again(known: Field, data: Data, proof: Proof, file: str, found: Findings) -> None:
     """The powers of h in det J and in the map, at points near the initial values.
 
     That a coefficient vanishes for every p and q is not seen so, but that it does not is.
@@ -42,7 +42,7 @@ class _Looking:
     """One proof's coefficients at one point after another."""
 
     def __init__(
-        self, known: Field, proof: Proof, row: tuple[str, str], most: int, found: Found
+        self, known: Field, proof: Proof, row: tuple[str, str], most: int, found: Findings
     ) -> None:
         self.known, self.proof, self.row, self.most, self.found = known, proof, row, most, found
         self.step, self.leading = step_of(proof.scheme, known), known.tape.read(proof.leading)

@@ -151,7 +151,7 @@ def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Ste
     def step(p: Number, q: Number, h: Number) -> tuple[State, Matrix]:
         slopes: list[tuple[Number, ...]] = []  # k_i, then K_i row by row
 
-        def along(row: Sequence[Fraction]) -> list[Number]:
+        def lie_derivatives(row: Sequence[Fraction]) -> list[Number]:
             total: list[Number] = [p, q, *IDENTITY]
             for b, slope in zip(row, slopes, strict=True):
                 if b:
@@ -159,10 +159,10 @@ def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Ste
             return total
 
         for row in rows:
-            at_p, at_q, *m = along(row)
+            at_p, at_q, *m = lie_derivatives(row)
             f, a = field.at(at_p, at_q)
             slopes.append((*f, *product(a, tuple(m))))
-        z_p, z_q, *j = along(weights)
+        z_p, z_q, *j = lie_derivatives(weights)
         return (z_p, z_q), tuple(j)
 
     return step

@@ -18,7 +18,7 @@ from verify.kernels.computation import step_map_of
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.findings import DOUBLE, SINGLE
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Known
+from verify.reference.compare.setting import Bounded
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _FEW = 4  # roundings of p and q in a step
@@ -46,7 +46,7 @@ class Allowance:
         self._entries: dict[int, Fraction] = {}
         self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
 
-    def at_once(self, name: str, step: int, known: dict[str, Known]) -> Fraction:
+    def at_once(self, name: str, step: int, known: dict[str, Bounded]) -> Fraction:
         """What may be in any case; `known` are the run's numbers after the step, p and q among
         them where `name` is one of them."""
         many = Fraction(1 + math.isqrt(step))
@@ -60,7 +60,7 @@ class Allowance:
             return one * (1 + size)
         return 2 * one * (_root(size) + one)
 
-    def of(self, name: str, step: int, known: dict[str, Known]) -> Allowed | None:
+    def of(self, name: str, step: int, known: dict[str, Bounded]) -> Allowed | None:
         """What may be with all that earlier steps have left; None where that may be everything."""
         least = self.at_once(name, step, known)
         spreads = self._scatters.at(self.orbit, step)
@@ -73,7 +73,7 @@ class Allowance:
             least + USUAL * Fraction(usual) * self.unit, long + WORST * Fraction(worst) * self.unit
         )
 
-    def _one(self, step: int, known: dict[str, Known]) -> Fraction:
+    def _one(self, step: int, known: dict[str, Bounded]) -> Fraction:
         """The rounding of one determinant, at the largest entries that were met so far."""
         if step not in self._entries and "p" in known and "q" in known:
             self._entries[step] = products(self.orbit, known["p"], known["q"])
@@ -81,10 +81,10 @@ class Allowance:
         return _PRODUCTS * self.unit * most
 
 
-def products(orbit: Orbit, p: Known, q: Known) -> Fraction:
+def products(orbit: Orbit, p: Bounded, q: Bounded) -> Fraction:
     """A bound of |a d| + |b c| over the step's substeps, at least 1: what det J is the rest of."""
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
-    if step_map.solved:
+    if step_map.implicit:
         return Fraction(1)
     with working_precision(_BITS):
         box = {"p": around(*p), "q": around(*q), "h": rational_ball(orbit.step_size)}

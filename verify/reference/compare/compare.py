@@ -8,10 +8,10 @@ from verify.errors import InputError
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import Printing, printing
 from verify.reference.compare.diagnosis import Diagnosis
-from verify.reference.compare.findings import Judged, Named, Verdict
+from verify.reference.compare.findings import Named, RunFindings, Verdict
 from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import of_states
-from verify.reference.compare.published import OurRun, Ours
+from verify.reference.compare.published import Published, PublishedRun
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import Theirs
@@ -78,7 +78,7 @@ class Compared:
 
 
 def compare(
-    ours: Ours, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
+    ours: Published, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many."""
     if not theirs.runs:
@@ -86,7 +86,7 @@ def compare(
         raise InputError("table", theirs.first_outside or steps, "has no row of these data")
     how = _printings(theirs)
     found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
-    judged: list[Judged] = []
+    judged: list[RunFindings] = []
     off: list[_Off] = []  # Λ, by no more than rounding may do
     search = _Search()
     asked = {step for _, rows in theirs.runs.values() for step in rows}
@@ -115,10 +115,12 @@ def compare(
     return found
 
 
-_Off = tuple[bool, Fraction, int, OurRun]  # whether its run is never lost; how far, when, where
+_Off = tuple[
+    bool, Fraction, int, PublishedRun
+]  # whether its run is never lost; how far, when, where
 
 
-def _off_by_rounding(judge: Judge, judged: Judged) -> Iterator[_Off]:
+def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
@@ -160,7 +162,7 @@ class _Search:
         self.known: set[str] = set()
         self.in_vain = 0
 
-    def explain(self, judge: Judge, judged: Judged) -> bool:
+    def explain(self, judge: Judge, judged: RunFindings) -> bool:
         """Whether it has found one that was not known."""
         judged.mistakes = Diagnosis(judge, judged, frozenset(self.known)).mistakes()
         if not judged.mistakes and self.in_vain < _MOST_SEARCHES:
@@ -171,7 +173,7 @@ class _Search:
         return len(self.known) > before
 
 
-def _orbits(runs: Iterable[OurRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
+def _orbits(runs: Iterable[PublishedRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
     """What runs with one of these mistakes would be."""
     for run in runs:
         for mistake in of_states(Setting(run.orbit, points)):
@@ -179,7 +181,7 @@ def _orbits(runs: Iterable[OurRun], points: Points, names: Container[str]) -> It
                 yield mistake.setting.orbit
 
 
-def _column(name: str, judged: Iterable[Judged]) -> Column:
+def _column(name: str, judged: Iterable[RunFindings]) -> Column:
     own = [(x.label, x.columns[name]) for x in judged if name in x.columns]
     label, least = min(own, key=lambda x: x[1].digits)
     parted = [(of.parts_at, label) for label, of in own if of.parts_at is not None]
@@ -196,7 +198,7 @@ def _column(name: str, judged: Iterable[Judged]) -> Column:
     )
 
 
-def _diagnoses(judged: Iterable[Judged]) -> list[Explained]:
+def _diagnoses(judged: Iterable[RunFindings]) -> list[Explained]:
     """Which mistakes fit in how many runs. Where several fit in one of them, and some of these in
     all of another, the other rules out the rest."""
     counts: dict[tuple[Named, ...], int] = {}

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import partial
 
 from verify.reference.compare.agreement import chance_of_single, is_single
-from verify.reference.compare.findings import DOUBLE, SINGLE, Fit, Judged, Named, Verdict
+from verify.reference.compare.findings import DOUBLE, SINGLE, Fit, Named, RunFindings, Verdict
 from verify.reference.compare.judge import AREA, STATE, Judge
 from verify.reference.compare.mistakes import Mistake, of_inputs, of_states, without_synonyms
 from verify.reference.compare.readings import readings
@@ -25,7 +25,9 @@ _BY_CHANCE = 1e-3  # that all numbers are of single precision
 class Diagnosis:
     """Of one run, as it was `judged`; `only`: names of the mistakes that are tried, if not all."""
 
-    def __init__(self, judge: Judge, judged: Judged, only: frozenset[str] | None = None) -> None:
+    def __init__(
+        self, judge: Judge, judged: RunFindings, only: frozenset[str] | None = None
+    ) -> None:
         self.judge, self.judged, self.only = judge, judged, only
 
     def mistakes(self) -> list[list[Named]]:

@@ -34,7 +34,7 @@ class Of:
 
 
 @dataclass
-class Judged:
+class RunFindings:
     """What was found of one run. `mistakes`: those that fit; one, or several which nothing tells
     apart. `unit`: the unit roundoff that explains it, or would. `lost_from`: the step from which
     rounding may have taken every digit, so that nothing can be said. `overflow_from`: the first

@@ -12,12 +12,12 @@ from fractions import Fraction
 
 from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance import Allowance
-from verify.reference.compare.findings import DOUBLE, Fit, Judged, Of, Verdict
+from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
 from verify.reference.compare.overflow import may_overflow
-from verify.reference.compare.published import OurRun
+from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.readings import Foretold, value_of
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Known, Points, Setting, known_of
+from verify.reference.compare.setting import Bounded, Points, Setting, number_of
 from verify.reference.compare.submitted import Row
 
 STATE, AREA = ("p", "q"), ("delta_j", "mse", "lambda")
@@ -30,7 +30,7 @@ class Judge:
 
     def __init__(
         self,
-        ours: OurRun,
+        ours: PublishedRun,
         rows: Mapping[int, Row],
         how: Mapping[str, Printing],
         scatters: Scatters,
@@ -47,18 +47,18 @@ class Judge:
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
         for name, text in row.cells.items():
-            known = known_of(self.ours.rows[step], name)
+            known = number_of(self.ours.rows[step], name)
             if known is not None and text.strip():
                 yield name, beside(text, known, self.how[name], f"line {row.line}, {name}")
 
     # -- the right setting --------------------------------------------------------------------
 
-    def judged(self) -> Judged:
+    def judged(self) -> RunFindings:
         """The run as it is, in the unit roundoff that explains most; mistakes are not tried."""
         fits = [(unit, self.fit(self.right, self.names, unit)) for unit in self.units()]
         unit, best = next(((u, f) for u, f in fits if f.fits), fits[-1])
         columns = {name: self._of(name, best) for name in self.names}
-        return Judged(self.ours.label, columns, [], unit, best.lost_from, best.overflow_from)
+        return RunFindings(self.ours.label, columns, [], unit, best.lost_from, best.overflow_from)
 
     def _of(self, name: str, fit: Fit) -> Of:
         """Where the run is lost its digits say nothing, and they are not looked at."""
@@ -124,7 +124,7 @@ class Judge:
                 return found
         return found
 
-    def known(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Known]:
+    def known(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Bounded]:
         """The setting's numbers at a row's step, as far as they can be had."""
         if setting == self.right:
             return self._printed(step)
@@ -136,9 +136,9 @@ class Judge:
                 found[name] = value
         return found
 
-    def _printed(self, step: int) -> dict[str, Known]:
+    def _printed(self, step: int) -> dict[str, Bounded]:
         """What the reference data say."""
-        found = {n: known_of(self.ours.rows[step], n) for n in (*STATE, *AREA)}
+        found = {n: number_of(self.ours.rows[step], n) for n in (*STATE, *AREA)}
         return {n: x for n, x in found.items() if x}
 
     def digits(self, unit: Fraction) -> int:
@@ -147,7 +147,7 @@ class Judge:
 
 
 def _verdict(
-    allowance: Allowance, name: str, step: int, known: dict[str, Known], apart: Fraction
+    allowance: Allowance, name: str, step: int, known: dict[str, Bounded], apart: Fraction
 ) -> Verdict | None:
     """None where rounding may have taken every digit."""
     if apart == 0:

@@ -116,7 +116,7 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
 
     That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
     """
-    generic = schemes.get(right.orbit.scheme).generic
+    generic = schemes.get(right.orbit.scheme).every_h
     parts = generic.parts if isinstance(generic, Splitting) else ()
     if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
         return
@@ -161,7 +161,7 @@ def _relatives(name: str) -> Iterator[tuple[str, str]]:
         for other in (eta - 1, eta + 1):
             if other > 0:
                 yield f"lie{other}", f"your η is {other}, and not {eta}"
-    generic = schemes.get(name).generic
+    generic = schemes.get(name).every_h
     if isinstance(generic, Splitting):
         parts = generic.parts
         kinds = {"kick": "drift", "drift": "kick"}
@@ -179,7 +179,7 @@ def _relatives(name: str) -> Iterator[tuple[str, str]]:
 def _named(parts: tuple[Part, ...]) -> str:
     """The name of the scheme of these parts; the parts themselves where it has none."""
     for name in schemes.names():
-        generic = schemes.get(name).generic
+        generic = schemes.get(name).every_h
         if isinstance(generic, Splitting) and generic.parts == parts:
             return name
     return "; ".join(f"{kind} {to_text(size)}" for kind, size in parts)

@@ -16,13 +16,13 @@ from verify.kernels.kernel import kernel_for
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.allowance import products
 from verify.reference.compare.scatter import run_of
-from verify.reference.compare.setting import Known
+from verify.reference.compare.setting import Bounded
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
 _MOST_STEPS = 20_000  # stepped
 
 
-def may_overflow(orbit: Orbit, step: int, known: dict[str, Known]) -> bool:
+def may_overflow(orbit: Orbit, step: int, known: dict[str, Bounded]) -> bool:
     """Within so many steps and the next; `known` are the run's numbers then, p and q among them
     unless it has left the reference data's range, too."""
     if "p" not in known or "q" not in known:
@@ -35,11 +35,11 @@ def may_overflow(orbit: Orbit, step: int, known: dict[str, Known]) -> bool:
 @lru_cache(maxsize=4096)
 def _overflows(orbit: Orbit, step: int) -> bool:
     run = run_of(orbit)
-    if run.solved:
+    if run.implicit:
         return False
     arithmetic = replace(arrays(), bits=FLOAT.prec, number=FLOAT.rational)
     try:
-        kernel = kernel_for(run.generic, orbit.scheme, arithmetic, run.observables, False)
+        kernel = kernel_for(run.hamiltonian, orbit.scheme, arithmetic, run.observables, False)
         given = [FLOAT.rational(x) for x in run.inputs(kernel, 0).values()]
         state = [FLOAT.rational(Fraction(x)) for x in (orbit.p, orbit.q, *kernel.start)]
     except OverflowError:  # what is given is no double

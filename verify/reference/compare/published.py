@@ -25,7 +25,7 @@ Inputs = tuple[str, float, float, float]  # scheme, h, q0, p0: the numbers to th
 
 
 @dataclass(frozen=True)
-class OurRun:
+class PublishedRun:
     """One run of the reference data."""
 
     scene: str
@@ -58,31 +58,31 @@ class OurRun:
         return {row.step: row for row in self.run.rows}
 
 
-class Ours:
+class Published:
     """The runs of some scenes, found by their inputs."""
 
-    def __init__(self, runs: Iterator[OurRun]) -> None:
-        self.by_scene: dict[str, list[OurRun]] = defaultdict(list)
-        self._by_inputs: dict[tuple[str, Inputs], list[OurRun]] = defaultdict(list)
+    def __init__(self, runs: Iterator[PublishedRun]) -> None:
+        self.by_scene: dict[str, list[PublishedRun]] = defaultdict(list)
+        self._by_inputs: dict[tuple[str, Inputs], list[PublishedRun]] = defaultdict(list)
         for run in runs:
             self.by_scene[run.scene].append(run)
             self._by_inputs[run.scene, run.inputs].append(run)
 
-    def scene(self, name: str) -> list[OurRun]:
+    def scene(self, name: str) -> list[PublishedRun]:
         """Its runs; InputError for a scene that is not there."""
         if name not in self.by_scene:
             known = ", ".join(sorted(self.by_scene))
             raise InputError("scene", name, f"is not in the reference data; they have: {known}")
         return self.by_scene[name]
 
-    def run(self, scene: str, inputs: Inputs, exact: tuple[Fraction, ...]) -> OurRun | None:
+    def run(self, scene: str, inputs: Inputs, exact: tuple[Fraction, ...]) -> PublishedRun | None:
         """The scene's run of these inputs, or of the same doubles where these tell one."""
         found = self._by_inputs.get((scene, inputs), [])
         if len(found) == 1:
             return found[0]
         return next((x for x in found if x.exact == exact), None)
 
-    def runs(self) -> Iterator[OurRun]:
+    def runs(self) -> Iterator[PublishedRun]:
         """All of them."""
         for runs in self.by_scene.values():
             yield from runs
@@ -93,7 +93,7 @@ class Ours:
         return list(dict.fromkeys(getattr(x.run, name) for x in self.scene(scene)))
 
 
-def load(folder: Path, scene: str | None) -> Ours:
+def load(folder: Path, scene: str | None) -> Published:
     """The runs of a folder's scenes, or of one. InputError for a file that is not as it must be."""
     if not folder.is_dir():
         raise InputError("--data", str(folder), "is no folder")
@@ -102,10 +102,10 @@ def load(folder: Path, scene: str | None) -> Ours:
         names = {f"{scene}.json"}
     if not names:
         raise InputError("--data", str(folder), "has no reference data")
-    return Ours(run for name in sorted(names) for run in _runs(folder, name))
+    return Published(run for name in sorted(names) for run in _runs(folder, name))
 
 
-def _runs(folder: Path, name: str) -> Iterator[OurRun]:
+def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
     try:
         data = Data.model_validate(json_of(content_of(folder / name), name))
     except ValidationError as error:
@@ -115,7 +115,7 @@ def _runs(folder: Path, name: str) -> Iterator[OurRun]:
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
     for run in data.runs:
         _check_exponents(run, name)
-        yield OurRun(data.name, hamiltonian, run)
+        yield PublishedRun(data.name, hamiltonian, run)
 
 
 def _check_exponents(run: Run, name: str) -> None:

@@ -11,7 +11,7 @@ from fractions import Fraction
 import flint
 
 from verify.arithmetic.balls import in_reach, middle_and_radius, rational_ball
-from verify.reference.compare.setting import Known, Setting, known_of
+from verify.reference.compare.setting import Bounded, Setting, number_of
 
 _NEAR = Fraction(1, 10**9)
 
@@ -36,8 +36,8 @@ def readings(name: str) -> Iterator[tuple[str, str, Reading]]:
     yield from {"lambda": _LAMBDA, "mse": _MSE, "delta_j": _DELTA_J}[name]
 
 
-def value_of(setting: Setting, name: str, step: int, digits: int) -> Known | None:
-    return known_of(setting.point(step, digits), name)
+def value_of(setting: Setting, name: str, step: int, digits: int) -> Bounded | None:
+    return number_of(setting.point(step, digits), name)
 
 
 def _shifted(name: str, late: int) -> Reading:

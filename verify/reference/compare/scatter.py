@@ -50,11 +50,13 @@ class Scatter:
     def __init__(self, orbits: Sequence[Orbit], marks: Sequence[int] = ()) -> None:
         """Raises UnsupportedError for a scheme that solves equations."""
         runs = [run_of(orbit) for orbit in orbits]
-        if runs[0].solved:
+        if runs[0].implicit:
             raise UnsupportedError("equations are not solved for many points at once")
         self._random = np.random.default_rng(0)
-        kernel = kernel_for(runs[0].generic, orbits[0].scheme, arrays(), runs[0].observables, False)
-        self._names, self._function = kernel.carried, kernel.function
+        kernel = kernel_for(
+            runs[0].hamiltonian, orbits[0].scheme, arrays(), runs[0].observables, False
+        )
+        self._names, self._function = kernel.state_names, kernel.function
         self._shape = len(orbits), _ALL
         inputs = [list(run.inputs(kernel, 0).values()) for run in runs]
         self._given = [self._off(column) for column in zip(*inputs, strict=True)]

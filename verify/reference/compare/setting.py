@@ -15,10 +15,10 @@ from verify.scenes.results.reference import OrbitPoint
 
 _MOST_KEPT = 4096
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
-Known = tuple[Fraction, Fraction]  # a value and its radius
+Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
 
-def known_of(point: OrbitPoint | None, name: str) -> Known | None:
+def number_of(point: OrbitPoint | None, name: str) -> Bounded | None:
     """A number of a point, by its column's name; None where there is none."""
     found = getattr(point, "lam" if name == "lambda" else name, None)
     return None if found is None else (Fraction(found.value), Fraction(found.radius))
@@ -57,10 +57,10 @@ class Setting:
     swapped: bool = False
     negated: bool = False
 
-    def state(self, step: int, digits: int) -> dict[str, Known] | None:
+    def state(self, step: int, digits: int) -> dict[str, Bounded] | None:
         """p and q as row `step` of such a table has them; None where there is no such state."""
         point = self.point(step, digits)
-        p, q = known_of(point, "p"), known_of(point, "q")
+        p, q = number_of(point, "p"), number_of(point, "q")
         if p is None or q is None:
             return None
         if self.negated:

@@ -13,7 +13,7 @@ from pathlib import Path
 from verify.arithmetic.exact import rational
 from verify.errors import InputError, without_controls
 from verify.kernels.tangent_map import number as double
-from verify.reference.compare.published import KEYS, OurRun, Ours
+from verify.reference.compare.published import KEYS, Published, PublishedRun
 from verify.reference.compare.table import Table, opened
 from verify.reference.make.writing import VALUES
 
@@ -56,11 +56,11 @@ class Theirs:
     other_steps: int = 0
     outside: int = 0
     first_outside: str = ""
-    runs: dict[str, tuple[OurRun, dict[int, Row]]] = field(default_factory=dict)
+    runs: dict[str, tuple[PublishedRun, dict[int, Row]]] = field(default_factory=dict)
     read_as: dict[str, tuple[Fraction, Fraction]] = field(default_factory=dict)
 
 
-def read(path: Path, ours: Ours, given: Mapping[str, str], names: Mapping[str, str]) -> Theirs:
+def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[str, str]) -> Theirs:
     """The table's rows that `ours` has.
 
     `given`: what holds for all rows, by column: scene, and `KEYS`. `names`: what the table calls a
@@ -70,7 +70,9 @@ def read(path: Path, ours: Ours, given: Mapping[str, str], names: Mapping[str, s
         return _read(lines, ours, given, names)
 
 
-def _read(lines: Table, ours: Ours, given: Mapping[str, str], names: Mapping[str, str]) -> Theirs:
+def _read(
+    lines: Table, ours: Published, given: Mapping[str, str], names: Mapping[str, str]
+) -> Theirs:
     found = Theirs()
     places = _header(lines, names, found)
     keys = _Keys(ours, given, places)
@@ -83,7 +85,7 @@ def _read(lines: Table, ours: Ours, given: Mapping[str, str], names: Mapping[str
         step = run and keys.step_of(row, run, lines)
         if run is None:
             found.outside += 1
-            found.first_outside = found.first_outside or f"line {lines.line}: {keys.told(row)}"
+            found.first_outside = found.first_outside or f"line {lines.line}: {keys.describe(row)}"
             continue
         if step not in run.rows:
             found.other_steps += 1
@@ -93,7 +95,7 @@ def _read(lines: Table, ours: Ours, given: Mapping[str, str], names: Mapping[str
     return found
 
 
-def _keep(found: Theirs, run: OurRun, step: int, row: Row, lines: Table) -> None:
+def _keep(found: Theirs, run: PublishedRun, step: int, row: Row, lines: Table) -> None:
     rows = found.runs.setdefault(run.label, (run, {}))[1]
     before = rows.setdefault(step, row)
     if before.cells != row.cells:
@@ -143,7 +145,9 @@ def _listed(names: tuple[str, ...]) -> str:
 class _Keys:
     """Which run and which step a row is of."""
 
-    def __init__(self, ours: Ours, given: Mapping[str, str], places: Mapping[str, int]) -> None:
+    def __init__(
+        self, ours: Published, given: Mapping[str, str], places: Mapping[str, int]
+    ) -> None:
         self.ours, self.given, self.places = ours, given, places
         self.read_as: dict[str, tuple[Fraction, Fraction]] = {}
         for name in given:
@@ -151,15 +155,15 @@ class _Keys:
                 raise InputError(f"--{_option(name)}", given[name], "is a column of the table, too")
         self.named = tuple(n for n in ("scene", *KEYS) if n in places)
         self.at = tuple(places[name] for name in self.named)
-        self._known: dict[tuple[str, ...], OurRun | None] = {}
+        self._known: dict[tuple[str, ...], PublishedRun | None] = {}
 
-    def told(self, row: list[str]) -> str:
+    def describe(self, row: list[str]) -> str:
         """What is said of a row's run, by options and by its cells."""
         named = {name: row[at].strip() for name, at in zip(self.named, self.at, strict=True)}
         said = {**self.given, **named}
         return ", ".join(f"{name} = {printable(said[name])}" for name in said)
 
-    def run_of(self, row: list[str], lines: Table) -> OurRun | None:
+    def run_of(self, row: list[str], lines: Table) -> PublishedRun | None:
         texts = tuple([row[at] for at in self.at])
         if texts not in self._known:
             if len(self._known) > _MOST_KNOWN:
@@ -168,7 +172,7 @@ class _Keys:
             self._known[texts] = self._find({**self.given, **named}, lines)
         return self._known[texts]
 
-    def step_of(self, row: list[str], run: OurRun, lines: Table) -> int | None:
+    def step_of(self, row: list[str], run: PublishedRun, lines: Table) -> int | None:
         if "step" in self.places:
             text = row[self.places["step"]]
             if _WHOLE.fullmatch(text):
@@ -182,7 +186,7 @@ class _Keys:
         near = round(count)
         return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
 
-    def _find(self, told: dict[str, str], lines: Table) -> OurRun | None:
+    def _find(self, told: dict[str, str], lines: Table) -> PublishedRun | None:
         scene = told.get("scene") or self._scene(told, lines)
         if scene is None:
             return None
@@ -219,7 +223,7 @@ class _Keys:
             raise InputError("--scene", "", f"is wanted: {len(matching)} have such runs: {names}")
         return next(iter(matching), None)
 
-    def _is(self, run: OurRun, name: str, text: str, lines: Table) -> bool:
+    def _is(self, run: PublishedRun, name: str, text: str, lines: Table) -> bool:
         mine = run.inputs[KEYS.index(name)]
         return mine == (text if name == "scheme" else double(self._number(text, name, lines)))
 

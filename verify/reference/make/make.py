@@ -44,17 +44,17 @@ PUBLISHED = content("reference", "data")
 
 
 @dataclass(frozen=True)
-class Asked:
+class SceneText:
     """A scene and the text that it was read from."""
 
     scene: Scene
     toml: str
 
 
-def load(paths: Sequence[Path]) -> list[Asked]:
+def load(paths: Sequence[Path]) -> list[SceneText]:
     """The scenes in TOML files. InputError for one that asks for no reference data, a name that no
     file can have, or two of one name, of which one would overwrite the other."""
-    found = [Asked(load_scene(path), path.read_bytes().decode()) for path in paths]
+    found = [SceneText(load_scene(path), path.read_bytes().decode()) for path in paths]
     for path, asked in zip(paths, found, strict=True):
         if not asked.scene.reference:
             raise InputError("SCENE", str(path), "asks for no [[reference]]")
@@ -97,14 +97,14 @@ def data_of(scene: Scene, results: Mapping[str, Frozen]) -> Data:
     return Data(
         format=DATA_FORMAT,
         name=scene.name,
-        **scene.exact_hamiltonian().written,
+        **scene.exact_hamiltonian().texts,
         proofs=tuple(proofs),
         runs=tuple(runs),
         flow=tuple(flows),
     )
 
 
-def alone(folder: Path, asked: Sequence[Asked], *, parquet: bool) -> None:
+def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
     """InputError where the folder holds what is not made again, and would be extra in a check."""
     made = {MANIFEST, *names_of((each.scene.name for each in asked), parquet=parquet)}
     other = sorted({path.name for path in folder.iterdir()} - made)
@@ -129,7 +129,7 @@ def files_of(data: Sequence[Data], *, parquet: bool = False) -> dict[str, bytes]
     return dict(sorted(files.items()))
 
 
-def manifest_of(asked: Sequence[Asked], files: Mapping[str, bytes], command: str) -> Manifest:
+def manifest_of(asked: Sequence[SceneText], files: Mapping[str, bytes], command: str) -> Manifest:
     return Manifest(
         format=MANIFEST_FORMAT,
         command=command,

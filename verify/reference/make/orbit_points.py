@@ -40,7 +40,7 @@ _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step
 _ZERO = Fraction(0), Fraction(0)
 _ENCLOSED: Kind = "enclosed"
-Known = tuple[Fraction, Fraction]  # a value and its bound
+Bounded = tuple[Fraction, Fraction]  # a value and its bound
 
 
 def orbit_points(orbit: Orbit, *, steps: Sequence[int], digits: int) -> OrbitResult:
@@ -74,7 +74,7 @@ def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
     return _without(step, "unresolved", None)
 
 
-def _at_start(orbit: Orbit) -> dict[str, Known]:
+def _at_start(orbit: Orbit) -> dict[str, Bounded]:
     return {"p": (orbit.p, Fraction(0)), "q": (orbit.q, Fraction(0)), "lambda": _ZERO}
 
 
@@ -97,7 +97,7 @@ def _size(q: Fraction, p: Fraction, name: str = "p") -> Fraction:
     return max(abs(p), abs(q)) if name in ("p", "q") else Fraction(1)
 
 
-def _rounded(known: Known, digits: int, last: bool, size: Fraction) -> Rounded | None:
+def _rounded(known: Bounded, digits: int, last: bool, size: Fraction) -> Rounded | None:
     rounded = correctly_rounded(*known, digits)
     return rounded or (near_zero(*known, digits, size) if last else None)
 
@@ -109,7 +109,9 @@ def _without(step: int, status: str, failed_step: int | None) -> OrbitPoint:
     )
 
 
-def delta_j_at(step_map: StepMap, p: Known, q: Known, h: Fraction, digits: int) -> Known | None:
+def delta_j_at(
+    step_map: StepMap, p: Bounded, q: Bounded, h: Fraction, digits: int
+) -> Bounded | None:
     """ΔJ of the step from any state within the bounds of p and q: its middle and radius.
 
     Rigorous. None where a step is given by equations and does not preserve area by proof, and where
@@ -117,7 +119,7 @@ def delta_j_at(step_map: StepMap, p: Known, q: Known, h: Fraction, digits: int) 
     """
     if step_map.preserves_area:
         return _ZERO
-    if step_map.solved:
+    if step_map.implicit:
         return None
     with working_precision(4 * digits + _BITS):
         box = {"p": around(*p), "q": around(*q), "h": rational_ball(h)}

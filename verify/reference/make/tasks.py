@@ -25,7 +25,7 @@ class OrbitTask(InitialValueTask):
     def cost(self) -> int:
         return _ROW_COST * len(self.steps) + STEP_COST["mpfr"] * sum(self.steps)
 
-    def perform(self, keeper: Keeper) -> OrbitResult:
+    def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points
 
         exact = self.exact_hamiltonian()
@@ -48,7 +48,7 @@ class SolutionTask(HamiltonianTask):
     def cost(self) -> int:
         return _FLOW_ROW_COST * len(self.steps)
 
-    def perform(self, keeper: Keeper) -> SolutionResult:
+    def compute(self, keeper: Keeper) -> SolutionResult:
         from verify.reference.make.orbit_points import solution_points
 
         return solution_points(

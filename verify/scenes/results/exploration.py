@@ -41,7 +41,7 @@ class PropertySummary(Frozen):
     failures: int
 
 
-class FoundAgain(Frozen):
+class EarlierFailure(Frozen):
     """A scene that an earlier exploration found, looked at again; `message` is empty if it holds
     now."""
 
@@ -108,4 +108,4 @@ class ExploreReport(Frozen):
     examples: int
     properties: tuple[PropertySummary, ...]
     failures: tuple[ShrunkResult, ...]
-    again: tuple[FoundAgain, ...] = ()
+    again: tuple[EarlierFailure, ...] = ()

@@ -62,7 +62,7 @@ def average_of(
     period = found.period if found else None
     at_rest = found is not None and period is None
     return AverageResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         scheme=scheme,
         digits=digits,
         q=text(start[1]),

@@ -14,7 +14,7 @@ class GrowthTask(InitialValueTask):
     kind: Literal["growth"] = "growth"
     digits: int
 
-    def perform(self, keeper: Keeper) -> AverageResult:
+    def compute(self, keeper: Keeper) -> AverageResult:
         from verify.studies.growth.prediction import average_of
 
         exact = self.exact_hamiltonian()

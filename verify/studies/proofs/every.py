@@ -14,7 +14,7 @@ class EveryTask(Task):
     kind: Literal["every"] = "every"
     scheme: str
 
-    def perform(self, keeper: Keeper) -> EveryResult:
+    def compute(self, keeper: Keeper) -> EveryResult:
         from verify.proof.every import prove_every
 
         proof = prove_every(self.scheme)

@@ -23,7 +23,7 @@ class ProofTask(SchemeTask):
     kind: Literal["proof"] = "proof"
     formulas: bool = True
 
-    def perform(self, keeper: Keeper) -> ProofResult:
+    def compute(self, keeper: Keeper) -> ProofResult:
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
         begun = time.perf_counter()
         step_map = scheme.step_map(hamiltonian)
@@ -34,7 +34,7 @@ class ProofTask(SchemeTask):
             p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in elements)
             jacobian = (a, b), (c, d)
         return ProofResult(
-            **hamiltonian.written,
+            **hamiltonian.texts,
             scheme=self.scheme,
             verdict=proof.verdict,
             reason=proof.reason,

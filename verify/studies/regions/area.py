@@ -28,7 +28,7 @@ class NoAreaError(Exception):
     """A curve bounds an area that is not told from 0, so that its change has no meaning."""
 
 
-class Plane(Protocol):
+class PointCarrier(Protocol):
     """Points in one number system, and a map of them."""
 
     bits: int  # about so many are right after the point
@@ -39,7 +39,7 @@ class Plane(Protocol):
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
         """Sequences of x and y of an arc's points."""
 
-    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Their images."""
 
     def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -133,7 +133,9 @@ class Measured:
 class Probe:
     """Measures outlines in one plane, each to its goal."""
 
-    def __init__(self, outlines: Sequence[Outline], plane: Plane, goals: Sequence[Goal]) -> None:
+    def __init__(
+        self, outlines: Sequence[Outline], plane: PointCarrier, goals: Sequence[Goal]
+    ) -> None:
         self.outlines, self.plane, self.goals = outlines, plane, goals
         self.rule: Rule = rule(plane.bits + 24)
         self.unit = Fraction(1, 2 ** (2 * plane.grid + self.rule.bits))
@@ -173,7 +175,7 @@ class Probe:
             self.plane.points(self.outlines[i], arc, [a + (b - a) * s for s in self.rule.nodes])
             for i, arc, a, b in parts
         ]
-        images = self._images(starts, self.plane.carried)
+        images = self._images(starts, self.plane.images)
         areas = self._areas(starts), self._areas(images)
         return [
             Panel(*part, start, image, before, after)

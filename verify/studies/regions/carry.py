@@ -21,7 +21,7 @@ from verify.arithmetic.exact import decimal, known_digits, text, upper
 from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.many_points import LeftError
+from verify.kernels.many_points import LeftRangeError
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.scenes.shapes.outline import Outline, Shape
 from verify.schemes import get
@@ -30,10 +30,10 @@ from verify.studies.regions.hausdorff import FARTHEST, hausdorff
 from verify.studies.regions.mean_lambda import Mean, RegionMean
 from verify.studies.regions.point_systems import (
     WIDE,
-    ExactPlane,
-    FloatPlane,
-    SchemePlane,
-    WidePlane,
+    ExactFlowCarrier,
+    FloatCarrier,
+    SchemeCarrier,
+    WideCarrier,
     smaller_than_one,
 )
 from verify.studies.regions.polyline import DRAWN, dense, thinned
@@ -112,7 +112,7 @@ def carry(
             if distance:
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
                     found |= _distance(hamiltonian, by.time, carried)
-    except (LeftError, NoFlowError, NoAreaError) as error:
+    except (LeftRangeError, NoFlowError, NoAreaError) as error:
         found = {"problem": str(error)}
     return FlowImage(
         map=map_name,
@@ -129,16 +129,16 @@ def carry(
 
 def _measured(
     by: _Carrying, shape: Shape, digits: int
-) -> tuple[list[_Carried], SchemePlane | ExactPlane]:
+) -> tuple[list[_Carried], SchemeCarrier | ExactFlowCarrier]:
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
     smaller, preserves = smaller_than_one(shape.outlines[0]), by.preserves_area
     if by.map == EXACT_FLOW:
-        exact = ExactPlane(by.hamiltonian, by.time, smaller)
+        exact = ExactFlowCarrier(by.hamiltonian, by.time, smaller)
         return _all(shape, exact, _UNCHANGED), exact
     given = by.hamiltonian, by.map, by.step_size, by.steps
     if digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
-            floats = FloatPlane(*given, smaller)
+            floats = FloatCarrier(*given, smaller)
             carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
             measured = carried[0].measured
             if preserves or _is_sharp(measured) or _is_unresolved(measured):
@@ -146,10 +146,10 @@ def _measured(
     digits = max(digits, _MORE_DIGITS)
     goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
     for name in WIDE[:-1]:
-        with contextlib.suppress(UnsupportedError, LeftError):
-            wide = WidePlane(*given, name, digits, smaller)
+        with contextlib.suppress(UnsupportedError, LeftRangeError):
+            wide = WideCarrier(*given, name, digits, smaller)
             return _all(shape, wide, goal), wide
-    wide = WidePlane(*given, WIDE[-1], digits, smaller)
+    wide = WideCarrier(*given, WIDE[-1], digits, smaller)
     return _all(shape, wide, goal), wide
 
 
@@ -158,7 +158,7 @@ def _unchanged(digits: int) -> Goal:
     return Goal(Fraction(0), Fraction(1, 10 ** (digits - _LOST)))
 
 
-def _all(shape: Shape, plane: SchemePlane | ExactPlane, goal: Goal) -> list[_Carried]:
+def _all(shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal) -> list[_Carried]:
     goals = [goal, *[_DETAIL] * (len(shape.outlines) - 1)]
     found = []
     for outline, measured in zip(
@@ -180,7 +180,7 @@ def _is_unresolved(measured: Measured) -> bool:
 
 
 def _areas(
-    carried: Sequence[_Carried], plane: SchemePlane | ExactPlane, preserves: bool
+    carried: Sequence[_Carried], plane: SchemeCarrier | ExactFlowCarrier, preserves: bool
 ) -> dict[str, Any]:
     region = carried[0].measured
     problem = _problem(region, preserves)
@@ -248,7 +248,7 @@ def _mean(by: _Carrying, region: _Carried) -> dict[str, Any]:
     made = RegionMean(by.hamiltonian, by.map, by.step_size, by.steps)
     try:
         found: Mean = made.of(region.outline, (float(x), float(y)))
-    except LeftError:
+    except LeftRangeError:
         return {}
     if not (isfinite(found.value) and isfinite(found.error)):  # areas below float64's range
         return {}
@@ -271,9 +271,9 @@ def _distance(
         return {}
     if any(np.abs(z).max() > FARTHEST for each in carried for z in each.after):
         return {}
-    plane = ExactPlane(hamiltonian, span)
+    plane = ExactFlowCarrier(hamiltonian, span)
     panels = [z for each in carried for z in each.before]
-    q, p = plane.carried(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
+    q, p = plane.images(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
     images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
     apart = [_apart(each.after, [next(images) for _ in each.before]) for each in carried]
     greatest, bound = _greatest(apart)

@@ -59,7 +59,7 @@ class _Floats:
         return _objects([int(Fraction(v) * (1 << self.grid)) for v in x.tolist()])
 
 
-class FloatPlane(_Floats):
+class FloatCarrier(_Floats):
     """A scheme's steps in float64."""
 
     sampled = 1 << 30  # all
@@ -79,14 +79,14 @@ class FloatPlane(_Floats):
             for compensated in (False, True)
         ]  # fmt: skip
 
-    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
         return _image(self._maps[0], x, y)
 
     def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
         return _image(self._maps[1], x, y)
 
 
-class ExactPlane(_Floats):
+class ExactFlowCarrier(_Floats):
     """The exact flow for a time, in float64; `radius` bounds the error of all points so far."""
 
     sampled = 0
@@ -98,7 +98,7 @@ class ExactPlane(_Floats):
         self.radius: Fraction | None = Fraction(0)
         self.method = ""
 
-    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
         found = exact_points(self._hamiltonian, y, x, [self._time])
         self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
         self.method = found.method
@@ -108,7 +108,7 @@ class ExactPlane(_Floats):
         raise NotImplementedError("the exact flow's error is known")
 
 
-class WidePlane:
+class WideCarrier:
     """A scheme's steps in a number system of so many digits."""
 
     sampled = _SAMPLED
@@ -152,7 +152,7 @@ class WidePlane:
         exact, size = self.arithmetic.exact, 1 << self.grid
         return _objects([round(exact(v) * size) for v in x])
 
-    def carried(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
         q, p = _image(self._map, x, y)
         return _objects(q), _objects(p)
 
@@ -175,4 +175,4 @@ def _objects(values: Sequence[Any]) -> np.ndarray:
     return made
 
 
-SchemePlane = FloatPlane | WidePlane
+SchemeCarrier = FloatCarrier | WideCarrier

@@ -4,7 +4,7 @@ from typing import Literal
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
-from verify.scenes.region_sections import ShapeGiven
+from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import FlowImage
 from verify.scenes.values import StepSize
 
@@ -17,7 +17,7 @@ class FlowTask(HamiltonianTask):
     result = FlowImage
     kind: Literal["flow"] = "flow"
     map: str
-    shape: ShapeGiven
+    shape: PlacedShape
     step_size: StepSize
     steps: int
     digits: int
@@ -28,7 +28,7 @@ class FlowTask(HamiltonianTask):
     def cost(self) -> int:
         return _COST + _POINTS * self.steps
 
-    def perform(self, keeper: Keeper) -> FlowImage:
+    def compute(self, keeper: Keeper) -> FlowImage:
         from verify.studies.regions.carry import carry
 
         return carry(

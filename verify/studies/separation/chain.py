@@ -221,9 +221,9 @@ class _Links:
         digits = working_digits(self.digits["beside"], self.kernel_run.steps)
         name = self._name(digits) if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
         try:
-            return run.go(number_systems.get(name, digits), self.advance)
+            return run.step_through(number_systems.get(name, digits), self.advance)
         except UnsupportedError:
-            return run.go(number_systems.get(_INTERPRETED, digits), self.advance)
+            return run.step_through(number_systems.get(_INTERPRETED, digits), self.advance)
 
     def _reference(self, kernel_run: KernelRun, name: str) -> Link:
         if name not in self.made:
@@ -256,18 +256,18 @@ def _rounded(kernel_run: KernelRun, inputs: dict[str, float]) -> KernelRun:
     """The same run from the rounded inputs; parameters that the kernel has inside stay exact."""
     rounded = copy.copy(kernel_run)
     rounded.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
-    parameters = {n: Fraction(inputs[n]) for n in kernel_run.generic.parameters}
+    parameters = {n: Fraction(inputs[n]) for n in kernel_run.hamiltonian.parameters}
     rounded.parameters = {**kernel_run.parameters, **parameters}
     return rounded
 
 
 def _rounded_map(exact: StepMap, rounded: KernelRun) -> StepMap | None:
     """The step map for the rounded parameters; None where H is not defined for them."""
-    values = {n: rounded.parameters[n] for n in rounded.generic.parameters}
+    values = {n: rounded.parameters[n] for n in rounded.hamiltonian.parameters}
     if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
         return exact
     try:
-        return step_map_of(rounded.generic.with_values(values), rounded.scheme)
+        return step_map_of(rounded.hamiltonian.with_values(values), rounded.scheme)
     except InputError:
         return None
 
@@ -296,5 +296,5 @@ def _reference(kernel_run: KernelRun, arithmetic: str, digits: int, advance: Adv
             kind: Kind = "enclosed" if found.rigorous else "estimated"
             return Link(trail, bound, kind, found.method)
         more *= 2
-        run = kernel_run.go(number_systems.get(_INTERPRETED, more))
+        run = kernel_run.run(number_systems.get(_INTERPRETED, more))
     raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

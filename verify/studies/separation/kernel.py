@@ -52,10 +52,10 @@ _CLOSED_SUM = (
 
 @dataclass(frozen=True)
 class MixedKernel:
-    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *carried)` → (steps done,
-    *carried).
+    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` → (steps done,
+    *state_names).
 
-    `carried` names what goes from step to step, `start` has the initial values but for those that
+    `state_names` names what goes from step to step, `start` has the initial values but for those that
     are p's or q's. `wide`: the kernel of the wide numbers alone, whose `outputs["dj"]` is the ΔJ
     that is followed; its function is none. `closed`: whether ΔJ in closed form is not constantly 0.
     """
@@ -63,7 +63,7 @@ class MixedKernel:
     function: Callable[..., tuple[Any, ...]]
     parameters: tuple[str, ...]
     limits: tuple[str, ...]
-    carried: tuple[str, ...]
+    state_names: tuple[str, ...]
     start: dict[str, int]
     wide: Kernel
     closed: bool
@@ -89,30 +89,30 @@ def mixed_kernel(
     inside += [f"f_det = {value['det']}", f"f_dj = {value['dj']}"]
 
     wide = _written(step_map, arithmetic, frozenset({"lambda"}))
-    carried: dict[str, int] = {}
+    totals: dict[str, int] = {}
     if follow:
         _check(wide, arithmetic)
         static, dynamic = _lines(wide, ["dj"], arithmetic, "w_")
         before += static
         inside += ["w_p = wide(f_p)", "w_q = wide(f_q)", *dynamic]
-        inside += _accumulate("trajectory", f"w_v{wide.outputs['dj']}", carried)
-    inside += ["w_own = wide(f_det) - w_one", *_accumulate("determinant", "w_own", carried)]
-    carried["f_plain"] = 1
+        inside += _accumulate("trajectory", f"w_v{wide.outputs['dj']}", totals)
+    inside += ["w_own = wide(f_det) - w_one", *_accumulate("determinant", "w_own", totals)]
+    totals["f_plain"] = 1
     inside.append("f_plain = f_plain * f_det")
     if closed:
-        inside += ["w_own = wide(f_dj)", *_accumulate("closed", "w_own", carried), *_CLOSED_SUM]
-        carried |= {"f_sum": 0, "f_rest": 0}
+        inside += ["w_own = wide(f_dj)", *_accumulate("closed", "w_own", totals), *_CLOSED_SUM]
+        totals |= {"f_sum": 0, "f_rest": 0}
     sides: list[str] = []
     if follow:  # the region visited, over which the rounding of ΔJ is bounded
         inside += _box("f_p") + _box("f_q")
         sides = [f"{n}_{side}" for n in ("f_p", "f_q") for side in ("low", "high")]
     inside += [f"f_p = f_p + ({value['dp']})", f"f_q = f_q + ({value['dq']})"]
 
-    names = ("f_p", "f_q", *sides, *carried)
+    names = ("f_p", "f_q", *sides, *totals)
     limits = LIMITS if arithmetic.absolute else ()
     source = _assemble(len(narrow.parameters), limits, names, before, inside)
     function = _compiled(source, arithmetic, _scope(narrow, float64, wide, arithmetic))
-    return MixedKernel(function, narrow.parameters, limits, names, carried, wide, closed, source)
+    return MixedKernel(function, narrow.parameters, limits, names, totals, wide, closed, source)
 
 
 def _written(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
@@ -173,10 +173,10 @@ def _log1p(x: float) -> float:
     return math.log1p(x) if x > -1.0 else math.nan
 
 
-def _accumulate(name: str, own: str, carried: dict[str, int]) -> list[str]:
+def _accumulate(name: str, own: str, state_names: dict[str, int]) -> list[str]:
     """Λ ← Λ + e + Λ e, and the greatest |Λ| on the way, which its error bound needs."""
     lam, top = f"w_{name}", f"w_{name}_top"
-    carried |= {lam: 0, top: 0}
+    state_names |= {lam: 0, top: 0}
     return [
         f"{lam} = {lam} + ({own} + {lam} * {own})",
         f"w_size = abs({lam})",
@@ -192,18 +192,18 @@ def _box(name: str) -> list[str]:
 def _assemble(
     parameters: int,
     limits: Sequence[str],
-    carried: Sequence[str],
+    state_names: Sequence[str],
     before: Sequence[str],
     inside: Sequence[str],
 ) -> str:
     inputs = ["h", *(f"x{k}" for k in range(parameters))]
     given = [prefix + name for prefix in ("f_", "w_") for name in inputs]
     kinds = {"f": ": 'float'", "w": ""}
-    arguments = ["steps: 'int'", *(n + kinds[n[0]] for n in (*given, *limits, *carried))]
-    names = ", ".join(carried)
+    arguments = ["steps: 'int'", *(n + kinds[n[0]] for n in (*given, *limits, *state_names))]
+    names = ", ".join(state_names)
     guard = []
     if limits:
-        tops = [f"{name} < w_reach_part" for name in carried if name.endswith("_top")]
+        tops = [f"{name} < w_reach_part" for name in state_names if name.endswith("_top")]
         inner = [f"-f_reach_{n} < f_{n} < f_reach_{n}" for n in ("p", "q")]
         guard = [f"if not ({' and '.join([*inner, *tops])}): return k, {names}"]
     return "\n".join(

@@ -89,7 +89,7 @@ def separate(
     except Stopped as answer:
         stopped = answer
     return SeparationResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         scheme=scheme,
         arithmetic=chains.arithmetic if chains else arithmetic,
         digits=digits,

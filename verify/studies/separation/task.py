@@ -24,7 +24,7 @@ class SeparationTask(InitialValueTask):
     def cost(self) -> int:
         return _RUNS * self.steps * STEP_COST[AUTO]
 
-    def perform(self, keeper: Keeper) -> SeparationResult:
+    def compute(self, keeper: Keeper) -> SeparationResult:
         return separate(
             self.exact_hamiltonian(),
             self.scheme,

@@ -94,9 +94,9 @@ class WorkingRun:
         self.run, self.inputs, self.follow = run, inputs, follow
         self.marks = marks_of(run.steps)
 
-    def go(self, arithmetic: Arithmetic, advance: Advance) -> Working:
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working:
         """All steps; raises Stopped where float64 leaves its range."""
-        kernel = mixed_kernel(self.run.generic, self.run.scheme, arithmetic, self.follow)
+        kernel = mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
         states = self._states(kernel, arithmetic, advance)
         bounds = self._bounds(kernel, arithmetic, states[-1])
         kind: Kind = "enclosed"
@@ -127,7 +127,7 @@ class WorkingRun:
         return Working(link("trajectory"), determinant, plain, link("closed"), closed)
 
     def _kernel(self, arithmetic: Arithmetic) -> MixedKernel:
-        return mixed_kernel(self.run.generic, self.run.scheme, arithmetic, self.follow)
+        return mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
 
     # -- stepping -----------------------------------------------------------------------------
 
@@ -162,7 +162,7 @@ class WorkingRun:
 
     def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
         state: State = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
-        for name in kernel.carried:
+        for name in kernel.state_names:
             if name not in kernel.start:  # p, q and the region that they visit
                 state[name] = state[name[:3]]
             else:
@@ -239,7 +239,7 @@ def _exact(arithmetic: Arithmetic, x: Any) -> Fraction:
 
 def rounded_inputs(run: KernelRun) -> dict[str, float]:
     """h, p, q and the parameters that the kernel takes, as float64; Stopped where one is not."""
-    exact = {**run.start, **{n: run.parameters[n] for n in run.generic.parameters}}
+    exact = {**run.start, **{n: run.parameters[n] for n in run.hamiltonian.parameters}}
     number = number_systems.get("float64", 17).number
     found: dict[str, float] = {name: number(value) for name, value in exact.items()}
     for name, value in found.items():
@@ -254,11 +254,11 @@ def _after(
     """The state after `count` steps, or None where float64 leaves its range on the way."""
     try:
         with arithmetic.context():
-            carried = (state[n] for n in kernel.carried)
+            carried = (state[n] for n in kernel.state_names)
             done, *after = kernel.function(count, *fixed, *carried)
     except (ArithmeticError, ValueError):
         return None
-    found = dict(zip(kernel.carried, after, strict=True))
+    found = dict(zip(kernel.state_names, after, strict=True))
     # The sums of logarithms may be undefined while the orbit and the plain way go on.
     vital = (x for n, x in found.items() if n not in ("f_sum", "f_rest"))
     finite = all(math.isfinite(x) if isinstance(x, float) else arithmetic.finite(x) for x in vital)

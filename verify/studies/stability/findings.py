@@ -31,13 +31,13 @@ class StabilityFindings:
 
 def findings_of(scenes: Sequence[Scene], results: Mapping[str, Frozen]) -> StabilityFindings:
     return StabilityFindings(
-        tuple(run for scene in scenes for run in judged_cases(scene, results)),
+        tuple(run for scene in scenes for run in run_verdicts(scene, results)),
         tuple(step for scene in scenes for step in largest_steps(scene, results)),
         tuple(over for scene in scenes for over in stability_maps(scene, results)),
     )
 
 
-def judged_cases(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityResult, ...]:
+def run_verdicts(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityResult, ...]:
     """The scene's runs, each with its name."""
     found = []
     for name, task in stability_tasks(scene):

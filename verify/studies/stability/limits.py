@@ -70,7 +70,7 @@ def largest_step(
     omega, limit = frequency(orbit), linear_limit(scheme)
     linear = limit / omega if limit is not None and omega else None
     if orbit.kind == "escapes":
-        return LargestStep(orbit, None, None, linear, f"the exact solution {orbit.told}")
+        return LargestStep(orbit, None, None, linear, f"the exact solution {orbit.summary}")
 
     def stays(h: Fraction) -> bool:
         steps = time // h

@@ -21,7 +21,7 @@ def run_result(run: Run) -> StabilityResult:
     found = judge(run)
     limit, h_omega = linear_limit(run.scheme), run.step_size * frequency(found.orbit)
     return StabilityResult(
-        **run.hamiltonian.written,
+        **run.hamiltonian.texts,
         scheme=run.scheme,
         step_size=text(run.step_size),
         steps=run.steps,
@@ -33,7 +33,7 @@ def run_result(run: Run) -> StabilityResult:
         energy_error=_rounded(found.energy_error),
         h_omega=_rounded(h_omega) if h_omega else None,
         linear_limit=_rounded(limit, 6),
-        exact_orbit=found.orbit.told,
+        exact_orbit=found.orbit.summary,
         detail=found.detail + _against_theory(found, h_omega, limit),
     )
 
@@ -55,7 +55,7 @@ def largest_step_result(
     found = largest_step(hamiltonian, scheme, p, q, time)
     h = found.bounded
     return LargestStepResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         scheme=scheme,
         time=text(time),
         q=text(q),
@@ -64,7 +64,7 @@ def largest_step_result(
         unbounded=_rounded(found.unbounded, 4),
         linear=_rounded(found.linear, 4),
         h_omega=_rounded(h * frequency(found.orbit), 4) if h else None,
-        exact_orbit=found.orbit.told,
+        exact_orbit=found.orbit.summary,
         detail=found.detail,
     )
 
@@ -88,7 +88,7 @@ def map_result(
         )
     )  # fmt: skip
     return StabilityMapResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         scheme=scheme,
         parameter=parameter,
         values=tuple(map(text, values)),

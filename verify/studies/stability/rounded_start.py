@@ -11,7 +11,7 @@ _NEWTON = 12
 _NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
 
 
-def told_of_rounded_start(run: Run) -> str:
+def describe_rounded_start(run: Run) -> str:
     """How float64 rounds the initial value, and what it cannot tell it from; may be empty."""
     told = ""
     for name in ("q", "p"):
@@ -19,7 +19,7 @@ def told_of_rounded_start(run: Run) -> str:
         gap = abs(Fraction(float(given)) - given)
         if gap:
             told += f"; it rounds {name}0 by {float(gap):.1e}"
-    rest = equilibrium_near(run)
+    rest = nearest_equilibrium(run)
     if rest is not None and all(
         float(x) == float(y) for x, y in zip(rest, (run.p, run.q), strict=True)
     ):
@@ -28,7 +28,7 @@ def told_of_rounded_start(run: Run) -> str:
     return told
 
 
-def equilibrium_near(run: Run) -> tuple[Fraction, Fraction] | None:
+def nearest_equilibrium(run: Run) -> tuple[Fraction, Fraction] | None:
     """A zero (p, q) of H's gradient very near to the initial value, by Newton's method."""
     field, _ = run.hamiltonian.field()
     ring, arithmetic = field.ring, mpfr.make(_DIGITS)

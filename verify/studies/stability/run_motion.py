@@ -14,7 +14,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import functions_at
-from verify.flows.orbit import exact_orbit, written_digits
+from verify.flows.orbit import exact_orbit, initial_value_digits
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
 
@@ -45,7 +45,7 @@ class RunMotion:
         self.run = run
         self.orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time)
         # More where the initial value is written with more.
-        self.digits = _DIGITS + written_digits((run.p, run.q))
+        self.digits = _DIGITS + initial_value_digits((run.p, run.q))
         self._errors: dict[int, tuple[Trail, list[Fraction | None]]] = {}
 
     @cached_property

@@ -27,7 +27,7 @@ class StabilityTask(InitialValueTask):
     def cost(self) -> int:
         return _RUN_COST + self.steps * STEP_COST["fixed"]
 
-    def perform(self, keeper: Keeper) -> StabilityResult:
+    def compute(self, keeper: Keeper) -> StabilityResult:
         from verify.studies.stability.results import run_result
         from verify.studies.stability.trail import Run
 
@@ -46,7 +46,7 @@ class LargestStepTask(InitialValueTask):
     def cost(self) -> int:
         return _RUN_COST * _RUNS_OF_BISECTION
 
-    def perform(self, keeper: Keeper) -> LargestStepResult:
+    def compute(self, keeper: Keeper) -> LargestStepResult:
         from verify.studies.stability.results import largest_step_result
 
         exact = self.exact_hamiltonian()
@@ -67,7 +67,7 @@ class StabilityMapTask(InitialValueTask):
     def cost(self) -> int:
         return _RUN_COST * len(self.values) * len(self.step_sizes)
 
-    def perform(self, keeper: Keeper) -> StabilityMapResult:
+    def compute(self, keeper: Keeper) -> StabilityMapResult:
         from verify.studies.stability.results import map_result
 
         return map_result(

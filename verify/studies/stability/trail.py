@@ -67,7 +67,7 @@ def follow(run: Run, arithmetic: Arithmetic) -> Trail:
     start = {"p": run.p, "q": run.q, "h": run.step_size}
     sections = _sections(run.steps)
     asked = run.hamiltonian, run.scheme, start, run.steps, frozenset[str](), 0
-    outcome = KernelRun(*asked, sections=sections).go(arithmetic)
+    outcome = KernelRun(*asked, sections=sections).run(arithmetic)
     section = -(-run.steps // sections)
     points = [Point(0, run.p, run.q)]
     for k, state in enumerate(outcome.trail, start=1):

@@ -25,7 +25,7 @@ from verify.flows.orbit import ExactOrbit
 from verify.scenes.results.stability import Kind
 from verify.schemes import get
 from verify.studies.stability.energy_drift import drift_of, too_short
-from verify.studies.stability.rounded_start import told_of_rounded_start
+from verify.studies.stability.rounded_start import describe_rounded_start
 from verify.studies.stability.run_motion import RunMotion, float64
 from verify.studies.stability.trail import (
     Run,
@@ -61,11 +61,11 @@ def judge(run: Run) -> Judgement:
     """The verdict on one run."""
     motion = RunMotion(run)
     if motion.orbit.kind == "escapes":
-        return Judgement("escapes", f"the exact solution {motion.orbit.told}", motion.orbit)
+        return Judgement("escapes", f"the exact solution {motion.orbit.summary}", motion.orbit)
     precise, _ = motion.precise
     if not motion.stays(precise):
         if motion.orbit.kind == "unknown":
-            told = f"the exact solution, to be held against, is not known: {motion.orbit.told}"
+            told = f"the exact solution, to be held against, is not known: {motion.orbit.summary}"
             return Judgement("undecided", told, motion.orbit)
         return _scheme(motion)
     if not motion.together(motion.as_far, precise):
@@ -95,7 +95,7 @@ def _scheme(motion: RunMotion) -> Judgement:
     if step is None:
         told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
         return Judgement("undecided", told, motion.orbit)
-    solved = get(motion.run.scheme).step_map(motion.run.hamiltonian).solved
+    solved = get(motion.run.scheme).step_map(motion.run.hamiltonian).implicit
     unsolved = solved and not again.finished and step == again.done + 1
     does = "finds no solution of its equations" if unsolved else "leaves the bounds"
     told = f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits"
@@ -123,7 +123,7 @@ def _not_the_scheme(motion: RunMotion) -> Judgement:
     step = first_apart((run, here, float64()), (run, precise, arithmetic), motion.apart)
     at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
     told = f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits"
-    told += told_of_rounded_start(motion.run)
+    told += describe_rounded_start(motion.run)
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
 

@@ -64,7 +64,7 @@ def line(
 def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
     """The order of the error in h; `scale` is the orbit's size."""
     told = [x for x in points if x.limited_by == "truncation"]
-    return _near_alone(told, [(x, x.error) for x in near(told, scale)])
+    return _near_alone(told, [(x, x.error) for x in within_orbit(told, scale)])
 
 
 def lambda_slope(
@@ -76,7 +76,7 @@ def lambda_slope(
             value=None, standard_error=None, points=0, reason="ΔJ ≡ 0 is proved: Λ is exactly 0"
         )
     told = [x for x in points if x.lambda_limited_by == "truncation"]
-    return _near_alone(told, [(x, x.lam) for x in near(told, scale)])
+    return _near_alone(told, [(x, x.lam) for x in within_orbit(told, scale)])
 
 
 def _near_alone(
@@ -91,7 +91,7 @@ def _near_alone(
     return slope.model_copy(update={"reason": reason})
 
 
-def near(points: Iterable[WorkPoint], scale: str) -> list[WorkPoint]:
+def within_orbit(points: Iterable[WorkPoint], scale: str) -> list[WorkPoint]:
     """The runs whose error is not larger than the orbit."""
     return [x for x in points if x.error and Decimal(x.error.value) <= Decimal(scale)]
 
@@ -173,7 +173,7 @@ def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
 def _places(line: WorkLine, quantity: str, scale: str) -> list[Place]:
     """(lg run time, lg quantity) by run time."""
     found = []
-    for point in near(line.points, scale):
+    for point in within_orbit(line.points, scale):
         value: Value | None = getattr(point, quantity)
         if value and Decimal(value.value) and point.seconds_median:
             found.append((lg(repr(point.seconds_median)), lg(value.value)))
@@ -221,8 +221,8 @@ def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, sc
     if exact:
         rest = one if other.area_preserving else other
         keeps = other if other.area_preserving else one
-        errors = _sizes(x.lam for x in near(rest.points, scale))
-        rounded = _sizes(x.lam_plain for x in near(keeps.points, scale))
+        errors = _sizes(x.lam for x in within_orbit(rest.points, scale))
+        rounded = _sizes(x.lam_plain for x in within_orbit(keeps.points, scale))
         seen = f", where {rest.name} has |Λ| of {_span(errors)}" if errors else ""
         shown = f"; what float64’s rounding shows of it is {_span(rounded)}" if rounded else ""
         return f"In area {exact[0]} makes no error (ΔJ ≡ 0 is proved){seen}{shown}."

@@ -100,7 +100,7 @@ def work_precision(
         for name, (timings, compiled) in zip(peers, others, strict=True)
     ]
     return WorkPrecisionResult(
-        **hamiltonian.written,
+        **hamiltonian.texts,
         time=text(time),
         q=text(q),
         p=text(p),

@@ -88,7 +88,7 @@ class Ladder:
         step_map = self.scheme.step_map(problem.hamiltonian)
         self.preserves_area = step_map.preserves_area
         self.arithmetic: Arithmetic = float64.compiled_at_once()
-        generic = self.scheme.step_map(self._kernel_run(problem.time, frozenset()).generic)
+        generic = self.scheme.step_map(self._kernel_run(problem.time, frozenset()).hamiltonian)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(generic, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()
@@ -173,7 +173,7 @@ class Ladder:
         """Λ by the plain product, by its closed form, and what limits the latter."""
         asked = {"lambda_plain"} | (set() if self.preserves_area else {"lambda"})
         kernel_run = self._kernel_run(h, frozenset(asked))
-        run = kernel_run.go(float64.make(17))
+        run = kernel_run.run(float64.make(17))
         if run.done < kernel_run.steps:
             return None, None, "failed"
         plain = printed(run.values["lambda_plain"], Fraction(0))

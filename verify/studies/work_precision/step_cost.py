@@ -50,7 +50,7 @@ def _result(
 
 def gradient(scheme: Scheme) -> dict[str, int] | None:
     """Evaluations of H_p and of H_q in a step, for schemes that are made of such."""
-    generic = scheme.generic
+    generic = scheme.every_h
     if isinstance(generic, RungeKutta):
         return dict.fromkeys(("H_p", "H_q"), len(generic.weights))
     if isinstance(generic, Splitting):

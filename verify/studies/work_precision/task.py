@@ -37,11 +37,11 @@ class WorkPrecisionTask(HamiltonianTask):
     def cost(self) -> int:
         return _POINT_COST * len(self.schemes) * len(self.step_sizes)
 
-    def perform(self, keeper: Keeper) -> WorkPrecisionResult:
+    def compute(self, keeper: Keeper) -> WorkPrecisionResult:
         return self.measure(lambda _: None)
 
     def measure(self, advance: Callable[[int], None]) -> WorkPrecisionResult:
-        """As `perform`; `advance` is called with the number of points just done."""
+        """As `compute`; `advance` is called with the number of points just done."""
         from verify.studies.work_precision.measure import NumberSystems, work_precision
 
         return work_precision(

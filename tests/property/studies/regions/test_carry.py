@@ -9,13 +9,13 @@ from tests.examples import drawn
 from tests.helpers.known_areas import measured
 from tests.helpers.random_formulas import polynomials
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.many_points import LeftError
+from verify.kernels.many_points import LeftRangeError
 from verify.scenes.shapes.outline import Outline
 from verify.scenes.shapes.user_outline import polygon
 from verify.schemes import get
 from verify.studies.regions.area import Goal
 from verify.studies.regions.mean_lambda import RegionMean
-from verify.studies.regions.point_systems import FloatPlane
+from verify.studies.regions.point_systems import FloatCarrier
 
 GOAL = Goal(change=Fraction(1, 10**5), area=Fraction(1, 10**13))
 schemes = st.sampled_from(["lie1", "lie2", "lie3"])
@@ -40,9 +40,9 @@ def test_the_change_of_area_is_the_mean_of_lambda(
     h = Fraction(1, 50)
     assume(not get(scheme).step_map(hamiltonian).preserves_area)
     try:
-        area = measured(outline, FloatPlane(hamiltonian, scheme, h, steps), GOAL)
+        area = measured(outline, FloatCarrier(hamiltonian, scheme, h, steps), GOAL)
         mean = RegionMean(hamiltonian, scheme, h, steps).of(outline, centre)
-    except LeftError:
+    except LeftRangeError:
         assume(False)
     off = abs(Fraction(mean.value) - area.change)
     assert off <= Fraction(mean.error) + area.error, (formula, scheme, steps, outline, area.change)

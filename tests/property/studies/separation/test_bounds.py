@@ -98,7 +98,7 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     working = WorkingRun(run, rounded_inputs(run), follow=True)
     coarse_, fine_ = number_systems.get("mpfr", 17), number_systems.get("mpfr", 90)
     try:
-        coarse, fine = (working.go(x, lambda _: None) for x in (coarse_, fine_))
+        coarse, fine = (working.step_through(x, lambda _: None) for x in (coarse_, fine_))
     except Stopped:
         assume(False)
         raise
@@ -136,7 +136,9 @@ def test_fixed_point_beside_float64_is_within_its_bound(
     hamiltonian = Hamiltonian.parse(QUARTIC, {"delta": delta})
     run = KernelRun(hamiltonian, "lie2", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
     working = WorkingRun(run, rounded_inputs(run), follow=True)
-    coarse, fine = (working.go(x, lambda _: None) for x in (FIXED, number_systems.get("mpfr", 90)))
+    coarse, fine = (
+        working.step_through(x, lambda _: None) for x in (FIXED, number_systems.get("mpfr", 90))
+    )
     for name in ("trajectory", "determinant", "closed_delta_j"):
         x, y = getattr(coarse, name), getattr(fine, name)
         agree(x, y)

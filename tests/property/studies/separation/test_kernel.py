@@ -34,7 +34,7 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
     """And the greatest |Λ| is that of a step: a checkpoint is made at each."""
     run = KernelRun(Hamiltonian.parse(text), scheme, {"p": p, "q": q, "h": h}, steps, WORKING, 10)
     working, exact = WorkingRun(run, rounded_inputs(run), follow), number_systems.get("mpfr", 25)
-    kernel = mixed_kernel(run.generic, run.scheme, exact, follow)
+    kernel = mixed_kernel(run.hamiltonian, run.scheme, exact, follow)
     try:
         states = [working._first_state(kernel, exact)]
         states += working._states(kernel, exact, lambda _: None)
@@ -44,12 +44,18 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
     assert len(states) == steps + 1
     for name in ("f_p", "f_q"):
         path = [state[name] for state in states]
-        assert (f"{name}_low" in kernel.carried) == (f"{name}_high" in kernel.carried) == follow
+        assert (
+            (f"{name}_low" in kernel.state_names)
+            == (f"{name}_high" in kernel.state_names)
+            == follow
+        )
         for k, state in enumerate(states):
             if follow:
                 visited = path[: max(k, 1)]
                 assert (state[f"{name}_low"], state[f"{name}_high"]) == (min(visited), max(visited))
-    followed = {n for n in ("trajectory", "determinant", "closed") if f"w_{n}" in kernel.carried}
+    followed = {
+        n for n in ("trajectory", "determinant", "closed") if f"w_{n}" in kernel.state_names
+    }
     closed = scheme != "symplectic-euler"  # of which ΔJ is 0 as it is written
     assert kernel.closed == closed
     assert followed == {"determinant", *["closed"] * closed, *["trajectory"] * follow}

@@ -81,7 +81,7 @@ def test_balls_hold_the_exact_values_however_few_bits_they_have(
     q: Fraction, p: Fraction, h: Fraction, steps: int, bits: int
 ) -> None:
     kernel_run = KernelRun(DUFFING, "lie2", {"q": q, "p": p, "h": h}, steps, frozenset(REPORTED), 0)
-    found = kernel_run.go(ball.at_bits(bits))
+    found = kernel_run.run(ball.at_bits(bits))
     if found.done < steps:
         return  # so few bits that nothing is known, which is said
     orbit = list(islice(duffing_steps(q, p, h), steps))

@@ -39,7 +39,7 @@ def kernel_run(
 
 
 def assert_the_same_bits(of: KernelRun, bits: int) -> None:
-    ours, theirs = of.go(mpfr.at_bits(bits)), of.go(mpmath.at_bits(bits))
+    ours, theirs = of.run(mpfr.at_bits(bits)), of.run(mpmath.at_bits(bits))
     assert ours.done == theirs.done
     assert ours.trail == theirs.trail
 
@@ -50,7 +50,7 @@ def test_a_rational_step_has_the_bits_that_mpmath_has(
     h: Hamiltonian, scheme: str, bits: int
 ) -> None:
     of = kernel_run(h, scheme, Fraction(3, 2), Fraction(1, 3), 1500, Fraction(1, 70))
-    assert len(of.go(mpfr.at_bits(bits)).trail) > 10, "the whole state, at points on the way too"
+    assert len(of.run(mpfr.at_bits(bits)).trail) > 10, "the whole state, at points on the way too"
     assert_the_same_bits(of, bits)
 
 
@@ -76,7 +76,7 @@ def test_as_many_digits_are_as_many_bits_as_in_mpmath(digits: int) -> None:
 def test_one_bit_less_is_seen() -> None:
     """The twin of the tests above: they can tell a last bit."""
     of = kernel_run(DUFFING, "lie2", Fraction(3, 2), Fraction(0), 100, Fraction(1, 70))
-    assert of.go(mpfr.at_bits(112)).values != of.go(mpmath.at_bits(113)).values
+    assert of.run(mpfr.at_bits(112)).values != of.run(mpmath.at_bits(113)).values
 
 
 @pytest.mark.parametrize(("scheme", "size"), [("lie2", "0.5"), ("lie3", "2"), ("lie1", "7/3")])
@@ -134,7 +134,7 @@ def test_the_bounds_of_float64_are_those_that_mpmath_would_give(text: str) -> No
     of = kernel_run(
         Hamiltonian.parse(text), "lie2", Fraction(3, 2), Fraction(0), 500, Fraction(1, 70)
     )
-    first = of.go(arithmetic.get("float64", 17))
+    first = of.run(arithmetic.get("float64", 17))
     found = bounded(of, first, {})
     assert found.rigorous
     by_mpmath = measure(of, "mpmath", 30).bounds

@@ -20,8 +20,8 @@ from verify.claims.theorems import (
     names,
 )
 from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
-from verify.claims.theorems.criteria_examples import Example
-from verify.claims.theorems.differential import Flow, generic
+from verify.claims.theorems.criteria_examples import ExampleMap
+from verify.claims.theorems.differential import Flow, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Areas, Point, value
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -109,7 +109,7 @@ def test_an_argument_with_a_failed_check_or_none_is_undecided_and_has_no_proof()
 @pytest.mark.parametrize("eta", [1, 2, 3])
 @pytest.mark.parametrize("formula", ["p**3*q + q**4/4 + p**2/2", "p**2*q**2 - q"])
 def test_delta_j_of_a_generic_h_is_that_of_the_house_for_one_h(formula: str, eta: int) -> None:
-    flow = generic(eta + 2)
+    flow = flow_of_every_hamiltonian(eta + 2)
     hamiltonian = Hamiltonian.parse(formula)
     p, q, h = sympy.symbols("p q h", real=True)
     put = {}
@@ -130,9 +130,9 @@ def test_delta_j_of_a_generic_h_is_that_of_the_house_for_one_h(formula: str, eta
 
 
 def test_a_derivative_beyond_the_order_of_a_generic_h_is_an_error_and_not_zero() -> None:
-    flow = generic(2)
+    flow = flow_of_every_hamiltonian(2)
     with pytest.raises(KeyError):
-        flow.along("p", 3)
+        flow.lie_derivatives("p", 3)
 
 
 # -- Eq. 2–5 --------------------------------------------------------------------------------------
@@ -201,18 +201,18 @@ def test_a_map_that_changes_areas_or_moves_little_does_not_refute_near_identity(
 
 # -- the criteria ---------------------------------------------------------------------------------
 
-EXAMPLES = [x for x in vars(criteria_examples).values() if isinstance(x, Example)]
+EXAMPLES = [x for x in vars(criteria_examples).values() if isinstance(x, ExampleMap)]
 
 
-def planted(example: Example, **changes: Any) -> Example:
+def planted(example: ExampleMap, **changes: Any) -> ExampleMap:
     fields = {name: getattr(example, name) for name in example.__dataclass_fields__}
-    return Example(**{**fields, **changes})
+    return ExampleMap(**{**fields, **changes})
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda e: e.name)
 @pytest.mark.parametrize("place", [0, 1, 2])
 def test_each_number_said_of_an_example_is_held_against_its_run(
-    example: Example, place: int
+    example: ExampleMap, place: int
 ) -> None:
     assert example.check().holds
 
@@ -260,6 +260,6 @@ def test_a_value_that_is_not_rational_is_not_taken_for_one() -> None:
 
 
 def test_vanishes_tells_a_zero_from_what_is_not() -> None:
-    ring = generic(1).ring
+    ring = flow_of_every_hamiltonian(1).ring
     assert vanishes("x", ring.zero).holds
     assert not vanishes("x", ring.zero, ring["p"]).holds

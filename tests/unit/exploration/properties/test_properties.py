@@ -10,7 +10,7 @@ import pytest
 from verify.arithmetic.exact import decimal
 from verify.exploration import properties
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.kernels.kernel import kernel_for
 from verify.proof import growth_law as growth
 from verify.proof.order import prove
@@ -20,10 +20,10 @@ from verify.schemes.step_map import StepMap
 from verify.schemes.substep import Substep
 
 Patch = pytest.MonkeyPatch
-Plant = Callable[[Example, Patch], Example]
+Plant = Callable[[Sample, Patch], Sample]
 
 
-def example_of(scheme: str, hamiltonian: str = "p**2/2 + q**2/2 + q**4/4") -> Example:
+def example_of(scheme: str, hamiltonian: str = "p**2/2 + q**2/2 + q**4/4") -> Sample:
     data = {
         "hamiltonian": hamiltonian,
         "schemes": [scheme],
@@ -33,7 +33,7 @@ def example_of(scheme: str, hamiltonian: str = "p**2/2 + q**2/2 + q**4/4") -> Ex
             "initial_values": [{"q": "1.1", "p": "-0.3"}],
         },
     }
-    return Example.of(scene_from(data, "scene"))
+    return Sample.of(scene_from(data, "scene"))
 
 
 @pytest.fixture(autouse=True)
@@ -43,11 +43,11 @@ def _every_turn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def take_every_turn(patch: Patch) -> None:
     """What looks at one example in a few looks at these."""
-    patch.setattr(Example, "turn", 0)
-    patch.setattr(Example, "is_turn", lambda self, one_in, after=0: True)
+    patch.setattr(Sample, "turn", 0)
+    patch.setattr(Sample, "is_turn", lambda self, one_in, after=0: True)
 
 
-def with_map(example: Example, change: Callable[[Substep], tuple[Any, Any]]) -> Example:
+def with_map(example: Sample, change: Callable[[Substep], tuple[Any, Any]]) -> Sample:
     """The example, its scheme's last part changed for every H."""
 
     def build(hamiltonian: Any) -> StepMap:
@@ -68,7 +68,7 @@ def added(p_power: int, q_power: int, h_power: int, part: str = "p") -> Plant:
     return lambda example, _: with_map(example, changed)
 
 
-def wrong_order(example: Example, patch: Patch) -> Example:
+def wrong_order(example: Sample, patch: Patch) -> Sample:
     """A proof that says one order more."""
     proof = example.proof
     assert proof.convergence_order is not None
@@ -77,14 +77,14 @@ def wrong_order(example: Example, patch: Patch) -> Example:
     return example
 
 
-def another_proof(example: Example, patch: Patch) -> Example:
+def another_proof(example: Sample, patch: Patch) -> Sample:
     """The proof of another map: an h³ term of the wrong sign."""
     twisted = added(1, 1, 3)(example, patch)
     patch.setitem(example.__dict__, "proof", prove(twisted.step_map, example.scheme))
     return example
 
 
-def sums_for_products(example: Example, patch: Patch) -> Example:
+def sums_for_products(example: Sample, patch: Patch) -> Sample:
     """Λ as the sum of the ΔJ."""
     from verify.kernels.kernel import Writer
 
@@ -93,7 +93,7 @@ def sums_for_products(example: Example, patch: Patch) -> Example:
     return example
 
 
-def off_by_a_digit(example: Example, patch: Patch) -> Example:
+def off_by_a_digit(example: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.numbers import number_systems_agree as module
 
     true = module.run
@@ -109,7 +109,7 @@ def off_by_a_digit(example: Example, patch: Patch) -> Example:
     return example
 
 
-def a_part_twice(example: Example, patch: Patch) -> Example:
+def a_part_twice(example: Sample, patch: Patch) -> Sample:
     from verify.studies.separation.chain import Chain
 
     true = Chain.trail
@@ -122,14 +122,14 @@ def a_part_twice(example: Example, patch: Patch) -> Example:
     return example
 
 
-def twice_the_potential(example: Example, patch: Patch) -> Example:
+def twice_the_potential(example: Sample, patch: Patch) -> Sample:
     growth.growth_law.cache_clear()
     true = growth.potential_of_lie
     patch.setattr(growth, "potential_of_lie", lambda field, eta: 2 * true(field, eta))
     return example
 
 
-def blind(example: Example, patch: Patch) -> Example:
+def blind(example: Sample, patch: Patch) -> Sample:
     """A proof that never sees that an order is missed."""
     from verify.proof.order import Convergence
 
@@ -138,7 +138,7 @@ def blind(example: Example, patch: Patch) -> Example:
     return example
 
 
-def a_lost_sign(example: Example, patch: Patch) -> Example:
+def a_lost_sign(example: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.numbers import results_read_back as module
 
     true = module.scene_text
@@ -146,7 +146,7 @@ def a_lost_sign(example: Example, patch: Patch) -> Example:
     return example
 
 
-def believes_all(example: Example, patch: Patch) -> Example:
+def believes_all(example: Sample, patch: Patch) -> Sample:
     """A checker for which every polynomial is zero."""
     from verify.proof.certificates.checker import Algebra
 
@@ -154,7 +154,7 @@ def believes_all(example: Example, patch: Patch) -> Example:
     return example
 
 
-def an_order_too_high(example: Example, patch: Patch) -> Example:
+def an_order_too_high(example: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.orders import every_hamiltonian as module
 
     true = module._proved
@@ -162,7 +162,7 @@ def an_order_too_high(example: Example, patch: Patch) -> Example:
     return example
 
 
-def half_a_flow(example: Example, patch: Patch) -> Example:
+def half_a_flow(example: Sample, patch: Patch) -> Sample:
     """q moves with the flow of H, and p by half of it."""
     from verify.flows.extrapolation import Flow
 
@@ -177,7 +177,7 @@ def half_a_flow(example: Example, patch: Patch) -> Example:
     return example
 
 
-def values_too_large(example: Example, patch: Patch) -> Example:
+def values_too_large(example: Sample, patch: Patch) -> Sample:
     """The averaged function by a thousandth larger along the orbit."""
     from verify.flows.closed_orbit import Orbit
 
@@ -191,7 +191,7 @@ def values_too_large(example: Example, patch: Patch) -> Example:
     return example
 
 
-def a_part_misprinted(example: Example, patch: Patch) -> Example:
+def a_part_misprinted(example: Sample, patch: Patch) -> Sample:
     from verify.studies.separation.chain import Chain
 
     true = Chain.final

@@ -20,7 +20,7 @@ from verify.exploration.properties.numbers import number_systems_agree, results_
 from verify.exploration.properties.orbits import growth_laws
 from verify.exploration.properties.orders import planted_errors
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.kernels.kernel import kernel_for
 from verify.proof import growth_law as growth
 from verify.proof.growth_law import GrowthLaw
@@ -48,7 +48,7 @@ def tiny(p_power: int, q_power: int, h_power: int, part: str = "p", size: int = 
 def unseen(plant: Plant) -> Plant:
     """The same, and the proof is that of the true map."""
 
-    def planted(example: Example, patch: Patch) -> Example:
+    def planted(example: Sample, patch: Patch) -> Sample:
         proof, wrong = example.proof, plant(example, patch)
         patch.setitem(wrong.__dict__, "proof", proof)
         return wrong
@@ -61,7 +61,7 @@ def claiming(**changes: object) -> Plant:
 
 
 def proved(change: Callable[[Proof], dict[str, Any]]) -> Plant:
-    def planted(example: Example, patch: Patch) -> Example:
+    def planted(example: Sample, patch: Patch) -> Sample:
         patch.setitem(example.__dict__, "proof", replace(example.proof, **change(example.proof)))
         return example
 
@@ -69,7 +69,7 @@ def proved(change: Callable[[Proof], dict[str, Any]]) -> Plant:
 
 
 def ruled(change: Callable[[GrowthLaw], GrowthLaw]) -> Plant:
-    def planted(example: Example, patch: Patch) -> Example:
+    def planted(example: Sample, patch: Patch) -> Sample:
         true = growth_laws.growth_law
         patch.setattr(growth_laws, "growth_law", lambda *asked: change(true(*asked)))
         return example
@@ -91,7 +91,7 @@ def opposite(law: GrowthLaw) -> GrowthLaw:
 def measured(name: str, factor: Fraction) -> Plant:
     """That value of every run, times the factor."""
 
-    def planted(example: Example, patch: Patch) -> Example:
+    def planted(example: Sample, patch: Patch) -> Sample:
         true = number_systems_agree.run
 
         def wrong(*asked: Any, **named: Any) -> Any:
@@ -109,7 +109,7 @@ def measured(name: str, factor: Fraction) -> Plant:
 def moved(one: str, other: str) -> Plant:
     """10^−14 taken from one part of Λ and given to another: they add up as before."""
 
-    def planted(example: Example, patch: Patch) -> Example:
+    def planted(example: Sample, patch: Patch) -> Sample:
         true = Chain.trail
 
         def wrong(self: Chain, name: str) -> Any:
@@ -124,7 +124,7 @@ def moved(one: str, other: str) -> Plant:
 
 
 def written(module: Any, name: str, old: str, new: str) -> Plant:
-    def planted(example: Example, patch: Patch) -> Example:
+    def planted(example: Sample, patch: Patch) -> Sample:
         true = getattr(module, name)
         patch.setattr(module, name, lambda x: true(x).replace(old, new, 1))
         return example
@@ -132,7 +132,7 @@ def written(module: Any, name: str, old: str, new: str) -> Plant:
     return planted
 
 
-def boasting(example: Example, patch: Patch) -> Example:
+def boasting(example: Sample, patch: Patch) -> Sample:
     """A proof that says one order too many of every map."""
     true = planted_errors.prove
 

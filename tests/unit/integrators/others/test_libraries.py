@@ -12,7 +12,7 @@ from tests.paths import ROOT
 from verify.integrators.others import libraries as others
 from verify.integrators.others import report as integrators_report
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import Compared, FloatStep, Subject
+from verify.integrators.others.integrator import Compared, FloatStep, ReleasedIntegrator
 from verify.integrators.others.libraries.nodepy import _of_own_orders, claimed
 from verify.integrators.others.measured import finding
 from verify.integrators.others.report import make_integrators_report
@@ -71,7 +71,7 @@ def leaves() -> Any:
 
 
 def breaks_off() -> Any:
-    yield Subject("first", "by hand", "nowhere", Compared("it is itself", fails))
+    yield ReleasedIntegrator("first", "by hand", "nowhere", Compared("it is itself", fails))
     yield from others.get("literature").subjects()
     raise ValueError("cannot convert NaN to integer ratio")
 
@@ -177,7 +177,7 @@ def test_order_of_nodepy_is_not_blamed_for_the_tolerance_that_it_tells(
     assert all(x in said for x in wrong or coarse)
 
 
-def subjects(name: str) -> dict[str, Subject]:
+def subjects(name: str) -> dict[str, ReleasedIntegrator]:
     pytest.importorskip(others.get(name).LIBRARY)
     return {subject.name: subject for subject in others.get(name).subjects()}
 

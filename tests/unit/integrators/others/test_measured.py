@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import FINE, FloatStep, Map, Subject
+from verify.integrators.others.integrator import FINE, FloatStep, Map, ReleasedIntegrator
 from verify.integrators.others.measured import finding
 from verify.verdict import Verdict
 
@@ -33,7 +33,9 @@ def frozen(p: float, q: float, h: float) -> tuple[float, float]:
 
 def judged(step: Map, order: int, area: bool | None = True) -> list[Verdict]:
     make: Callable[[], Map] = lambda: step  # noqa: E731 - a subject makes its step
-    subject = Subject("mine", "by hand", "nowhere", FloatStep(PENDULUM, make), order, area)
+    subject = ReleasedIntegrator(
+        "mine", "by hand", "nowhere", FloatStep(PENDULUM, make), order, area
+    )
     return [claim.verdict for claim in claims_of(subject, "mine", "mine")]
 
 

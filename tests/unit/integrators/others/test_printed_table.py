@@ -9,7 +9,7 @@ import pytest
 from verify.errors import InputError
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.libraries import literature
-from verify.integrators.others.printed_order import judged
+from verify.integrators.others.printed_order import judge_order
 from verify.integrators.others.printed_table import PrintedTable, evaluated
 from verify.schemes.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
 from verify.schemes.splitting_conditions import Splitting
@@ -40,7 +40,7 @@ def printed(name: str, **numbers: str) -> PrintedTable:
 def test_the_printed_tables_hold_but_for_those_that_are_known_to_be_wrong(name: str) -> None:
     order = TABLES[name].order
     assert order is not None
-    found = judged(table(name), order)
+    found = judge_order(table(name), order)
     assert (found.verdict is Verdict.REFUTED) == (name in WRONG), found
     assert found.verdict is not Verdict.UNDECIDED
 
@@ -50,7 +50,7 @@ def test_an_order_that_is_one_too_high_is_refuted(name: str) -> None:
     order = TABLES[name].order
     assert order is not None
     if order < MOST_ORDER[table(name).kind]:
-        found = judged(table(name), order + 1)
+        found = judge_order(table(name), order + 1)
         assert found.verdict is Verdict.REFUTED
         assert found.order == order
 
@@ -59,17 +59,17 @@ def test_a_flipped_digit_is_refuted_and_found() -> None:
     right = table(S6).numbers["a2"]
     flipped = printed(S6, a2=right.replace("8517", "8577", 1))
     assert flipped.numbers["a2"] != right
-    found = judged(flipped, 4)
+    found = judge_order(flipped, 4)
     assert found.verdict is Verdict.REFUTED
     assert found.order == 2
     misprinted = printed(YOSHIDA, a1="0.2355732133593581336847931829785347016865")
-    found = judged(misprinted, 6)
+    found = judge_order(misprinted, 6)
     assert found.digits is False
 
 
 def test_one_misprinted_number_is_named_with_what_it_would_be() -> None:
     own = table("Yoshida 6, solution A")
-    found = judged(replace(own, numbers={**own.numbers, "w2": "0.235578213359357E0"}), 6)
+    found = judge_order(replace(own, numbers={**own.numbers, "w2": "0.235578213359357E0"}), 6)
     assert found.verdict is Verdict.REFUTED
     assert found.misprint is not None
     assert found.misprint.name == "w2"
@@ -77,7 +77,7 @@ def test_one_misprinted_number_is_named_with_what_it_would_be() -> None:
 
 
 def test_one_wrong_late_digit_costs_the_digits_and_is_named() -> None:
-    late = judged(printed(YOSHIDA, a1="0.2355732133593591336847931829785346016865"), 6)
+    late = judge_order(printed(YOSHIDA, a1="0.2355732133593591336847931829785346016865"), 6)
     assert late.verdict is Verdict.ENCLOSED
     assert late.digits is False
     assert late.misprint is not None
@@ -86,10 +86,10 @@ def test_one_wrong_late_digit_costs_the_digits_and_is_named() -> None:
 
 def test_a_wrong_last_digit_costs_the_digits_and_not_the_order() -> None:
     last = printed("Kahan–Li 6, nine stages", a1="0.39216144400731413927925060")
-    found = judged(last, 6)
+    found = judge_order(last, 6)
     assert found.verdict is Verdict.ENCLOSED
     assert found.digits is False
-    assert judged(table("Kahan–Li 6, nine stages"), 6).digits is True
+    assert judge_order(table("Kahan–Li 6, nine stages"), 6).digits is True
 
 
 @pytest.mark.parametrize(
@@ -116,14 +116,16 @@ def test_wrong_digits_show_where_there_are_more_conditions_than_numbers(
 def test_a_zero_that_a_copy_appends_is_a_wrong_digit() -> None:
     """Of Calvo and Sanz-Serna's 18 decimals some print 14 and some 15, the last of these a 0."""
     own = table("Calvo–Sanz-Serna 4")
-    assert judged(own, 4).digits is True
+    assert judge_order(own, 4).digits is True
     short = {name: f"{float(x):.14f}" for name, x in own.values.items()}
-    assert judged(replace(own, numbers=short), 4).digits is True
-    assert judged(replace(own, numbers={n: f"{x}0" for n, x in short.items()}), 4).digits is False
+    assert judge_order(replace(own, numbers=short), 4).digits is True
+    assert (
+        judge_order(replace(own, numbers={n: f"{x}0" for n, x in short.items()}), 4).digits is False
+    )
 
 
 def test_nearest_coefficients_satisfy_the_conditions() -> None:
-    found = judged(table("Yoshida 6, solution A"), 6)
+    found = judge_order(table("Yoshida 6, solution A"), 6)
     assert found.nearest is not None
     exact = {n: Fraction(table(YOSHIDA).numbers[m]) for n, m in (("w1", "a2"), ("w3", "a0"))}
     for name, value in exact.items():
@@ -134,7 +136,7 @@ def test_nearest_coefficients_satisfy_the_conditions() -> None:
 def test_two_prints_of_one_method_lead_to_the_same_coefficients() -> None:
     """Yoshida's 15 digits of solution A are wrong from the 13th; Principia's 21 are right."""
     short, long = table("Yoshida 8, solution A"), table("Yoshida 8, solution A, as in Principia")
-    found, other = judged(short, 8), judged(long, 8)
+    found, other = judge_order(short, 8), judge_order(long, 8)
     assert found.digits is False
     assert other.digits is True
     assert found.nearest is not None
@@ -149,15 +151,15 @@ def test_a_table_for_quadratic_kinetic_energy_is_refuted_for_every_other() -> No
         ("McLachlan–Atela 5, for quadratic T", 5),
         ("Blanes–Moan SRKN11b", 6),
     ):
-        found = judged(replace(table(name), kind="splitting"), order)
+        found = judge_order(replace(table(name), kind="splitting"), order)
         assert found.verdict is Verdict.REFUTED
-        assert judged(table(name), order).verdict is Verdict.ENCLOSED
+        assert judge_order(table(name), order).verdict is Verdict.ENCLOSED
 
 
 def test_exact_tables_are_proved_or_refuted() -> None:
     verlet = PrintedTable("splitting", (("kick", "1/2"), ("drift", "1"), ("kick", "1/2")), {})
-    assert judged(verlet, 2).verdict is Verdict.PROVED
-    found = judged(verlet, 3)
+    assert judge_order(verlet, 2).verdict is Verdict.PROVED
+    found = judge_order(verlet, 3)
     assert (found.verdict, found.order) == (Verdict.REFUTED, 2)
     assert found.failing is not None
     assert found.failing.order == 3
@@ -171,7 +173,7 @@ def test_parts_that_are_none_are_bad_input(parts: tuple[tuple[str, str], ...]) -
 
 def test_an_order_beyond_those_looked_at_is_bad_input() -> None:
     with pytest.raises(InputError, match="order"):
-        judged(table(S6), 9)
+        judge_order(table(S6), 9)
 
 
 # -- the conditions -------------------------------------------------------------------------------
@@ -209,7 +211,7 @@ def test_orders_are_those_of_the_words_of_the_step_itself(sizes: tuple[str, ...]
     own = PrintedTable("splitting", tuple(zip(kinds, sizes, strict=False)), {})
     other = Splitting(tuple(zip(kinds, map(sympy.Rational, sizes), strict=False)))
     wrong = [c.order for c in other.order_conditions(5) if not c.holds]
-    assert judged(own, 1).order == min(min(wrong) - 1, 3)
+    assert judge_order(own, 1).order == min(min(wrong) - 1, 3)
 
 
 def test_the_logarithm_of_one_exponential_is_its_exponent() -> None:
@@ -261,7 +263,7 @@ def test_floats_show_the_orders_that_are_found(name: str, order: int) -> None:
     assert abs(_slope(name) - (order + 1)) < 0.45
     claimed = TABLES[name].order
     assert claimed is not None
-    assert min(judged(table(name), claimed).order, claimed) == order
+    assert min(judge_order(table(name), claimed).order, claimed) == order
 
 
 def test_a_reproduction_is_code_that_prints_the_slope() -> None:

@@ -10,7 +10,7 @@ import pytest
 from verify.integrators.others import reproductions
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.libraries import literature
-from verify.integrators.others.printed_order import judged
+from verify.integrators.others.printed_order import judge_order
 from verify.integrators.others.printed_table import PrintedTable
 from verify.verdict import Verdict
 
@@ -59,7 +59,7 @@ def test_quotients_in_a_table_stay_exact() -> None:
     own = TABLES["McLachlan SS5"].method
     assert isinstance(own, PrintedTable)
     off = replace(own, numbers={**own.numbers, "w2": "0.6254664284676700459"})
-    found = judged(off, 4)
+    found = judge_order(off, 4)
     assert found.digits is False
     assert found.nearest is not None
     code = reproductions.of_digits(off, found.nearest, 4)

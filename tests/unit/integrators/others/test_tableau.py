@@ -4,7 +4,7 @@ import pytest
 from sympy import Rational, S, sqrt
 
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import ExactTableau, Subject
+from verify.integrators.others.integrator import ExactTableau, ReleasedIntegrator
 from verify.integrators.others.tableau import order_of, repair, symplecticity
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.methods.runge_kutta.gauss4 import TABLEAU as GAUSS4
@@ -47,7 +47,7 @@ def test_order_and_symplecticity_are_proved(
 
 
 def verdicts(tableau: ExactTableau, order: int, area: bool | None) -> list[Verdict]:
-    subject = Subject("mine", "by hand", "nowhere", tableau, order, area)
+    subject = ReleasedIntegrator("mine", "by hand", "nowhere", tableau, order, area)
     return [claim.verdict for claim in claims_of(subject, "mine", "mine")]
 
 

@@ -18,7 +18,7 @@ from tests.unit.pages.text.test_markdown import (
 from verify.pages.figures.gallery_figure import marks
 from verify.pages.markdown.page import render as render_text
 from verify.pages.page import render
-from verify.pages.sections.gallery_finding import power, told
+from verify.pages.sections.gallery_finding import findings, power
 from verify.scenes.results.exploration import Gallery, GalleryScene
 
 
@@ -106,8 +106,8 @@ def test_with_claims_the_first_screen_speaks_of_them() -> None:
     ],
 )
 def test_a_value_is_told_in_words(measure: str, value: float, said: str) -> None:
-    assert said in told(measure, "the worst", value).replace("\xa0", " ")
-    other = told(measure, "the worst", value - 5.3)
+    assert said in findings(measure, "the worst", value).replace("\xa0", " ")
+    other = findings(measure, "the worst", value - 5.3)
     assert said not in other.replace("\xa0", " "), "another value says something else"
 
 

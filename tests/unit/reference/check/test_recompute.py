@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed_reference import changed, made
-from verify.reference.check.difference import Difference, Found
+from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import Data
 
@@ -46,7 +46,7 @@ def units(of: Data) -> Iterator[tuple[str, int]]:
         yield from ((kind, k) for k in range(len(getattr(of, field))))
 
 
-def again(of: Data, kind: str, index: int) -> Found:
+def again(of: Data, kind: str, index: int) -> Findings:
     return recomputed(of, "file", kind, index)
 
 

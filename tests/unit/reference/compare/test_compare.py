@@ -23,7 +23,7 @@ from tests.helpers.submitted_programs import (
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.mistakes import of_states
-from verify.reference.compare.published import Ours, load
+from verify.reference.compare.published import Published, load
 from verify.reference.compare.readings import readings
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import read
@@ -39,11 +39,11 @@ CORNER = Program(p=1.5)
 
 
 @pytest.fixture(scope="module")
-def ours() -> Ours:
+def ours() -> Published:
     return load(PUBLISHED, "duffing")
 
 
-def of(ours: Ours, folder: Path, program: Program, table: str = "", **given: str) -> Compared:
+def of(ours: Published, folder: Path, program: Program, table: str = "", **given: str) -> Compared:
     path = folder / "theirs.csv"
     path.write_text(table or program.table())
     said = {"scene": "duffing", "scheme": "lie2", "step_size": "0.01", "q0": "1.5", **given}
@@ -66,7 +66,7 @@ def named(found: Compared) -> list[set[str]]:
 @pytest.mark.parametrize("p", [0.0, 1.5])
 @pytest.mark.parametrize("h", ["0.001", "0.01"])
 def test_a_right_program_differs_by_rounding(
-    ours: Ours, tmp_path: Path, name: str, step: Any, p: float, h: str
+    ours: Published, tmp_path: Path, name: str, step: Any, p: float, h: str
 ) -> None:
     program = Program(step=step, p=p, h=float(h))
     table = program.table((0, 1, 10, 100, 1000))
@@ -78,7 +78,7 @@ def test_a_right_program_differs_by_rounding(
 
 
 def test_a_plain_area_differs_by_rounding_and_its_separation_is_told(
-    ours: Ours, tmp_path: Path
+    ours: Published, tmp_path: Path
 ) -> None:
     found = of(ours, tmp_path, ORIGIN.changed(**ALL_AREAS))
     assert found.agrees
@@ -93,14 +93,14 @@ def test_a_plain_area_differs_by_rounding_and_its_separation_is_told(
 
 @pytest.mark.parametrize("digits", [3, 6, 9])
 def test_a_program_that_prints_few_digits_agrees_in_all_of_them(
-    ours: Ours, tmp_path: Path, digits: int
+    ours: Published, tmp_path: Path, digits: int
 ) -> None:
     for form in (f"{{:.{digits}f}}", f"{{:.{digits}e}}"):
         found = of(ours, tmp_path, CORNER.changed(number=form.format))
         assert [x.verdict for x in found.columns] == [Verdict.AGREES] * 2
 
 
-def test_the_last_printed_digit_is_looked_at(ours: Ours, tmp_path: Path) -> None:
+def test_the_last_printed_digit_is_looked_at(ours: Published, tmp_path: Path) -> None:
     table = CORNER.changed(number="{:.6f}".format).table()
     last = table.splitlines()[-1]
     wrong = last[:-3] + str((int(last[-3]) + 5) % 10) + last[-2:]
@@ -110,20 +110,20 @@ def test_the_last_printed_digit_is_looked_at(ours: Ours, tmp_path: Path) -> None
     assert len(found.unexplained) == 1
 
 
-def test_forty_digits_agree_where_h_is_exact(ours: Ours, tmp_path: Path) -> None:
+def test_forty_digits_agree_where_h_is_exact(ours: Published, tmp_path: Path) -> None:
     found = of(ours, tmp_path, precise("1/100"))
     assert found.agrees
     assert {x.verdict for x in found.columns} == {Verdict.AGREES}
 
 
-def test_thirty_digits_of_a_double_are_a_double(ours: Ours, tmp_path: Path) -> None:
+def test_thirty_digits_of_a_double_are_a_double(ours: Published, tmp_path: Path) -> None:
     found = of(ours, tmp_path, CORNER.changed(number="{:.29e}".format))
     assert found.agrees
     assert not found.diagnoses
     assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
 
 
-def test_exponents_may_be_fortrans(ours: Ours, tmp_path: Path) -> None:
+def test_exponents_may_be_fortrans(ours: Published, tmp_path: Path) -> None:
     found = of(ours, tmp_path, CORNER.changed(number=lambda x: f"{x:.16e}".replace("e", "D")))
     assert {x.verdict for x in found.columns} == {Verdict.ROUNDING}
 
@@ -169,7 +169,7 @@ MISTAKES = {
 }
 
 
-def test_an_initial_value_that_is_a_double_is_named(ours: Ours, tmp_path: Path) -> None:
+def test_an_initial_value_that_is_a_double_is_named(ours: Published, tmp_path: Path) -> None:
     program = precise("1/100")
     found = of(ours, tmp_path, program.changed(q=CONTEXT.mpf(0.1)), q0="0.1")
     assert named(found) == [{"double-q0"}]
@@ -181,7 +181,7 @@ STARTS = {"swapped-start": "0", "swapped-throughout": "0", "negated-start": "1.5
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_a_mistake_is_named(ours: Ours, tmp_path: Path, name: str) -> None:
+def test_a_mistake_is_named(ours: Published, tmp_path: Path, name: str) -> None:
     program = MISTAKES[name]
     steps = (1, 10, 100) if name == "late-1" else (0, 1, 10, 100)
     found = of(ours, tmp_path, program, program.table(steps),
@@ -197,7 +197,7 @@ def test_a_mistake_is_named(ours: Ours, tmp_path: Path, name: str) -> None:
      ("stormer-verlet", drift_kick_drift, "scheme position-verlet")],
 )  # fmt: skip
 def test_the_other_kind_of_a_splitting_is_named(
-    ours: Ours, tmp_path: Path, scheme: str, step: Any, mistake: str
+    ours: Published, tmp_path: Path, scheme: str, step: Any, mistake: str
 ) -> None:
     found = of(ours, tmp_path, CORNER.changed(step=step), scheme=scheme)
     assert named(found) == [{mistake}]
@@ -231,14 +231,16 @@ OTHER_AREAS: dict[str, tuple[str, Callable[[Areas], Any]]] = {
 
 
 @pytest.mark.parametrize("name", OTHER_AREAS)
-def test_another_reading_of_an_area_error_is_named(ours: Ours, tmp_path: Path, name: str) -> None:
+def test_another_reading_of_an_area_error_is_named(
+    ours: Published, tmp_path: Path, name: str
+) -> None:
     column, reading = OTHER_AREAS[name]
     found = of(ours, tmp_path, CORNER.changed(**{column: reading}))
     assert named(found) == [{name.removeprefix("mse ").removeprefix("delta_j ")}]
     assert [x.verdict for x in found.columns] == [Verdict.ROUNDING, Verdict.ROUNDING, Verdict.MORE]
 
 
-def test_every_mistake_has_its_table(ours: Ours) -> None:
+def test_every_mistake_has_its_table(ours: Published) -> None:
     run = next(x for x in ours.scene("duffing") if x.run.scheme == "lie2" and x.run.p == "1.5")
     names = {x.name for x in of_states(Setting(run.orbit, Points({})))}
     assert {n for n in names if not n.startswith("scheme ")} == {
@@ -252,19 +254,21 @@ def test_every_mistake_has_its_table(ours: Ours) -> None:
 # -- what cannot be told ---------------------------------------------------------------------------
 
 
-def test_two_mistakes_that_give_the_same_numbers_are_both_named(ours: Ours, tmp_path: Path) -> None:
+def test_two_mistakes_that_give_the_same_numbers_are_both_named(
+    ours: Published, tmp_path: Path
+) -> None:
     """From p = 0, with H even in p, time that runs backwards is p with the other sign."""
     found = of(ours, tmp_path, ORIGIN.changed(h=-0.01))
     assert named(found) == [{"negated-p", "backwards"}]
 
 
-def test_a_table_of_the_start_alone_says_nothing(ours: Ours, tmp_path: Path) -> None:
+def test_a_table_of_the_start_alone_says_nothing(ours: Published, tmp_path: Path) -> None:
     for step in (lie1, lie3, drift_first):
         program = CORNER.changed(step=step)
         assert of(ours, tmp_path, program, program.table((0,))).agrees
 
 
-def test_one_step_may_not_tell_two_schemes_apart(ours: Ours, tmp_path: Path) -> None:
+def test_one_step_may_not_tell_two_schemes_apart(ours: Published, tmp_path: Path) -> None:
     """From p = 0 with q alone: after one step of lie1 q stands where it was."""
     table = "step,q\n1,1.5\n"
     found = of(ours, tmp_path, ORIGIN, table, scheme="lie2")
@@ -272,7 +276,7 @@ def test_one_step_may_not_tell_two_schemes_apart(ours: Ours, tmp_path: Path) -> 
     assert all(len(x.mistakes) > 1 for x in found.diagnoses)
 
 
-def test_an_unknown_mistake_is_not_given_a_name(ours: Ours, tmp_path: Path) -> None:
+def test_an_unknown_mistake_is_not_given_a_name(ours: Published, tmp_path: Path) -> None:
     for program in (CORNER.changed(d=1.001), CORNER.changed(h=0.0101), CORNER.changed(q=1.4)):
         found = of(ours, tmp_path, program, p0="1.5")
         assert not found.agrees
@@ -281,7 +285,7 @@ def test_an_unknown_mistake_is_not_given_a_name(ours: Ours, tmp_path: Path) -> N
 
 
 def test_one_wrong_number_among_right_ones_is_no_mistake_of_the_whole(
-    ours: Ours, tmp_path: Path
+    ours: Published, tmp_path: Path
 ) -> None:
     lines = CORNER.table().splitlines()
     lines[2] = lines[2].replace("1.", "1.0", 1)
@@ -292,7 +296,7 @@ def test_one_wrong_number_among_right_ones_is_no_mistake_of_the_whole(
     assert parts == [1]
 
 
-def test_what_is_not_finite_differs(ours: Ours, tmp_path: Path) -> None:
+def test_what_is_not_finite_differs(ours: Published, tmp_path: Path) -> None:
     table = CORNER.table().replace(CORNER.table().splitlines()[3].split(",")[1], "nan")
     found = of(ours, tmp_path, CORNER, table)
     assert not found.agrees

@@ -12,7 +12,7 @@ from verify.reference.compare.agreement import is_single, number
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.overflow import may_overflow
-from verify.reference.compare.published import OurRun, load
+from verify.reference.compare.published import PublishedRun, load
 from verify.reference.compare.scatter import Scatter
 from verify.reference.compare.submitted import read
 from verify.reference.make.make import PUBLISHED
@@ -31,12 +31,12 @@ def stiff(p: Any, q: Any, h: Any) -> tuple[Any, Any]:
     return p, q + h * p
 
 
-def run_of(scene: str, scheme: str, h: float, q: float) -> OurRun:
+def run_of(scene: str, scheme: str, h: float, q: float) -> PublishedRun:
     inputs = (scheme, h, q)
     return next(x for x in load(PUBLISHED, scene).runs() if x.inputs[:3] == inputs)
 
 
-def of(folder: Path, run: OurRun, step: Step, change: Callable[[int, Any], Any]) -> Compared:
+def of(folder: Path, run: PublishedRun, step: Step, change: Callable[[int, Any], Any]) -> Compared:
     """A table of p and q by the step in doubles, p of each row changed."""
     _, h, q, p = run.inputs
     lines = ["step,p,q"]

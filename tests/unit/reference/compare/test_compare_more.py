@@ -18,14 +18,14 @@ from tests.helpers.submitted_programs import (
 from tests.unit.reference.compare.test_compare import CORNER, ORIGIN, named, of, single
 from verify.reference.compare.compare import compare
 from verify.reference.compare.mistakes import of_states
-from verify.reference.compare.published import Ours, load
+from verify.reference.compare.published import Published, load
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import read
 from verify.reference.make.make import PUBLISHED
 
 
 @pytest.fixture(scope="module")
-def ours() -> Ours:
+def ours() -> Published:
     return load(PUBLISHED, "duffing")
 
 
@@ -39,7 +39,7 @@ def leapfrog(q: Any, p: Any, order: Any, sign: int) -> Program:
     [("half-p-ahead", drift_first, 1), ("half-p-behind", kick_first, -1)],
 )
 def test_a_leapfrogs_half_step_is_named(
-    ours: Ours, tmp_path: Path, mistake: str, order: Any, sign: int
+    ours: Published, tmp_path: Path, mistake: str, order: Any, sign: int
 ) -> None:
     found = of(ours, tmp_path, leapfrog(1.5, 1.5, order, sign), scheme="stormer-verlet", p0="1.5")
     assert named(found) == [{mistake}]
@@ -49,7 +49,7 @@ def test_a_leapfrogs_half_step_is_named(
         assert not of(ours, tmp_path, wrong, p0="1.5", **given).diagnoses
 
 
-def test_a_half_step_of_position_verlet_is_of_q(ours: Ours) -> None:
+def test_a_half_step_of_position_verlet_is_of_q(ours: Published) -> None:
     case = next(x for x in ours.scene("duffing") if x.run.scheme == "stormer-verlet").orbit
     found = of_states(Setting(replace(case, scheme="position-verlet"), Points({})))
     assert {x.name for x in found if x.name.startswith("half-q")} == {
@@ -60,13 +60,13 @@ def test_a_half_step_of_position_verlet_is_of_q(ours: Ours) -> None:
 
 @pytest.mark.parametrize("number", ["{:.9g}".format, "{:.17g}".format])
 def test_single_precision_is_named_however_it_is_printed(
-    ours: Ours, tmp_path: Path, number: Any
+    ours: Published, tmp_path: Path, number: Any
 ) -> None:
     assert named(of(ours, tmp_path, single().changed(number=number), p0="1.5")) == [{"single"}]
 
 
 def test_doubles_that_are_a_little_off_are_not_of_single_precision(
-    ours: Ours, tmp_path: Path
+    ours: Published, tmp_path: Path
 ) -> None:
     """What is printed with 7 digits is of single precision whatever it is."""
     for number in ("{:.6e}".format, "{:.8e}".format, repr):
@@ -74,7 +74,7 @@ def test_doubles_that_are_a_little_off_are_not_of_single_precision(
         assert not found.diagnoses
 
 
-def test_single_precision_is_seen_after_searches_in_vain(ours: Ours, tmp_path: Path) -> None:
+def test_single_precision_is_seen_after_searches_in_vain(ours: Published, tmp_path: Path) -> None:
     lines = ["scheme,step,p,q"]
     for name, step in (("lie1", lie1), ("lie2", lie2), ("lie3", lie3), ("lie4", lie3)):
         rows = list(CORNER.changed(d=1.01, step=step).rows())[1:]
@@ -91,7 +91,7 @@ def test_single_precision_is_seen_after_searches_in_vain(ours: Ours, tmp_path: P
 
 
 def test_a_run_that_tells_less_is_explained_by_one_that_tells_more(
-    ours: Ours, tmp_path: Path
+    ours: Published, tmp_path: Path
 ) -> None:
     """From p = 0, −p and time backwards are the same; from p = 1.5 they are not."""
     lines = ["p0,step,p,q"]

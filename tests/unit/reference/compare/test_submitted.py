@@ -8,7 +8,7 @@ import pytest
 
 from tests.helpers.submitted_programs import Program
 from verify.errors import InputError
-from verify.reference.compare.published import Ours, load
+from verify.reference.compare.published import Published, load
 from verify.reference.compare.submitted import Theirs, read
 from verify.reference.make.make import PUBLISHED
 
@@ -17,12 +17,12 @@ GOOD = Program().table()
 
 
 @pytest.fixture(scope="module")
-def ours() -> Ours:
+def ours() -> Published:
     return load(PUBLISHED, None)
 
 
 @pytest.fixture
-def table(ours: Ours, tmp_path: Path) -> Callable[..., Theirs]:
+def table(ours: Published, tmp_path: Path) -> Callable[..., Theirs]:
     def read_it(text: str | bytes, names: dict[str, str] | None = None, **given: str) -> Theirs:
         path = tmp_path / "theirs.csv"
         path.write_bytes(text.encode() if isinstance(text, str) else text)
@@ -60,7 +60,7 @@ def test_a_table_is_read_in_the_form_that_it_has(table: Callable[..., Theirs], f
 
 
 def test_keys_are_columns_or_options(
-    table: Callable[..., Theirs], ours: Ours, tmp_path: Path
+    table: Callable[..., Theirs], ours: Published, tmp_path: Path
 ) -> None:
     head, *lines = GOOD.splitlines()
     keyed = "\n".join([f"scheme,h,q0,p0,{head}", *(f"lie2,0.01,1.5,0,{x}" for x in lines)])

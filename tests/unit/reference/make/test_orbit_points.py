@@ -39,7 +39,7 @@ def task(scheme: str = "lie2", formula: str = QUARTIC, **more: object) -> OrbitT
 
 
 def points(asked: OrbitTask) -> tuple[OrbitPoint, ...]:
-    return asked.perform(NOTHING).points
+    return asked.compute(NOTHING).points
 
 
 def holds(cell: Rounded | None, value: Fraction) -> bool:
@@ -100,7 +100,7 @@ def test_an_orbit_at_rest_is_zero_to_twice_the_digits() -> None:
 def flow(formula: str, **more: object) -> list[tuple[str, str | None]]:
     given = {"q": 1, "p": 0, "step_size": H, "steps": (0, 5, 30), "digits": 20}
     asked = SolutionTask.model_validate({"hamiltonian": formula, "parameters": {}} | given | more)
-    found = asked.perform(NOTHING).points
+    found = asked.compute(NOTHING).points
     return [(x.status, x.q.value if x.q else None) for x in found]
 
 

@@ -21,7 +21,7 @@ FOREST_RUTH = (
     ("name", "twin"), [(VERLET, "stormer-verlet"), (FOREST_RUTH, "forest-ruth")]
 )
 def test_one_that_is_named_too_is_that_scheme(name: str, twin: str) -> None:
-    own, other = schemes.get(name).generic, schemes.get(twin).generic
+    own, other = schemes.get(name).every_h, schemes.get(twin).every_h
     for (kind, size), (second, length) in zip(own.parts, other.parts, strict=True):
         assert kind == second
         assert abs((size - length).evalf(60)) < 1e-50

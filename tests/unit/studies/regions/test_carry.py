@@ -10,7 +10,7 @@ from tests.helpers.known_areas import linear_determinant
 from tests.unit.scenes.test_scene import load
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING
-from verify.scenes.region_sections import ShapeGiven
+from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.studies.regions import carry as module
 from verify.studies.regions import mean_lambda as region_mean
@@ -34,7 +34,7 @@ DUFFING, OSCILLATOR = "p**2/2 + q**2/2 + q**4/4", "p**2/2 + q**2/2"
 def task(scheme: str = "lie2", h: Any = "0.1", steps: int = 10, **more: Any) -> FlowTask:
     shape = more.pop("shape", {"shape": "circle", "centre": {"q": 1, "p": 0}, "scale": "0.5"})
     given = {
-        "hamiltonian": DUFFING, "parameters": {}, "map": scheme, "shape": ShapeGiven(**shape),
+        "hamiltonian": DUFFING, "parameters": {}, "map": scheme, "shape": PlacedShape(**shape),
         "step_size": Fraction(h), "steps": steps, "digits": 17, "mean_lambda": True,
         "distance": False,
     }  # fmt: skip
@@ -42,7 +42,7 @@ def task(scheme: str = "lie2", h: Any = "0.1", steps: int = 10, **more: Any) -> 
 
 
 def carried(**more: Any) -> FlowImage:
-    return task(**more).perform(NOTHING)
+    return task(**more).compute(NOTHING)
 
 
 # -- a scene's section ----------------------------------------------------------------------------
@@ -146,7 +146,7 @@ def test_every_printed_number_carries_the_rounding_of_its_text() -> None:
 def test_numbers_are_decimal_strings_and_survive_json(tmp_path: Path) -> None:
     scene = load(tmp_path, HEAD + FLOW)
     plan = plan_flows([scene])
-    results = {n: t.perform(NOTHING) for n, t in plan.tasks.items()
+    results = {n: t.compute(NOTHING) for n, t in plan.tasks.items()
                if isinstance(t, FlowTask)}  # fmt: skip
     (found,) = flows_of(scene, results)
     assert FlowResult.model_validate_json(found.model_dump_json()) == found
@@ -238,8 +238,8 @@ def test_a_distance_is_that_of_the_exact_flow_for_the_same_time(
     still = {"hamiltonian": "p", "scheme": "lie1", "mean_lambda": False, "distance": True}
     found = carried(**still)  # q' = 1: the scheme is exact
     assert Fraction(found.distance or 1) <= Fraction(found.distance_error or 0) < 1e-5
-    right = module.ExactPlane
-    monkeypatch.setattr(module, "ExactPlane", lambda h, t: right(h, t + Fraction(1, 8)))
+    right = module.ExactFlowCarrier
+    monkeypatch.setattr(module, "ExactFlowCarrier", lambda h, t: right(h, t + Fraction(1, 8)))
     found = carried(**still)
     off = abs(Fraction(found.distance or 0) - Fraction(1, 8))
     assert off <= Fraction(found.distance_error or 0)

@@ -6,7 +6,7 @@ import pytest
 
 from tests.helpers.known_areas import linear_determinant
 from tests.unit.studies.regions.test_carry import OSCILLATOR, carried, within
-from verify.scenes.region_sections import ShapeGiven
+from verify.scenes.region_sections import PlacedShape
 from verify.studies.regions.carry import _greatest
 
 TRUE = linear_determinant("lie2", Fraction(1, 10), 10)
@@ -45,8 +45,8 @@ def test_a_wrong_determinant_is_not_within() -> None:
 @pytest.mark.parametrize("scale", ["1e101", "1e900"])
 def test_a_shape_beyond_what_floats_hold_is_refused(scale: str) -> None:
     with pytest.raises(ValueError, match="the shape reaches beyond"):
-        ShapeGiven(shape="circle", scale=scale)
-    ShapeGiven(shape="circle", scale="1e99")
+        PlacedShape(shape="circle", scale=scale)
+    PlacedShape(shape="circle", scale="1e99")
 
 
 def test_an_image_that_is_far_away_has_an_area_but_no_distance() -> None:

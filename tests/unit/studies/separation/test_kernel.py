@@ -45,19 +45,19 @@ def test_states_and_products_have_the_bits_of_the_compiled_float64_kernel(
     for mark in range(steps // 10, steps + 1, steps // 10):
         begun = [float(start["p"]), float(start["q"]), *map(float, compiled.start)]
         _, *after = compiled.function(mark, *inputs, *begun)
-        point, at = dict(zip(compiled.carried, after, strict=True)), found[mark]
+        point, at = dict(zip(compiled.state_names, after, strict=True)), found[mark]
         assert (at["f_p"], at["f_q"], at["f_plain"]) == (point["p"], point["q"], point["plain"])
 
 
 def by_numba(hamiltonian: Hamiltonian, scheme: str) -> Kernel:
     """The float64 kernel of `verify run`, by the compiler that long runs have it from."""
     made = replace(arithmetic.get("float64", 17), compile=float64._compiled)
-    step_map = get(scheme).step_map(hamiltonian.generic())
+    step_map = get(scheme).step_map(hamiltonian.with_symbols())
     return Writer(step_map, made, WORKING, compensated=False).kernel()
 
 
 def mixed(hamiltonian: Hamiltonian, scheme: str, follow: bool = True) -> MixedKernel:
-    return mixed_kernel(hamiltonian.generic(), scheme, arithmetic.get("mpfr", 40), follow)
+    return mixed_kernel(hamiltonian.with_symbols(), scheme, arithmetic.get("mpfr", 40), follow)
 
 
 def states(
@@ -67,7 +67,7 @@ def states(
     run = KernelRun(hamiltonian, scheme, start, steps, WORKING, 10)
     made = arithmetic.get(name, 50)
     working = WorkingRun(run, rounded_inputs(run), follow=False)
-    kernel = mixed_kernel(run.generic, scheme, made, follow=False)
+    kernel = mixed_kernel(run.hamiltonian, scheme, made, follow=False)
     found = working._states(kernel, made, lambda _: None)
     return dict(zip(marks_of(steps), found, strict=True))
 

@@ -176,7 +176,7 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 50)}
     kernel_run = KernelRun(hamiltonian, "lie2", start, 2000, WORKING, 10)
     working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
-    coarse, fine = (working.go(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
+    coarse, fine = (working.step_through(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
     for name in ("trajectory", "determinant", "closed_delta_j"):
         x, y = getattr(coarse, name), getattr(fine, name)
         assert x.kind == y.kind == "enclosed"

@@ -8,7 +8,7 @@ import pytest
 from verify.arithmetic.exact import rational
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability import verdict_on_run as blame
-from verify.studies.stability.rounded_start import equilibrium_near
+from verify.studies.stability.rounded_start import nearest_equilibrium
 from verify.studies.stability.trail import Run, follow_precisely
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
@@ -86,11 +86,11 @@ def test_farther_from_the_top_it_is_not() -> None:
 
 
 def test_the_equilibrium_that_is_near_is_found_and_no_other() -> None:
-    near = equilibrium_near(case(PENDULUM, "lie1", "1", 1, PI - Fraction(1, 10**30)))
+    near = nearest_equilibrium(case(PENDULUM, "lie1", "1", 1, PI - Fraction(1, 10**30)))
     assert near is not None
     assert abs(near[1] - PI) < Fraction(1, 10**70)
-    assert equilibrium_near(case(PENDULUM, "lie1", "1", 1, "3")) is None
-    assert equilibrium_near(case("p**2/2 + q", "lie1", "1", 1, "3")) is None
+    assert nearest_equilibrium(case(PENDULUM, "lie1", "1", 1, "3")) is None
+    assert nearest_equilibrium(case("p**2/2 + q", "lie1", "1", 1, "3")) is None
 
 
 # -- the exact solution ---------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import pytest
 from verify import schemes
 from verify.arithmetic.balls import slope
 from verify.errors import InputError
-from verify.execution.execute import perform
+from verify.execution.execute import compute_task
 from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
@@ -232,7 +232,7 @@ def task(**changes: Any) -> WorkPrecisionTask:
 
 
 def done(**changes: Any) -> WorkPrecisionResult:
-    found = perform(task(**changes))
+    found = compute_task(task(**changes))
     assert isinstance(found, WorkPrecisionResult)
     return found
 

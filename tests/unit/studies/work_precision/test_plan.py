@@ -15,7 +15,7 @@ from verify.commands import main as cli
 from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import Store, execute
-from verify.execution.executors import HERE
+from verify.execution.executors import THIS_PROCESS
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.studies.plan import Plan, plan_scenes
@@ -121,8 +121,8 @@ def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from verify.scenes.scene import load_scene;"
         "from verify.studies.plan import plan_scenes; from verify.execution.execute import Store, execute;"
-        "from verify.execution.executors import HERE;"
-        f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), where=HERE);"
+        "from verify.execution.executors import THIS_PROCESS;"
+        f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), where=THIS_PROCESS);"
         "assert not {'scipy.integrate', 'heyoka', 'matplotlib'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
@@ -142,17 +142,17 @@ def test_what_is_timed_runs_when_all_else_is_done(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen: list[Any] = []
-    perform = execution.perform
+    perform = execution.compute_task
 
     def noting(task: Any, *more: Any) -> Frozen:
         seen.append(task)
         return perform(task, *more)
 
-    monkeypatch.setattr(execution, "perform", noting)
+    monkeypatch.setattr(execution, "compute_task", noting)
     both = [load(tmp_path, GOOD + "peers = false\nrepeats = 1\n"), load(tmp_path, HEAD + GRID)]
     plan = plan_scenes(both)
     assert not isinstance(list(plan.tasks.values())[-1], WorkPrecisionTask)
-    results = execute(plan, Store(None), where=HERE)
+    results = execute(plan, Store(None), where=THIS_PROCESS)
     assert set(results) == set(plan.tasks)
     assert isinstance(seen[-1], WorkPrecisionTask)
     assert [t.alone for t in seen] == [False] * (len(seen) - 1) + [True]

@@ -5,14 +5,14 @@ from fractions import Fraction
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.kernels.stepping import KernelRun
 
 _DIGITS = 50
 _KNOWN = Fraction(1, 10**30)
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if example.steps < 2 or not example.short or example.step_map.preserves_area:
         return False
     middle = example.steps // 2
@@ -32,11 +32,11 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _run(example: Example, start: dict[str, Fraction], steps: int) -> dict[str, Fraction] | None:
+def _run(example: Sample, start: dict[str, Fraction], steps: int) -> dict[str, Fraction] | None:
     """p, q and Λ after the steps; None where they leave the range in which digits are kept."""
     wanted = frozenset({"lambda"})
     run = KernelRun(example.hamiltonian, example.scheme.name, start, steps, wanted, 0)
-    found = run.go(number_systems.get("mpfr", _DIGITS))
+    found = run.run(number_systems.get("mpfr", _DIGITS))
     if found.done < steps or max(abs(x) for x in found.values.values()) > 10**6:
         return None
     return found.values

@@ -16,7 +16,7 @@ from verify.arithmetic.balls import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.runs.run import run
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.value import Value
@@ -27,7 +27,7 @@ _COMPILED = 997  # of so many examples one is run in fixed point
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN, _AFTER) or not example.short:
         return False
     name = _turn(example)
@@ -46,7 +46,7 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _turn(example: Example) -> str:
+def _turn(example: Sample) -> str:
     """The number system that is looked at: fixed, which is compiled, in few examples."""
     turn = example.turn
     if turn % _COMPILED == 0:
@@ -55,8 +55,8 @@ def _turn(example: Example) -> str:
     return names[turn // _IN % len(names)]
 
 
-def _enclosed(example: Example) -> dict[str, Ball] | None:
-    if example.step_map.solved:
+def _enclosed(example: Sample) -> dict[str, Ball] | None:
+    if example.step_map.implicit:
         found = _run(example, "mpfr", 40)
         if found is None:
             return None
@@ -88,7 +88,7 @@ def _ball(value: Value) -> Ball:
         return around(Fraction(value.value), Fraction(value.bound))
 
 
-def _run(example: Example, arithmetic: str, digits: int) -> RunResult | None:
+def _run(example: Sample, arithmetic: str, digits: int) -> RunResult | None:
     found = run(
         example.hamiltonian,
         example.scheme.name,

@@ -6,7 +6,7 @@ One example in a few is looked at.
 from fractions import Fraction
 
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.scenes.results.separation import Parts
 from verify.studies.separation.chain import PARTS
 from verify.studies.separation.separate import separate
@@ -15,7 +15,7 @@ _IN = 8  # one in so many examples
 _DIGITS = 6
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN) or not example.short:
         return False
     found = separate(

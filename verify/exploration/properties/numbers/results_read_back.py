@@ -7,7 +7,7 @@ from verify.algebra.formula import to_text
 from verify.arithmetic.balls import shown
 from verify.exploration.ball_steps import BITS
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from
 from verify.scenes.toml_text import scene_text
@@ -17,7 +17,7 @@ _SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if example.is_turn(_SCENES):
         _must_be_same_scene(example.scene)
     else:
@@ -32,7 +32,7 @@ def _must_be_same_scene(scene: Scene) -> None:
         raise Violation("the scene's TOML reads back as another scene")
 
 
-def _must_be_same(example: Example) -> None:
+def _must_be_same(example: Sample) -> None:
     given, values = example.hamiltonian, []
     read = Hamiltonian.parse(given.formula, dict(given.values))
     for hamiltonian in (given, read):
@@ -44,9 +44,9 @@ def _must_be_same(example: Example) -> None:
             raise Violation(f"H reads back as another: {given.formula}")
 
 
-def _must_be_same_map(example: Example) -> None:
+def _must_be_same_map(example: Sample) -> None:
     closed = example.step_map.substeps[-1]
-    if closed.solved or closed.staged or closed.length > _LONGEST:
+    if closed.implicit or closed.staged or closed.length > _LONGEST:
         return
     texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
     read = StepMap.from_formulas(example.hamiltonian, *texts).whole

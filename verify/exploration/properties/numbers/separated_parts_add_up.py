@@ -13,7 +13,7 @@ from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.kernels.stepping import KernelRun
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.chain import PARTS, Chain, Separation
@@ -24,7 +24,7 @@ _IN = 2  # one in so many examples
 _DIGITS = 8
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN) or not example.short:
         return False
     try:
@@ -40,7 +40,7 @@ def holds(example: Example) -> bool:
             both = truncation + inputs, bound + more
             _must_reach("truncation and input together are", *both, rounded)
     run = KernelRun(*example.given, WORKING, 0)
-    bare = run.go(number_systems.get("float64", 17)).values["lambda_plain"]
+    bare = run.run(number_systems.get("float64", 17)).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
     alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
     if alone != other:
@@ -55,7 +55,7 @@ def _must_add_up(chain: Chain) -> None:
             raise Violation(f"the parts do not add up after {chain.marks[k]} steps")
 
 
-def _wanted(example: Example) -> tuple[Ball | None, Ball | None]:
+def _wanted(example: Sample) -> tuple[Ball | None, Ball | None]:
     """Λ by balls, of the example's numbers and of the nearest float64s."""
     start = example.p, example.q, example.step_size
     exact = _area_error(example, example.step_map, start)
@@ -73,7 +73,7 @@ def _nearest(x: Fraction) -> Fraction:
     return Fraction(float(x))
 
 
-def _area_error(example: Example, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
+def _area_error(example: Sample, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
     """Λ of the example's steps; None where balls do not know it."""
     p, q, h = start
     states = ball_steps(step_map, p, q, h, example.steps)

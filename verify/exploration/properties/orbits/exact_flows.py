@@ -11,7 +11,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.balls import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.potential import potential_of
 
@@ -24,7 +24,7 @@ _WITHIN = Fraction(1, 2**20)  # of 1 + |L|: what (G(φ_t z) − G(z))/t leaves o
 Point = tuple[Fraction, Fraction]
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN) or not example.ordinary:
         return False
     field, _ = example.hamiltonian.field()
@@ -49,7 +49,7 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _potential_must_move(example: Example) -> None:
+def _potential_must_move(example: Sample) -> None:
     """Holds the change of G over an instant against L, where there is a G."""
     found = potential_of(example.proof, example.scheme) if example.polynomial else None
     if found is None or not found.holds or found.element is None:

@@ -12,7 +12,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.exploration.ball_steps import BallState, ball_steps, sharp, unlike
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
 from verify.schemes.every_hamiltonian import TaylorSeries
 
@@ -24,10 +24,10 @@ _WITHIN = Fraction(
 _MOST_ORDER = 4
 
 
-def holds(example: Example) -> bool:
-    if example.step_map.solved or example.scheme.order > _MOST_ORDER or not example.ordinary:
+def holds(example: Sample) -> bool:
+    if example.step_map.implicit or example.scheme.order > _MOST_ORDER or not example.ordinary:
         return False
-    if not (example.polynomial or isinstance(example.scheme.generic, TaylorSeries)):
+    if not (example.polynomial or isinstance(example.scheme.every_h, TaylorSeries)):
         return False  # ΔJ in closed form, which the law is made of, may be long
     try:
         law = growth_law(example.hamiltonian, example.scheme.name)

@@ -9,7 +9,7 @@ from verify.algebra.enclosure import enclose
 from verify.arithmetic.balls import middle_and_radius
 from verify.arithmetic.exact import decimal
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average
 
@@ -18,7 +18,7 @@ _DIGITS = 12
 _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN) or not example.polynomial or not example.ordinary:
         return False
     field, _ = example.hamiltonian.field()

@@ -9,7 +9,7 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
 from verify.proof.potential import potential_of
@@ -18,8 +18,8 @@ _IN = 10  # one in so many examples
 _LONGEST = 400  # terms in a certificate that is checked here
 
 
-def holds(example: Example) -> bool:
-    if not example.is_turn(_IN) or not example.ordinary or example.step_map.solved:
+def holds(example: Sample) -> bool:
+    if not example.is_turn(_IN) or not example.ordinary or example.step_map.implicit:
         return False
     proof = example.proof
     try:

@@ -4,11 +4,11 @@ Its ΔJ then has at least one order more than the scheme, as the exact flow has 
 """
 
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.verdict import Verdict
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.ordinary:
         return False
     proof, scheme = example.proof, example.scheme

@@ -12,7 +12,7 @@ from verify.arithmetic.balls import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import ball_steps
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 
 _STEP = Fraction(1, 2**96)
@@ -22,8 +22,8 @@ _WITHIN = Fraction(1, 10)  # of a whole order
 _BESIDE = Fraction(3, 70), Fraction(1, 55)  # in p and q
 
 
-def holds(example: Example) -> bool:
-    if not example.ordinary or example.step_map.solved:
+def holds(example: Sample) -> bool:
+    if not example.ordinary or example.step_map.implicit:
         return False
     order = example.proof.convergence_order
     if order is None:
@@ -56,9 +56,7 @@ def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
     return all(ball is None or ball > most for ball in found.values())
 
 
-def _orders(
-    example: Example, p: Fraction, q: Fraction, order: int
-) -> dict[str, Ball | None] | None:
+def _orders(example: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, Ball | None] | None:
     """By which power of h the errors in p and q shrink, None for one that may be 0; None where
     they are not known."""
     whole, half = (_error(example, (p, q), h, order) for h in (_STEP, _STEP / 2))
@@ -75,7 +73,7 @@ def _orders(
 
 
 def _error(
-    example: Example, point: tuple[Fraction, Fraction], h: Fraction, order: int
+    example: Sample, point: tuple[Fraction, Fraction], h: Fraction, order: int
 ) -> tuple[Ball, Ball] | None:
     """Step minus flow in p and q, as balls; None where one of them is not known."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.proof.order_proof import Proof
@@ -19,9 +19,9 @@ def _proved(name: str) -> EveryProof:
     return prove_every(name)
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     scheme = example.scheme
-    if scheme.generic is None or scheme.order > _MOST_ORDER or not example.ordinary:
+    if scheme.every_h is None or scheme.order > _MOST_ORDER or not example.ordinary:
         return False
     every, proof = _proved(scheme.name), example.proof
     if every.verdict is not Verdict.PROVED:

@@ -15,14 +15,14 @@ from verify.arithmetic.balls import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.schemes.every_hamiltonian import BySeries, RungeKutta, StageEquations, TaylorSeries
 from verify.schemes.scheme import Scheme
 
 _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     scheme = example.scheme
     if not _known_for_every_h(scheme) or scheme.order > _MOST_ORDER or not example.ordinary:
         return False
@@ -48,26 +48,26 @@ def holds(example: Example) -> bool:
 
 def _known_for_every_h(scheme: Scheme) -> bool:
     """Whether the scheme is a pair of series in the jets, and not only conditions on numbers."""
-    return isinstance(scheme.generic, TaylorSeries | RungeKutta | StageEquations)
+    return isinstance(scheme.every_h, TaylorSeries | RungeKutta | StageEquations)
 
 
 @lru_cache(maxsize=64)
 def _of_every(scheme: Scheme, most: int) -> tuple[Jets, tuple[Poly, ...]]:
     """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
-    generic = scheme.generic
+    generic = scheme.every_h
     assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
     jets = Jets(most + 2, separable=generic.separable)
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
 
 
-def _leading(example: Example) -> Ball | None:
+def _leading(example: Sample) -> Ball | None:
     """The leading coefficient of this H's own ΔJ, at the initial value."""
     element = example.proof.first.element
     assert element is not None  # noqa: S101 - ΔJ has an order
     return enclose(*element, example.start, BITS)
 
 
-def _derivatives(example: Example, jets: Jets) -> dict[tuple[int, int], Ball] | None:
+def _derivatives(example: Sample, jets: Jets) -> dict[tuple[int, int], Ball] | None:
     """H_ij at the initial value; None where one of them is not defined there."""
     field, _ = example.hamiltonian.field()
     ring, found = field.ring, {(1, 0): field.h_p, (0, 1): field.h_q}

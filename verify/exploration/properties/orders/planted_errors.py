@@ -2,7 +2,7 @@
 
 from verify.errors import InputError
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.proof.order import prove
 from verify.schemes.step_map import StepMap
 from verify.schemes.substep import Substep
@@ -11,12 +11,12 @@ from verify.verdict import Verdict
 _IN = 2  # one in so many examples
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     order, parts = example.scheme.order, example.step_map.substeps
     if (
         not example.is_turn(_IN)
         or not example.ordinary
-        or any(part.solved or part.staged for part in parts)
+        or any(part.implicit or part.staged for part in parts)
     ):
         return False
     if example.proof.verdict is not Verdict.PROVED:
@@ -33,7 +33,7 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _planted(example: Example, power: int) -> StepMap:
+def _planted(example: Sample, power: int) -> StepMap:
     """The map with q·h^power added to p' in its last part."""
     *before, last = example.step_map.substeps
     ring = last.ring

@@ -6,13 +6,13 @@ Asked of schemes that treat p and q alike.
 from fractions import Fraction
 
 from verify.exploration.equivariance import knows_no_coordinates, same_step
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 
 _IN = 2  # one in so many examples
 _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN) or not knows_no_coordinates(example):
         return False
     return same_step(example, _EXCHANGED, Fraction(-1), Fraction(1))

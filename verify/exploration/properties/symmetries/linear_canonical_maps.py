@@ -6,14 +6,14 @@ Schemes that step p and q by turns are asked for M that scales p and q only.
 from fractions import Fraction
 
 from verify.exploration.equivariance import knows_no_coordinates, same_step
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 
 _IN, _AFTER = 2, 1  # one in so many examples, and not those whose time is scaled
 _SCALED = (Fraction(3, 2), Fraction(0)), (Fraction(0), Fraction(2, 3))
 _MIXED = (Fraction(2), Fraction(1, 3)), (Fraction(3, 2), Fraction(3, 4))
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.is_turn(_IN, _AFTER):
         return False
     matrix = _MIXED if knows_no_coordinates(example) else _SCALED

@@ -18,15 +18,15 @@ from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 
 _UNIT = 100  # coefficients are whole multiples of 1/100
 
 
-def holds(example: Example) -> bool:
-    generic = example.scheme.generic
+def holds(example: Sample) -> bool:
+    generic = example.scheme.every_h
     if not isinstance(generic, TaylorSeries | RungeKutta):
         return False
     hessian = _hessian(example)
@@ -50,7 +50,7 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _hessian(example: Example) -> tuple[Fraction, Fraction, Fraction] | None:
+def _hessian(example: Sample) -> tuple[Fraction, Fraction, Fraction] | None:
     """H_pp, H_pq, H_qq at the initial value, rounded; None where they are not ordinary numbers."""
     field, _ = example.hamiltonian.field()
     ring, point = field.ring, {"p": example.p, "q": example.q}

@@ -4,17 +4,17 @@ from verify.arithmetic.balls import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps, stepped, unlike
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 
 _IN = 3  # one in so many examples is looked at by series, too
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.scheme.symmetric:
         return False
-    if example.is_turn(_IN) and example.ordinary and not example.step_map.solved:
+    if example.is_turn(_IN) and example.ordinary and not example.step_map.implicit:
         series = by_series(example.step_map, example.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")
@@ -30,6 +30,6 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _back(example: Example, state: BallState) -> BallState | None:
+def _back(example: Sample, state: BallState) -> BallState | None:
     with working_precision(BITS):
         return stepped(example.step_map, state, rational_ball(-example.step_size))

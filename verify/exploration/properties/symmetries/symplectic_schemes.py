@@ -11,19 +11,19 @@ from verify.arithmetic.balls import rational_ball
 from verify.arithmetic.exact import decimal
 from verify.exploration.ball_steps import ball_steps, unlike
 from verify.exploration.property import Violation
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 from verify.kernels.stepping import KernelRun
 
 _DIGITS, _STEPS = 80, 2
 _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     if not example.scheme.area_preserving or not example.ordinary:
         return False
     if example.proof.area_preserving is False:
         raise Violation(f"the proof says that ΔJ has order {example.proof.order}")
-    if example.step_map.solved:
+    if example.step_map.implicit:
         return _by_a_run(example)
     states = ball_steps(example.step_map, example.p, example.q, example.step_size, 1)
     if states is None or not states[-1].sharp:
@@ -33,7 +33,7 @@ def holds(example: Example) -> bool:
     return True
 
 
-def _by_a_run(example: Example) -> bool:
+def _by_a_run(example: Sample) -> bool:
     found = _run(example, _DIGITS)
     if found is None:
         return False
@@ -46,10 +46,10 @@ def _by_a_run(example: Example) -> bool:
     raise Violation(f"Π det J − 1 is {decimal(change, 6)} after {_STEPS} steps")
 
 
-def _run(example: Example, digits: int) -> dict[str, Fraction] | None:
+def _run(example: Sample, digits: int) -> dict[str, Fraction] | None:
     wanted = frozenset({"lambda_plain"})
     run = KernelRun(example.hamiltonian, example.scheme.name, example.start, _STEPS, wanted, 0)
-    found = run.go(number_systems.get("mpfr", digits))
+    found = run.run(number_systems.get("mpfr", digits))
     return found.values if found.done == _STEPS else None
 
 

@@ -6,12 +6,12 @@ Looked at for one c, that is negative and no power of two.
 from fractions import Fraction
 
 from verify.exploration.equivariance import same_step
-from verify.exploration.sample import Example
+from verify.exploration.sample import Sample
 
 _IN = 2  # one in so many examples
 _IDENTITY = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))
 _FACTOR = Fraction(-2, 3)
 
 
-def holds(example: Example) -> bool:
+def holds(example: Sample) -> bool:
     return example.is_turn(_IN) and same_step(example, _IDENTITY, _FACTOR, 1 / _FACTOR)

@@ -7,7 +7,7 @@ Units are galpy's natural ones, so that H = v²/2 + amp (K √(x² + D²) + F x�
 from collections.abc import Iterator
 from fractions import Fraction
 
-from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, Subject
+from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
 
 TITLE = "galpy"
 LIBRARY = "galpy"
@@ -26,15 +26,15 @@ _POINTS: tuple[Point, ...] = ((Fraction(1, 3), Fraction(3, 5)),)
 _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
 
 
-def subjects() -> Iterator[Subject]:
+def subjects() -> Iterator[ReleasedIntegrator]:
     for name, order in (("leapfrog_c", 2), ("symplec4_c", 4), ("symplec6_c", 6)):
         yield _subject(name, order, True)
     for name, order in (("rk4_c", 4), ("rk6_c", 6)):
         yield _subject(name, order, None)
 
 
-def _subject(name: str, order: int, symplectic: bool | None) -> Subject:
-    return Subject(
+def _subject(name: str, order: int, symplectic: bool | None) -> ReleasedIntegrator:
+    return ReleasedIntegrator(
         name,
         "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step",
         _SOURCE,

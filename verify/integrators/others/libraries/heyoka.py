@@ -13,7 +13,7 @@ from typing import Any
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.balls import middle_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.others.integrator import Compared, FloatStep, Map, Subject
+from verify.integrators.others.integrator import Compared, FloatStep, Map, ReleasedIntegrator
 from verify.verdict import Verdict
 
 TITLE = "heyoka"
@@ -35,9 +35,9 @@ _SURE = 100  # units: more is no rounding
 _ALLOWED = 2  # units: one rounding of z', and a few dozen in the increment, each smaller by h
 
 
-def subjects() -> Iterator[Subject]:
+def subjects() -> Iterator[ReleasedIntegrator]:
     for eta in _ORDERS:
-        yield Subject(
+        yield ReleasedIntegrator(
             f"Taylor, order {eta}",
             _DRIVEN,
             _SOURCE,
@@ -45,7 +45,7 @@ def subjects() -> Iterator[Subject]:
             eta,
             reproduction=_script(eta),
         )
-    yield Subject(
+    yield ReleasedIntegrator(
         "Taylor and lieη",
         f"{_DRIVEN}, with the variational equations",
         "both are the Taylor series of the flow, cut off after h^η",

@@ -6,7 +6,7 @@ from importlib.resources import files
 from itertools import cycle, islice
 from typing import Any
 
-from verify.integrators.others.integrator import Subject
+from verify.integrators.others.integrator import ReleasedIntegrator
 from verify.integrators.others.printed_table import PrintedTable
 
 TITLE = "printed tables"
@@ -24,14 +24,14 @@ _KINDS = {
 }
 
 
-def subjects() -> Iterator[Subject]:
+def subjects() -> Iterator[ReleasedIntegrator]:
     text = (
         files("verify.integrators.others.libraries")
         .joinpath("literature.toml")
         .read_text(encoding="utf-8")
     )
     for entry in tomllib.loads(text)["table"]:
-        yield Subject(
+        yield ReleasedIntegrator(
             entry["name"],
             f"its coefficients as exact decimals, {_KINDS[entry['kind']]}; read in {entry['read']}",
             entry["source"],

@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.others.integrator import Compared, ExactTableau, Subject
+from verify.integrators.others.integrator import Compared, ExactTableau, ReleasedIntegrator
 from verify.integrators.others.tableau import order_of
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
@@ -37,11 +37,11 @@ _LOOSE = 1e-12  # above the rounding of a dozen floats, far below a wrong method
 _STAGES_ORDER = re.compile(r"^[A-Za-z]+(\d+)(\d)$")
 
 
-def subjects() -> Iterator[Subject]:
+def subjects() -> Iterator[ReleasedIntegrator]:
     methods = _loaded()
     for key, method in methods.items():
         order, embedded = claimed(key, method.name)
-        yield Subject(
+        yield ReleasedIntegrator(
             _titled(key, method.name),
             f"the exact coefficients A and b of rk.loadRKM('{key}')",
             _said(key, method.name),
@@ -50,7 +50,7 @@ def subjects() -> Iterator[Subject]:
             reproduction=_script(key, "b"),
         )
         if hasattr(method, "bhat") and embedded is not None:
-            yield Subject(
+            yield ReleasedIntegrator(
                 f"{key}, embedded",
                 f"the exact coefficients A and bhat of rk.loadRKM('{key}')",
                 f"its name, {method.name}",
@@ -58,7 +58,7 @@ def subjects() -> Iterator[Subject]:
                 embedded,
                 reproduction=_script(key, "bhat"),
             )
-    yield Subject(
+    yield ReleasedIntegrator(
         "order()",
         "what it returns for each of these methods, by default",
         "its documentation: conditions are checked to within its tolerance, by default 1e-14",

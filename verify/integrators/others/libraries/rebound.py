@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, Subject
+from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
 
 TITLE = "rebound"
 LIBRARY = "rebound"
@@ -57,7 +57,7 @@ _FORCED = _Problem(
 )  # fmt: skip
 
 
-def subjects() -> Iterator[Subject]:
+def subjects() -> Iterator[ReleasedIntegrator]:
     for order in (2, 4, 6, 8):
         yield _subject(_SOFT, "leapfrog", f"LEAPFROG, order {order}", order, f"order = {order}")
     for order in (2, 4, 6, 8, 10):
@@ -72,14 +72,16 @@ def subjects() -> Iterator[Subject]:
         yield _subject(_FORCED, "saba", title, 4, f"type = '{name}'")
 
 
-def _subject(problem: _Problem, integrator: str, name: str, order: int, *settings: str) -> Subject:
+def _subject(
+    problem: _Problem, integrator: str, name: str, order: int, *settings: str
+) -> ReleasedIntegrator:
     points: tuple[Point, ...] = () if problem.softening else _AWAY
     ladder: tuple[Fraction, ...] = ()
     if order >= 8:
         points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
     elif order == 6 and problem is _FREE:
         points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
-    return Subject(
+    return ReleasedIntegrator(
         name,
         f"one step of dt = h: {problem.said}",
         _SOURCE,

@@ -11,7 +11,14 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.others.integrator import FINE, ExactTableau, FloatStep, Map, Point, Subject
+from verify.integrators.others.integrator import (
+    FINE,
+    ExactTableau,
+    FloatStep,
+    Map,
+    Point,
+    ReleasedIntegrator,
+)
 from verify.schemes.implicit_tableau import ImplicitTableau
 
 TITLE = "scipy"
@@ -31,9 +38,9 @@ _SOURCE = "the documentation of scipy.integrate.{}"
 _LOOSE = "a single step of scipy.integrate.{}, first_step = h, tolerances that accept any step"
 
 
-def subjects() -> Iterator[Subject]:
+def subjects() -> Iterator[ReleasedIntegrator]:
     for name, order in (("RK23", 3), ("RK45", 5)):
-        yield Subject(
+        yield ReleasedIntegrator(
             f"{name}, as a step",
             _LOOSE.format(name),
             _SOURCE.format(name),
@@ -42,7 +49,7 @@ def subjects() -> Iterator[Subject]:
             None,
             _script(name),
         )
-    yield Subject(
+    yield ReleasedIntegrator(
         "Radau, as a step",
         "the collocation equations of scipy's Radau, by its own solver, to rounding",
         _SOURCE.format("Radau"),
@@ -52,7 +59,7 @@ def subjects() -> Iterator[Subject]:
     )
     for name, order, pair in (("RK23", 3, 2), ("RK45", 5, 4), ("DOP853", 8, None)):
         yield from _tables(name, order, pair)
-    yield Subject(
+    yield ReleasedIntegrator(
         "Radau, its table",
         "the collocation method of scipy's nodes, (4 ∓ √6)/10 and 1",
         _SOURCE.format("Radau"),
@@ -107,7 +114,7 @@ def _radau() -> Map:
     return step
 
 
-def _tables(name: str, order: int, pair: int | None) -> Iterator[Subject]:
+def _tables(name: str, order: int, pair: int | None) -> Iterator[ReleasedIntegrator]:
     """The coefficients inside the solver: of RK23 and RK45 quotients, which round to its floats; of
     DOP853 decimals, taken as floats."""
     from scipy import integrate
@@ -123,12 +130,14 @@ def _tables(name: str, order: int, pair: int | None) -> Iterator[Subject]:
         driven = f"scipy.integrate.{name}'s A and B, floats taken by their exact binary values"
     table = _tableau(rows, weights, quotients)
     source = _SOURCE.format(name)
-    yield Subject(f"{name}, its table", driven, source, ExactTableau(table, not quotients), order)
+    yield ReleasedIntegrator(
+        f"{name}, its table", driven, source, ExactTableau(table, not quotients), order
+    )
     if pair is not None:
         estimate = [x + e for x, e in zip([*weights, 0.0], map(float, solver.E), strict=True)]
         whole = [*([*row, 0.0] for row in rows), [*weights, 0.0]]
         embedded = ExactTableau(_tableau(whole, estimate, quotients))
-        yield Subject(f"{name}, its error estimator", driven, source, embedded, pair)
+        yield ReleasedIntegrator(f"{name}, its error estimator", driven, source, embedded, pair)
 
 
 def _tableau(rows: Any, weights: Any, quotients: bool) -> ImplicitTableau:

@@ -26,5 +26,5 @@ def make(name: str) -> Scheme | None:
         symmetric=True,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
         build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
-        generic=TreeConditions(TABLEAU),
+        every_h=TreeConditions(TABLEAU),
     )

@@ -28,5 +28,5 @@ def make(name: str) -> Scheme | None:
         symmetric=True,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.4",
         build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
-        generic=StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE / 2, at_q=_ONE / 2),)),
+        every_h=StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE / 2, at_q=_ONE / 2),)),
     )

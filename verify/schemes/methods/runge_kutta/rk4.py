@@ -25,5 +25,5 @@ def make(name: str) -> Scheme | None:
         symmetric=False,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.1",
         build=lambda hamiltonian: runge_kutta_map(hamiltonian, _TABLEAU),
-        generic=RungeKutta(_TABLEAU.rows, _TABLEAU.weights),
+        every_h=RungeKutta(_TABLEAU.rows, _TABLEAU.weights),
     )

@@ -36,7 +36,7 @@ def make(name: str) -> Scheme | None:
         symmetric=False,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.3",
         build=implicit_euler_map,
-        generic=_EQUATIONS,
+        every_h=_EQUATIONS,
     )
 
 

@@ -18,5 +18,5 @@ def make(name: str) -> Scheme | None:
         symmetric=False,
         source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
         build=lambda hamiltonian: lie_map(hamiltonian, 1),
-        generic=TaylorSeries(1),
+        every_h=TaylorSeries(1),
     )

@@ -33,7 +33,7 @@ def make(name: str) -> Scheme | None:
         symmetric=False,
         source="Eq. 2–5",
         build=lambda hamiltonian: lie_map(hamiltonian, eta),
-        generic=TaylorSeries(eta),
+        every_h=TaylorSeries(eta),
     )
 
 
