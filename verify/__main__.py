@@ -8,6 +8,6 @@ from pathlib import Path
 if Path(sys.path[0]).resolve() != Path(__file__).resolve().parents[1]:
     del sys.path[0]
 
-from verify.commands.main import main  # noqa: E402
+from verify.commands.main import main
 
 main()

@@ -1,4 +1,5 @@
-"""What is shipped beside the code: what is verified (`reports/`), and published data (`reference/`).
+"""What is shipped beside the code: what is verified (`reports/`), and published data
+(`reference/`).
 
 In a checkout both lie beside the package, in a wheel inside it, in `verify/data`.
 """

@@ -12,7 +12,7 @@ from verify.drawable import listen
 
 
 def register() -> None:
-    """Tell hypothesis of the classes that are known, and of those to come; twice changes nothing."""
+    """Tell hypothesis of the classes there are, and of those to come; twice changes nothing."""
     listen(_tell)
 
 

@@ -151,6 +151,7 @@ FILES = {"mine.toml": SCENE, "bench.toml": BENCH, "cat.toml": CAT, "stability.to
          "mine.csv": TABLE}  # fmt: skip
 RUN = "--system duffing --param delta=1 --scheme lie2 --step-size 0.01 --q 1.5 --p 0"
 PENDULUM = "--system pendulum --scheme stormer-verlet --step-size 1/50 --q 1.5 --p 0"
+HARMONIC = "--system harmonic --param omega=1 --q 1 --p 0"
 SPLIT = "'kick 1/6; drift 1/2; kick 2/3; drift 1/2; kick 1/6; order 3'"
 
 COMMANDS = f"""\
@@ -180,7 +181,7 @@ run {RUN} --steps 500 --digits 30 --arithmetic mpmath
 run {RUN} --steps 200 --digits 30 --arithmetic ball
 run {PENDULUM} --steps 1000 --digits 40
 run {PENDULUM} --steps 300000
-run --system harmonic --param omega=1 --scheme gauss4 --step-size 0.1 --steps 50 --q 1 --p 0 --digits 30
+run {HARMONIC} --scheme gauss4 --step-size 0.1 --steps 50 --digits 30
 run --system pendulum --scheme implicit-midpoint --step-size 0.1 --steps 50 --q 1 --p 0 --digits 30
 run --system cubic --scheme lie2 --step-size 0.1 --steps 5000 --q 9 --p 9
 separate {RUN} --steps 2000

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 ROUNDS = 5
 _RUN = (
-    "from fractions import Fraction as F; from verify import systems; from verify.runs.run import run;"
+    "from fractions import Fraction as F; from verify import run, systems;"
     "h = systems.get('duffing').hamiltonian({'delta': 1});"
     "r = run(h, 'lie2', q=F(3, 2), p=F(0), step_size=F(1, 1000), steps=%d)"
 )

@@ -1,4 +1,5 @@
-"""The properties of `verify.exploration.properties` on random scenes, until one of them is violated.
+"""The properties of `verify.exploration.properties` on random scenes, until one of them is
+violated.
 
     python -m tests.mutants.battery MODULE INDEX --examples 60
 

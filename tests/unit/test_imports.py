@@ -93,7 +93,7 @@ def edges_of_file(path: Path) -> set[str]:
 
 @cache
 def named(path: Path) -> frozenset[str]:
-    """The modules of ours whose dotted names stand in a file as texts, which import_module takes."""
+    """Modules of ours whose dotted names stand in a file as texts, which import_module takes."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     texts = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant)}
     modules = set(NAMES) - {"verify"}  # whose data are found by this name

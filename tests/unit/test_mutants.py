@@ -229,9 +229,10 @@ from pathlib import Path
 from tests.mutants import forked, killers
 forked.warm_up()
 killer = killers.Killer("mine", 2, partial(killers._tests, Path({path!r})))
-found = [forked.forked(partial(killers.on_sound_code, killer, ("verify.schemes.methods.splitting.ruth3",)), 60).value]
+of = "verify.schemes.methods.splitting.ruth3"
+found = [forked.forked(partial(killers.on_sound_code, killer, (of,)), 60).value]
 for index in {indices}:
-    work = partial(killers.on_mutant, killer, "verify.schemes.methods.splitting.ruth3", index, {{}})
+    work = partial(killers.on_mutant, killer, of, index, {{}})
     found.append(forked.forked(work, 60).value)
 print(json.dumps(found))
 """

@@ -14,9 +14,9 @@ class Generator:
     """One ring generator: `kind` of function, its argument, and its expression.
 
     `kind`: variable, pi, sin, cos, exp, sinh, cosh, log, atan, root (of `degree`), inverse, or
-    stage, which is its argument itself under a name, or solved: an unknown of a system of
-    equations (see `verify.algebra.implicit_unknowns`), the `degree`-th of it, of which its argument is 0. `expression`
-    is None where it is made from the argument's when it is asked for.
+    stage, which is its argument itself under a name, or solved: an unknown of a system of equations
+    (see `verify.algebra.implicit_unknowns`), the `degree`-th of it, of which its argument is 0.
+    `expression` is None where it is made from the argument's when it is asked for.
     """
 
     index: int

@@ -1,4 +1,6 @@
-"""Whether a ring element is the zero function, and a witness if it is not; see `verify.algebra.ring`."""
+"""Whether a ring element is the zero function, and a witness if it is not; see
+`verify.algebra.ring`.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field

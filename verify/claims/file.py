@@ -15,8 +15,8 @@
     order = 3
 
 See `verify.claims.kinds` for the kinds, `verify.claims.scenes` for what a claim may speak of, and
-`verify.scenes.paper_figures` for `[[figure]]`. A scene that a claim names is a `[[scene]]` of this file,
-or the file of that name beside it.
+`verify.scenes.paper_figures` for `[[figure]]`. A scene that a claim names is a `[[scene]]` of this
+file, or the file of that name beside it.
 """
 
 import re

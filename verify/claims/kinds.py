@@ -230,7 +230,9 @@ class FlowDistanceClaim(FlowClaim):
 
 
 class TheoremClaim(_Claim):
-    """What a paper says in words, judged by the function of that `name` in `verify.claims.theorems`."""
+    """What a paper says in words, judged by the function of that `name` in
+    `verify.claims.theorems`.
+    """
 
     kind: Literal["theorem"]
     name: str

@@ -49,8 +49,8 @@ def cli(context: click.Context) -> None:
 
 
 for command in (
-    prove, certificate, run, separate, explore, flow, stability, check, check_integrator, bench, plan,
-    reference, report,
+    prove, certificate, run, separate, explore, flow, stability, check, check_integrator, bench,
+    plan, reference, report,
 ):  # fmt: skip
     cli.add_command(command)
 

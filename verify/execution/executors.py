@@ -52,7 +52,9 @@ THIS_PROCESS = Placement(workers=1)
 
 
 class FunctionCall(NamedTuple):
-    """`function(*arguments)`, to be found again by its name; `description` is what an error calls it."""
+    """`function(*arguments)`, to be found again by its name; `description` is what an error calls
+    it.
+    """
 
     name: str
     function: Callable[..., Any]
@@ -63,8 +65,8 @@ class FunctionCall(NamedTuple):
 class Place(Protocol):
     """Where calls go. `local`: this machine's files and clock are theirs.
 
-    `attempts`: so often may a call lose its worker. `names_lost_call`: a lost worker tells which call lost
-    it; where it does not, that call and others are tried again one at a time.
+    `attempts`: so often may a call lose its worker. `names_lost_call`: a lost worker tells which
+    call lost it; where it does not, that call and others are tried again one at a time.
     """
 
     local: bool
@@ -90,7 +92,8 @@ class Place(Protocol):
 
 @contextlib.contextmanager
 def open_place(where: Placement, modules: Sequence[str] = ()) -> Iterator[Place]:
-    """Opens the place where functions are called; left by an exception, it ends what is under way at once.
+    """Opens the place where functions are called; left by an exception, it ends what is under way
+    at once.
 
     `modules`: what processes have imported before their first call.
 

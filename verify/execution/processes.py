@@ -16,7 +16,8 @@ _SAFE_PATH = "PYTHONSAFEPATH"  # Python's own variable, read as it starts
 
 
 class Processes:
-    """See `verify.execution.executors.Place`. Each process is a pool of one, which has one call at a time.
+    """See `verify.execution.executors.Place`. Each process is a pool of one, which has one call at
+    a time.
 
     A pool of several is broken as a whole when one of its workers is killed, and does not tell
     which call that was; of a pool of one nothing else is lost, and there is nothing to guess.

@@ -1,8 +1,8 @@
 """Properties, or a user's claims, held against many drawn scenes.
 
 The work is cut into tasks of a stretch of scenes each. What is found does not depend on how it is
-cut, as scene k is made of the seed and k alone (see `verify.exploration.scenes`). Of every property that
-fails the first scene by number is shrunk.
+cut, as scene k is made of the seed and k alone (see `verify.exploration.scenes`). Of every property
+that fails the first scene by number is shrunk.
 """
 
 import re
@@ -43,8 +43,9 @@ _STRETCH, _MOST_TASKS = 50, 20_000  # scenes of a task, and tasks
 class Exploration:
     """What is asked for: so many scenes of a seed, held against properties and claims.
 
-    `claims`: each as JSON, by `verify.exploration.claims`. Raises InputError for an unknown property,
-    none at all, two of one name, fewer than one example, and what scenes cannot be drawn of.
+    `claims`: each as JSON, by `verify.exploration.claims`. Raises InputError for an unknown
+    property, none at all, two of one name, fewer than one example, and what scenes cannot be drawn
+    of.
     """
 
     seed: int

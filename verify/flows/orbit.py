@@ -36,10 +36,10 @@ class ExactOrbit:
     """What is known of the orbit through z₀ over a time T.
 
     `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open),
-    leaves every bound (escapes), or not followed to its end (unknown); `summary` says more. `centre`
-    and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit runs
-    through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest
-    ω² = det Hess H on the orbit; `period`: that of a closed one, about.
+    leaves every bound (escapes), or not followed to its end (unknown); `summary` says more.
+    `centre` and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit
+    runs through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest ω² =
+    det Hess H on the orbit; `period`: that of a closed one, about.
     """
 
     kind: Kind

@@ -3,9 +3,9 @@
 Where a closed form is known it is evaluated for all points together, in the C compiler's long
 double and again in float64: how far the two are apart tells point by point how many digits the
 formula loses there. A point that loses too many (near a separatrix) is left to `exact_solution`,
-one by one, as all are on a machine whose long double is float64. Where no closed form is known,
-the points follow a numerical flow together (`verify.flows.extrapolation_of_many`). Either is held against
-`exact_solution` at a sample of the points, the extreme ones among them.
+one by one, as all are on a machine whose long double is float64. Where no closed form is known, the
+points follow a numerical flow together (`verify.flows.extrapolation_of_many`). Either is held
+against `exact_solution` at a sample of the points, the extreme ones among them.
 """
 
 from collections.abc import Iterable, Sequence

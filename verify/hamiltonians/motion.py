@@ -1,7 +1,7 @@
 """The exact solution through one initial value in closed form: what a named system knows of it.
 
-The same formulas serve one initial value and a batch of them (`verify.arithmetic.batch`): where they branch,
-all of the batch must take the same way, else they raise MixedError.
+The same formulas serve one initial value and a batch of them (`verify.arithmetic.batch`): where
+they branch, all of the batch must take the same way, else they raise MixedError.
 """
 
 from collections.abc import Callable, Mapping

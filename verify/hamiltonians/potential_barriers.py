@@ -1,8 +1,8 @@
 """Where many motions in one polynomial potential go, by the barriers on their way.
 
-`verify.hamiltonians.potential_motion` finds it for one motion by exact algebra. Here the energies of many are
-held against the potential's critical values, which are those of all; who is so near to one that
-floats cannot tell is DoubtfulError.
+`verify.hamiltonians.potential_motion` finds it for one motion by exact algebra. Here the energies
+of many are held against the potential's critical values, which are those of all; who is so near to
+one that floats cannot tell is DoubtfulError.
 """
 
 from collections.abc import Sequence

@@ -22,7 +22,8 @@ _STATE = ("p", "q")
 
 @dataclass(frozen=True)
 class Observed:
-    """ΔJ; the determinant of the four entries; A − 1 of the tangent map; see `verify.kernels.kernel`.
+    """ΔJ; the determinant of the four entries; A − 1 of the tangent map; see
+    `verify.kernels.kernel`.
 
     `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
     `verify.arithmetic.number_system.Arithmetic`.

@@ -45,12 +45,12 @@ LOOP = "    for k in range(steps):"  # what is before this line is the same for 
 class Kernel:
     """`function(steps, h, *parameters, *scales, *limits, *state)` → (steps done, *state).
 
-    `state_names` names the state and accumulators in their order: p, q, then those of the observables;
-    `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start` has the initial values,
-    p and q apart; "p" and "q" there are those in float64. An arithmetic of absolute precision has
-    `scales` and `limits`, the numbers that the loop's guard compares with, and `power` is the r of
-    κ. `lowering` and `outputs` are what is computed: the program and the indices of its results;
-    `names` what the source's names stand for.
+    `state_names` names the state and accumulators in their order: p, q, then those of the
+    observables; `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start`
+    has the initial values, p and q apart; "p" and "q" there are those in float64. An arithmetic of
+    absolute precision has `scales` and `limits`, the numbers that the loop's guard compares with,
+    and `power` is the r of κ. `lowering` and `outputs` are what is computed: the program and the
+    indices of its results; `names` what the source's names stand for.
     """
 
     function: Callable[..., tuple[Any, ...]]

@@ -8,7 +8,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 
 @dataclass(frozen=True)
 class Orbit:
-    """The iterates of a scheme's step of one size from (q, p), for an H whose parameters have values."""
+    """The iterates of a scheme's step of one size from (q, p), for an H whose parameters have
+    values.
+    """
 
     hamiltonian: Hamiltonian
     scheme: str

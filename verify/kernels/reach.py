@@ -30,7 +30,7 @@ _SIDES = tuple(
 
 @dataclass(frozen=True)
 class Limits:
-    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `verify.kernels.kernel.LIMITS`."""
+    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction

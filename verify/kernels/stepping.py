@@ -17,10 +17,10 @@ from verify.scenes.results.run import SeriesPoint
 class Outcome:
     """A run's numbers as exact rationals, at checkpoints on its way and at the last step done.
 
-    `tangents` has what `verify.kernels.tangent_map.NAMES` names, at the same checkpoints; `kernel` made them.
-    `radii`: how far from the last values the true ones may be, where numbers are enclosures.
-    `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run ended early,
-    where that is the number format's doing.
+    `tangents` has what `verify.kernels.tangent_map.NAMES` names, at the same checkpoints; `kernel`
+    made them. `radii`: how far from the last values the true ones may be, where numbers are
+    enclosures. `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run
+    ended early, where that is the number format's doing.
     """
 
     done: int

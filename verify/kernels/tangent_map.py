@@ -1,11 +1,11 @@
 """The tangent map carried along an orbit in float64: how a small error of the state grows.
 
-M₀ = 1 and M_{k+1} = A_k M_k, with A_k the Jacobian of one step at the orbit's k-th state.
-A_k − 1 is evaluated at the state rounded to float64, and its product with M is added in twice the
-precision (Knuth's two-sum), so that one step's error is about h·2⁻⁵³ of M. `verify.runs.a_posteriori`
-bounds the orbit's error by what is summed here: `growth` Σ ‖M‖², `growth_top` its greatest term,
-`det_low` the least det M, and the box that the orbit has visited; the kernel adds `least` and
-`most`, between which Λ has been.
+M₀ = 1 and M_{k+1} = A_k M_k, with A_k the Jacobian of one step at the orbit's k-th state. A_k − 1
+is evaluated at the state rounded to float64, and its product with M is added in twice the precision
+(Knuth's two-sum), so that one step's error is about h·2⁻⁵³ of M. `verify.runs.a_posteriori` bounds
+the orbit's error by what is summed here: `growth` Σ ‖M‖², `growth_top` its greatest term, `det_low`
+the least det M, and the box that the orbit has visited; the kernel adds `least` and `most`, between
+which Λ has been.
 """
 
 import math

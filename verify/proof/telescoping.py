@@ -25,7 +25,9 @@ from verify.algebra.linear_combination import combination
 
 
 class Derivation(Protocol):
-    """p and q with their derivatives along the flow: `verify.hamiltonians.hamiltonian.VectorField` is one."""
+    """p and q with their derivatives along the flow: `verify.hamiltonians.hamiltonian.VectorField`
+    is one.
+    """
 
     def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
         """[y, X y, …, X^most y] of y = p or q."""

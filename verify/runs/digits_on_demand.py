@@ -1,9 +1,9 @@
 """Digits on demand: which arithmetic, how precise, and a rigorous bound where one can be had.
 
-A run that carries the tangent map is certified (`verify.runs.a_posteriori`); where digits are missing it
-is done again at the precision that gives them. How many will be missing is foreseen at the first of
-its checkpoints, so that little is run in vain: where the tangent map grows linearly, the bound
-grows like N³, and that of Λ like N⁴. Where there is no certificate the bound is estimated
+A run that carries the tangent map is certified (`verify.runs.a_posteriori`); where digits are
+missing it is done again at the precision that gives them. How many will be missing is foreseen at
+the first of its checkpoints, so that little is run in vain: where the tangent map grows linearly,
+the bound grows like N³, and that of Λ like N⁴. Where there is no certificate the bound is estimated
 (`verify.runs.estimated`).
 """
 

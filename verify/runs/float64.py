@@ -1,16 +1,17 @@
 """Error bounds of float64 runs: what rounding left of the digits, that of the inputs included.
 
-Up to `DIRECT_STEPS` steps float64 is held against a certified run (`verify.runs.digits_on_demand`) from the exact
-inputs: the bound is rigorous. Where there is no certificate, and the orbit is short, it is held
-against an mpfr rerun whose precision is itself confirmed, an estimate.
+Up to `DIRECT_STEPS` steps float64 is held against a certified run (`verify.runs.digits_on_demand`)
+from the exact inputs: the bound is rigorous. Where there is no certificate, and the orbit is short,
+it is held against an mpfr rerun whose precision is itself confirmed, an estimate.
 
-Beyond: against a compensated run (see `verify.kernels.kernel`), by four times the greatest difference at
-any of the checkpoints on the way, p and q taken together, since a single difference may be small
-by chance. That leaves the rounding of h, the parameters and the initial values aside. Where errors
-grow linearly in time it shifts the phase by about T·2⁻⁵³, while the rounding of N ≥ 20,000 states
-shifts it by about √N·T·2⁻⁵³/5; where they grow exponentially, as near a separatrix, every rounding
-counts alike, and the states' are N to one. Where the two orbits differ by more than their size no
-value is given. (`verify separate` has rigorous bounds at full length, at twenty times the price.)
+Beyond: against a compensated run (see `verify.kernels.kernel`), by four times the greatest
+difference at any of the checkpoints on the way, p and q taken together, since a single difference
+may be small by chance. That leaves the rounding of h, the parameters and the initial values aside.
+Where errors grow linearly in time it shifts the phase by about T·2⁻⁵³, while the rounding of N ≥
+20,000 states shifts it by about √N·T·2⁻⁵³/5; where they grow exponentially, as near a separatrix,
+every rounding counts alike, and the states' are N to one. Where the two orbits differ by more than
+their size no value is given. (`verify separate` has rigorous bounds at full length, at twenty times
+the price.)
 """
 
 from dataclasses import replace

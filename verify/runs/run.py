@@ -1,7 +1,7 @@
 """One run: N steps from (q, p) in one arithmetic, each value with its error bound.
 
-How the bounds are got is told in `verify.runs.a_posteriori`, where they are rigorous, and otherwise in
-`verify.runs.estimated`; for float64, which is under test, in `verify.runs.float64`.
+How the bounds are got is told in `verify.runs.a_posteriori`, where they are rigorous, and otherwise
+in `verify.runs.estimated`; for float64, which is under test, in `verify.runs.float64`.
 
 What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exactly 0; where ΔJ does not
 depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.

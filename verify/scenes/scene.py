@@ -31,7 +31,7 @@
     step_sizes = [0.1, 0.05, 0.025]
     initial_value = { q = 1.5, p = 0 }
 
-    [[flow]]                               # a region carried by maps; see verify.scenes.region_sections
+    [[flow]]                               # a region carried by maps; see `region_sections`
     shape = "cat"
     centre = { q = 1, p = 0 }
     scale = 0.5

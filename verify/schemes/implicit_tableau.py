@@ -1,8 +1,8 @@
 """Implicit Runge–Kutta methods by their coefficients.
 
 k_i = f(z + h Σ a_ij k_j), i = 1 … s, and z' = z + h Σ b_i k_i. Coefficients are algebraic numbers,
-exact. What is asked of them is decided in the ring of `verify.algebra.generators.embed`, by exact algebra,
-and what is not zero there is enclosed by Arb; no coefficient is ever rounded for it.
+exact. What is asked of them is decided in the ring of `verify.algebra.generators.embed`, by exact
+algebra, and what is not zero there is enclosed by Arb; no coefficient is ever rounded for it.
 """
 
 from collections.abc import Sequence

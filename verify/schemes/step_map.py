@@ -1,8 +1,8 @@
 """The exact one-step map (p, q, h) → (p', q'), its Jacobian J (Eq. 12) and ΔJ = det J − 1 (Eq. 14).
 
 A map is a composition of substeps, each with its own exact closed form: one for the Lie-derivative
-scheme, two shears for symplectic Euler; or one in stages (see `verify.schemes.stages`), for a Runge–Kutta
-scheme; see `verify.schemes.substep`. 1 + ΔJ of the composition is the product along it.
+scheme, two shears for symplectic Euler; or one in stages (see `verify.schemes.stages`), for a
+Runge–Kutta scheme; see `verify.schemes.substep`. 1 + ΔJ of the composition is the product along it.
 """
 
 from collections.abc import Callable, Mapping

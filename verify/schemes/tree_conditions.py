@@ -8,12 +8,11 @@ the trees that are left where the root is taken away,
     Φ_i(t) = Π_k Σ_j a_ij Φ_j(t_k),   γ(t) = |t| γ(t_1) … γ(t_m).
 
 That each of them is needed is shown there with vector fields of high dimension. Of Hamiltonian
-fields in the plane fewer are, from five vertices on: f'f' is −det Hess H there, so that
-f''(f, f'f'f) is f'f'f''(f, f), and of the conditions of two trees only one combination counts. So
-where conditions of n vertices fail, the difference of the two maps' terms with hⁿ,
-Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t), is looked at as a polynomial in the derivatives of H
-(`verify.algebra.jets`); where it vanishes that is one condition, which holds, in place of those that
-fail.
+fields in the plane fewer are, from five vertices on: f'f' is −det Hess H there, so that f''(f,
+f'f'f) is f'f'f''(f, f), and of the conditions of two trees only one combination counts. So where
+conditions of n vertices fail, the difference of the two maps' terms with hⁿ, Σ (b·Φ(t) − 1/γ(t))
+F(t)/σ(t), is looked at as a polynomial in the derivatives of H (`verify.algebra.jets`); where it
+vanishes that is one condition, which holds, in place of those that fail.
 
 A condition is written with the vectors c = A 1 and b, products of vectors by component: that of
 [τ, [τ]] is b·(c A(c)) = 1/8.

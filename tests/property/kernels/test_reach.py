@@ -36,7 +36,8 @@ def check_job(kernel_run: KernelRun) -> Outcome:
     Where there is no certificate it is about as near as mpfr is in as many bits.
     """
     found = kernel_run.run(FIXED, tangent=True)
-    where = f"{kernel_run.hamiltonian}, {kernel_run.parameters}, {kernel_run.scheme}, {kernel_run.start}, {kernel_run.steps} steps"
+    of = kernel_run
+    where = f"{of.hamiltonian}, {of.parameters}, {of.scheme}, {of.start}, {of.steps} steps"
     if found.done < kernel_run.steps:
         assert found.reason, where
         return found

@@ -1,7 +1,7 @@
 """Whatever is certified contains the true value: random H, schemes, orbits, precisions.
 
-The true values are got by balls that share no code with the toolkit (`tests.helpers.exact_orbits`). Where
-there is no certificate nothing is claimed, and nothing is checked.
+The true values are got by balls that share no code with the toolkit (`tests.helpers.exact_orbits`).
+Where there is no certificate nothing is claimed, and nothing is checked.
 """
 
 from fractions import Fraction

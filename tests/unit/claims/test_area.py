@@ -129,7 +129,8 @@ def test_the_exact_flow_has_every_order_looked_at(r: int) -> None:
 @pytest.mark.parametrize(
     ("known", "exactly", "at_least"),
     [
-        (ProvedOrder(3, True, False, "e"), {2: REFUTED, 3: PROVED, 4: REFUTED}, {3: PROVED, 4: REFUTED}),
+        (ProvedOrder(3, True, False, "e"), {2: REFUTED, 3: PROVED, 4: REFUTED},
+         {3: PROVED, 4: REFUTED}),
         (ProvedOrder(3, False, None, "e"), {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED},
          {3: PROVED, 4: UNDECIDED}),
         (ProvedOrder(3, False, False, "e"), {2: REFUTED, 3: UNDECIDED}, {3: PROVED, 4: UNDECIDED}),

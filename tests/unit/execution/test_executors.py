@@ -91,7 +91,8 @@ def test_distributed_is_imported_for_a_cluster_only() -> None:
         "if __name__ == '__main__':\n"
         "    for n in (1, 2):\n"
         "        with open_place(Placement(n)) as place:\n"
-        "            assert list(results_of(place, [FunctionCall('a', square, (3,))])) == [('a', 9)]\n"
+        "            call = FunctionCall('a', square, (3,))\n"
+        "            assert list(results_of(place, [call])) == [('a', 9)]\n"
         "    assert not {'distributed', 'dask', 'tornado'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
@@ -245,8 +246,8 @@ from verify.execution.executors import FunctionCall, Placement, open_place, resu
 
 if __name__ == "__main__":
     with open_place(Placement(2)) as place:
-        print(*{pid for _, pid in results_of(place, [FunctionCall(str(k), process) for k in range(2)])},
-              flush=True)
+        calls = [FunctionCall(str(k), process) for k in range(2)]
+        print(*{pid for _, pid in results_of(place, calls)}, flush=True)
         time.sleep(60)
 """
 

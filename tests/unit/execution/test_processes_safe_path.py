@@ -37,7 +37,8 @@ if {unsafe}:
     processes.safe_path = contextlib.nullcontext
 if __name__ == "__main__":
     with open_place(Placement(2)) as place:
-        assert len(list(results_of(place, [FunctionCall(str(k), square, (k,)) for k in range(4)]))) == 4
+        calls = [FunctionCall(str(k), square, (k,)) for k in range(4)]
+        assert len(list(results_of(place, calls))) == 4
 """
 
 

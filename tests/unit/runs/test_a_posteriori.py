@@ -1,9 +1,9 @@
 """Certified runs contain the true values, and lose no more digits than a table says.
 
 The true values: exact rationals for a few steps of a polynomial H; balls for windows, our own ones
-and those of `verify.arithmetic.systems.ball`; runs with 64 more bits for 10⁵ to 10⁶ steps; and values that
-were computed elsewhere. Random orbits are in `tests/property/test_certificate.py`, and lies in
-`test_certificate_controls.py`.
+and those of `verify.arithmetic.systems.ball`; runs with 64 more bits for 10⁵ to 10⁶ steps; and
+values that were computed elsewhere. Random orbits are in `tests/property/test_certificate.py`, and
+lies in `test_certificate_controls.py`.
 """
 
 from dataclasses import replace

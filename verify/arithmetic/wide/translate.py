@@ -1,17 +1,17 @@
 """A kernel's source → LLVM IR in which wide fixed-point numbers and float64 stand side by side.
 
-The source is the small language that `verify.kernels.kernel` writes: assignments, + − * /, comparisons,
-calls by name, `if`, one loop `for k in range(steps)`, `return`. A variable's kind is that of what
-is first assigned to it, an argument's is its annotation:
+The source is the small language that `verify.kernels.kernel` writes: assignments, + − * /,
+comparisons, calls by name, `if`, one loop `for k in range(steps)`, `return`. A variable's kind is
+that of what is first assigned to it, an argument's is its annotation:
 
 - `wide`  (where there is none): a number of the format;
 - `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
 - `float` IEEE double precision; `int` a 64-bit integer.
 
 `wide(x)` takes a float64 but for bits below the last place, `approx(x)` gives one near x; how near,
-`verify.arithmetic.wide.newton` says. The name `valid` is true as long as every function had a value, in all
-passes of the loop and before it; `inside(x, limit)` is |x| < limit, seen from the highest limbs,
-and `shifted(x, s)` is x/2^s.
+`verify.arithmetic.wide.newton` says. The name `valid` is true as long as every function had a
+value, in all passes of the loop and before it; `inside(x, limit)` is |x| < limit, seen from the
+highest limbs, and `shifted(x, s)` is x/2^s.
 """
 
 import ast

@@ -1,4 +1,5 @@
-"""What the digits of a printed table can say of a claimed order; see `verify.integrators.others.printed_table`.
+"""What the digits of a printed table can say of a claimed order; see
+`verify.integrators.others.printed_table`.
 
 - PROVED or REFUTED by exact algebra where no coefficient is rounded;
 - REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a residue

@@ -33,9 +33,9 @@ _ODD = (1, 3, 5, 7, 9)
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """`kind`: see `verify.schemes.free_lie_words`. `parts`: ("kick" or "drift", size) in the order in
-    which they are made, or ("step", size) of a composition; sizes are formulas in `numbers`, which
-    are decimals as printed, or exact formulas of numbers. InputError for what is none.
+    """`kind`: see `verify.schemes.free_lie_words`. `parts`: ("kick" or "drift", size) in the order
+    in which they are made, or ("step", size) of a composition; sizes are formulas in `numbers`,
+    which are decimals as printed, or exact formulas of numbers. InputError for what is none.
     """
 
     kind: str

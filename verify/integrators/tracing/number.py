@@ -1,10 +1,10 @@
 """Numbers of our own that go through a user's code in place of floats.
 
 Plain arithmetic, numpy's functions of scalars and of arrays of objects, and the functions that
-`verify.integrators.tracing.functions` puts in place of `math`'s lead here. What a user writes as a float is read
-as the number that he means where that can be told: 0.1 is 1/10 and 1/6 is 1/6, each the one simple
-rational whose nearest float it is; another float, such as 1.3512071919596578, is taken by its exact
-binary value, and counted as a rounded coefficient.
+`verify.integrators.tracing.functions` puts in place of `math`'s lead here. What a user writes as a
+float is read as the number that he means where that can be told: 0.1 is 1/10 and 1/6 is 1/6, each
+the one simple rational whose nearest float it is; another float, such as 1.3512071919596578, is
+taken by its exact binary value, and counted as a rounded coefficient.
 """
 
 import math

@@ -58,9 +58,9 @@ def _finding(gallery: Gallery, cards: Sequence[CardView]) -> str:
     if not cards:
         return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
     worst = gallery.scenes[0].separation
+    finding = findings(gallery.measure, gallery.sentence, gallery.scenes[0].value)
     return (
-        f"In the worst of {count} ({where}), "
-        f"{findings(gallery.measure, gallery.sentence, gallery.scenes[0].value)}: {worst.scheme} with "
+        f"In the worst of {count} ({where}), {finding}: {worst.scheme} with "
         f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
 

@@ -1,8 +1,9 @@
 """Values of reference data once more: in balls, from the textbook's formulas, by Taylor arithmetic.
 
-Nothing here is shared with what made them: the formula of H is read by `verify.reference.check.tape`, steps and
-Jacobians are those of `verify.reference.check.textbook`, and det J is a d − b c of the four entries. The number
-system is flint's balls, so that what is recomputed of a scheme's orbit is rigorous.
+Nothing here is shared with what made them: the formula of H is read by
+`verify.reference.check.tape`, steps and Jacobians are those of `verify.reference.check.textbook`,
+and det J is a d − b c of the four entries. The number system is flint's balls, so that what is
+recomputed of a scheme's orbit is rigorous.
 """
 
 from fractions import Fraction

@@ -1,8 +1,8 @@
 """What rounding may do to each number of a run, for programs that work with a given unit roundoff.
 
 A few roundings of p and q in each step are there in any case. What comes from earlier steps is
-followed where a difference is larger (`verify.reference.compare.scatter`). A program that finds ΔJ as
-a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
+followed where a difference is larger (`verify.reference.compare.scatter`). A program that finds ΔJ
+as a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
 """
 
 import math

@@ -69,8 +69,9 @@ class Scatter:
         self._known: dict[int, list[Spreads | None]] = {}
 
     def at(self, orbit: int, step: int) -> Spreads | None:
-        """Of an orbit, after so many steps; None where its copies leave every range, or are far apart
-        by then. ValueError for a step that was passed, and is no mark."""
+        """Of an orbit, after so many steps; None where its copies leave every range, or are far
+        apart by then. ValueError for a step that was passed, and is no mark.
+        """
         if step not in self._known:
             if self._done > min(step, _MOST_STEPS):
                 raise ValueError(step)

@@ -1,6 +1,7 @@
 """Somebody's table of numbers → the rows that the reference data have, too.
 
-Only what is compared is kept, so that memory does not grow with the file (see `verify.reference.compare.table`).
+Only what is compared is kept, so that memory does not grow with the file (see
+`verify.reference.compare.table`).
 """
 
 import re

@@ -133,7 +133,8 @@ class ComparisonResult(Frozen):
 
 
 class WorkPrecisionResult(Frozen):
-    """Error against run time over [0, `time`] from (q, p); see `verify.studies.work_precision.measure`.
+    """Error against run time over [0, `time`] from (q, p); see
+    `verify.studies.work_precision.measure`.
 
     `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part

@@ -37,7 +37,8 @@ def svg_path(data: str, name: str = "path") -> Shape:
     """The closed curves of SVG's path data, each subpath an outline; q is x, p is −y.
 
     They run as they are drawn, clockwise or not, and are not asked whether they cross themselves.
-    Raises InputError as `verify.scenes.shapes.svg_path.subpaths` does, and for a subpath that bounds no area.
+    Raises InputError as `verify.scenes.shapes.svg_path.subpaths` does, and for a subpath that
+    bounds no area.
     """
     if not isinstance(data, str):
         raise InputError(name, data, "not a text of path data")

@@ -1,10 +1,10 @@
 """The areas that a map gives to regions inside curves, measured far more finely than they change.
 
-A curve is cut into Gauss–Legendre panels (`verify.studies.regions.panels`). Each is measured whole and in halves;
-the difference is the error of the whole, and so a bound, and by far, for that of the halves, whose
-areas count. Where shear has stretched the curve so that the difference matters, the halves are cut
-again. Rounding is measured too: the halves' points are carried once more in finer arithmetic, and
-the panels' differences count without their signs. All curves are carried together.
+A curve is cut into Gauss–Legendre panels (`verify.studies.regions.panels`). Each is measured whole
+and in halves; the difference is the error of the whole, and so a bound, and by far, for that of the
+halves, whose areas count. Where shear has stretched the curve so that the difference matters, the
+halves are cut again. Rounding is measured too: the halves' points are carried once more in finer
+arithmetic, and the panels' differences count without their signs. All curves are carried together.
 """
 
 from collections.abc import Callable, Sequence

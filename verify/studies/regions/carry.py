@@ -1,9 +1,10 @@
 """A shape carried by a scheme's steps or by the exact flow: its areas, the mean of Λ, distances.
 
 The relative change of the region's area is measured twice, by the area inside its image
-(`verify.studies.regions.area`) and as the mean of Λ over it (`verify.studies.regions.mean_lambda`), which by the change of
-variables are the same number. A probe whose own error is not far below the change is no result:
-float64 then gives way to more digits, and where these do not do either, the image says so.
+(`verify.studies.regions.area`) and as the mean of Λ over it (`verify.studies.regions.mean_lambda`),
+which by the change of variables are the same number. A probe whose own error is not far below the
+change is no result: float64 then gives way to more digits, and where these do not do either, the
+image says so.
 """
 
 import contextlib

@@ -1,4 +1,5 @@
-"""The whole chain Λ₀ … Λ₄ for one step size, and its parts; see `verify.studies.separation.separate`.
+"""The whole chain Λ₀ … Λ₄ for one step size, and its parts; see
+`verify.studies.separation.separate`.
 
 What is known is not run. Where the proof gives ΔJ ≡ 0, Λ₀, Λ₁ and Λ₂ are exactly 0; where ΔJ does
 not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁. Where every input is a float64, Λ₁ = Λ₀;

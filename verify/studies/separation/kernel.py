@@ -12,11 +12,11 @@ high precision, evaluate what the chain of `verify.studies.separation.separate` 
     f_sum, f_rest  Σ log1p of float64's ΔJ, in float64, with Knuth's two-sum: the plain additions'
                    errors are summed apart, and Λ = expm1(f_sum + f_rest)
 
-The source is in the language of `verify.arithmetic.wide.translate`: names begin with `f_` where their value is
-a float64 and with `w_` where it is wide, but for functions of wide numbers, which have their own
-name; `wide(x)` is the exact value of a float64. Python runs it with its own floats and libm, and
-LLVM compiles it for fixed-point numbers; both round as numba's float64 kernel does (tests hold all
-three against each other).
+The source is in the language of `verify.arithmetic.wide.translate`: names begin with `f_` where
+their value is a float64 and with `w_` where it is wide, but for functions of wide numbers, which
+have their own name; `wide(x)` is the exact value of a float64. Python runs it with its own floats
+and libm, and LLVM compiles it for fixed-point numbers; both round as numba's float64 kernel does
+(tests hold all three against each other).
 """
 
 import keyword
@@ -52,12 +52,13 @@ _CLOSED_SUM = (
 
 @dataclass(frozen=True)
 class MixedKernel:
-    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` → (steps done,
-    *state_names).
+    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` → (steps
+    done, *state_names).
 
-    `state_names` names what goes from step to step, `start` has the initial values but for those that
-    are p's or q's. `wide`: the kernel of the wide numbers alone, whose `outputs["dj"]` is the ΔJ
-    that is followed; its function is none. `closed`: whether ΔJ in closed form is not constantly 0.
+    `state_names` names what goes from step to step, `start` has the initial values but for those
+    that are p's or q's. `wide`: the kernel of the wide numbers alone, whose `outputs["dj"]` is the
+    ΔJ that is followed; its function is none. `closed`: whether ΔJ in closed form is not constantly
+    0.
     """
 
     function: Callable[..., tuple[Any, ...]]

@@ -15,9 +15,9 @@ each later link adds is rounding of one kind, and the sum telescopes:
     Λ₄ = Λ₀ + (Λ₁ − Λ₀) + (Λ₂ − Λ₁) + (Λ₃ − Λ₂) + (Λ₄ − Λ₃)
        = truncation + input + trajectory + determinant + product
 
-That is one equation of rationals (`verify.studies.separation.chain`), and holds exactly whatever error is
-left in Λ₀ … Λ₃, which is bounded. The order of the links is a choice, as effects interact: a part
-is what its rounding adds to those before it. Constants in H's formula, such as the 0.1 of
+That is one equation of rationals (`verify.studies.separation.chain`), and holds exactly whatever
+error is left in Λ₀ … Λ₃, which is bounded. The order of the links is a choice, as effects interact:
+a part is what its rounding adds to those before it. Constants in H's formula, such as the 0.1 of
 0.1*q**4, are no inputs; their rounding belongs to `trajectory` and `determinant`.
 
 Two ways to evaluate Λ in float64 are separated. `plain`: four entries of J, their determinant, the
@@ -26,8 +26,9 @@ small ΔJ is. `closed_form`: ΔJ from its own closed form, where nothing cancels
 Λ = expm1(Σ log1p(ΔJ_k)) with the sum's own errors added at the end. Truncation, input and
 trajectory are the same for both.
 
-How far the parts are known is told in `verify.studies.separation.working` and `verify.runs.estimated`, what is made
-of a run's checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
+How far the parts are known is told in `verify.studies.separation.working` and
+`verify.runs.estimated`, what is made of a run's checkpoints and of a grid of step sizes in
+`verify.studies.separation.growth`.
 """
 
 from collections.abc import Callable, Sequence

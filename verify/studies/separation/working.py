@@ -1,17 +1,18 @@
-"""Λ₂, Λ₃ and Λ₄ of the chain that splits rounding off truncation; see `verify.studies.separation.separate`.
+"""Λ₂, Λ₃ and Λ₄ of the chain that splits rounding off truncation; see
+`verify.studies.separation.separate`.
 
 How far they are known. Λ₄ is a float64, and so exact. Λ₂ and Λ₃ are products along given float64
 states, so that nothing is magnified, and their rounding is counted:
 
-Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2 be
-the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each within
-u = 2^(1 − bits) of its exact result, are e, t = Λ̂ e, s = e + t and Λ̂ + s. From |Λ̂ + s| ≤ (1 + u) M
-it follows that |s| ≤ 2.01 M, |e| ≤ 4.02 M, |t| ≤ 2.02 M, so |ρ| ≤ 12 u M; in fixed point additions
-are exact, e and t are within a unit 2^−bits each, and |ρ| ≤ 3 units. If e itself is within B of
-its exact value (see `verify.kernels.rounding`), |ρ| grows by 2 B. As P̂' ≥ 1/2, every step multiplies by
-1 + θ at most beside the exact factor, |θ| ≤ 2.01 |ρ|; after N steps the product is within
-1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this is below 1/100.
-Where M > 1/2, or B is not known, a rerun with more digits estimates the error instead.
+Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2
+be the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each
+within u = 2^(1 − bits) of its exact result, are e, t = Λ̂ e, s = e + t and Λ̂ + s. From |Λ̂ + s| ≤
+(1 + u) M it follows that |s| ≤ 2.01 M, |e| ≤ 4.02 M, |t| ≤ 2.02 M, so |ρ| ≤ 12 u M; in fixed point
+additions are exact, e and t are within a unit 2^−bits each, and |ρ| ≤ 3 units. If e itself is
+within B of its exact value (see `verify.kernels.rounding`), |ρ| grows by 2 B. As P̂' ≥ 1/2, every
+step multiplies by 1 + θ at most beside the exact factor, |θ| ≤ 2.01 |ρ|; after N steps the product
+is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this is below 1/100. Where M >
+1/2, or B is not known, a rerun with more digits estimates the error instead.
 """
 
 import math

@@ -1,8 +1,8 @@
 """How far a scheme can be pushed: the largest step with bounded motion, and the (h, stiffness) map.
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
-`verify.studies.stability.linear`), ω² being the greatest det Hess H on the exact orbit, where that is
-stiffest. What bounded motion is, is told in `verify.studies.stability.run_motion`.
+`verify.studies.stability.linear`), ω² being the greatest det Hess H on the exact orbit, where that
+is stiffest. What bounded motion is, is told in `verify.studies.stability.run_motion`.
 """
 
 from collections.abc import Callable, Iterator, Sequence

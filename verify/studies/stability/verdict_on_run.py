@@ -12,8 +12,8 @@ is to blame:
 - float64 alone does: `overflow` or `underflow`.
 
 High precision is believed where twice as many digits say the same. What is bounded is `stable`, or
-`drifts` (see `verify.studies.stability.energy_drift`). What bounds are, and when runs are apart, is told in
-`verify.studies.stability.run_motion`.
+`drifts` (see `verify.studies.stability.energy_drift`). What bounds are, and when runs are apart, is
+told in `verify.studies.stability.run_motion`.
 """
 
 from dataclasses import dataclass, replace

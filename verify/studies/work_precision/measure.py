@@ -1,8 +1,9 @@
 """Error against run time: each scheme over a ladder of step sizes, peers, number systems.
 
-Errors first, then one interleaved timing of all points together (`verify.studies.work_precision.timing`), so that their
-run times can be compared; nothing else of this program runs meanwhile. What the errors are is told
-in `verify.studies.work_precision.runs`, what is made of the points in `verify.studies.work_precision.lines`.
+Errors first, then one interleaved timing of all points together
+(`verify.studies.work_precision.timing`), so that their run times can be compared; nothing else of
+this program runs meanwhile. What the errors are is told in `verify.studies.work_precision.runs`,
+what is made of the points in `verify.studies.work_precision.lines`.
 """
 
 from collections.abc import Callable, Sequence

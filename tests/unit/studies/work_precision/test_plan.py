@@ -120,7 +120,8 @@ def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
     path.write_text(GOOD + "peers = false\nrepeats = 1")
     code = (
         "import sys; from pathlib import Path; from verify.scenes.scene import load_scene;"
-        "from verify.studies.plan import plan_scenes; from verify.execution.execute import Store, execute;"
+        "from verify.studies.plan import plan_scenes;"
+        "from verify.execution.execute import Store, execute;"
         "from verify.execution.executors import THIS_PROCESS;"
         f"execute(plan_scenes([load_scene(Path({str(path)!r}))]), Store(None), where=THIS_PROCESS);"
         "assert not {'scipy.integrate', 'heyoka', 'matplotlib'} & set(sys.modules)"
