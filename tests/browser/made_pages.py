@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
-from tests.helpers.constructed_galleries import CROSSED, KEPT, NOTHING, gallery, shown
+from tests.helpers.constructed.galleries import CROSSED, KEPT, NOTHING, gallery, shown
 from verify.claims.kinds import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
 from verify.claims.report import gallery_report, make_report
 from verify.execution.execute import Store

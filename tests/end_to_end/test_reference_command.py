@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
-from tests.helpers.constructed_reference import SCENES
+from tests.helpers.constructed.reference import SCENES
 from verify.reference.make.make import PUBLISHED, committed_scenes
 
 LIMIT = 5_000_000  # bytes of the committed set
@@ -185,7 +185,7 @@ def test_parquet_is_the_same_tables_or_one_line_says_what_is_missing(
         assert "pyarrow" in err
         return
     assert status == 0
-    from tests.helpers.constructed_reference import repaired
+    from tests.helpers.constructed.reference import repaired
     from verify.reference.make.parquet import parquet_bytes, parquet_rows
 
     status, out, _ = here(capsys, "reference", "check", str(folder), "--share", "0", "--json")

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy
 
-from tests.helpers.random_formulas import H, P, Q, lie_step, plain, plain_delta_j
+from tests.helpers.sampled.formulas import H, P, Q, lie_step, plain, plain_delta_j
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for

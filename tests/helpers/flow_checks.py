@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import sympy
 
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify.flows.closed_form import evaluate
 from verify.hamiltonians.motion import Motion
 from verify.hamiltonians.system import System

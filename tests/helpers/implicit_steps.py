@@ -13,7 +13,7 @@ from typing import Any
 import sympy
 from mpmath.ctx_mp import MPContext
 
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import interpreted
 from verify.hamiltonians.hamiltonian import Hamiltonian

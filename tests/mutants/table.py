@@ -27,7 +27,7 @@ one, a condition. A property that holds for the code and is violated by a mutant
 - `mutate.py` says what is not changed: texts, types, imports, what is raised, bounds of effort.
 - Unit tests kill nothing here; they only help to explain who lives.
 """
-_BY_HAND = "none of those tried; what `tests/unit/test_properties.py` plants"
+_BY_HAND = "none of those tried; what `tests/unit/exploration/properties/test_properties.py` plants"
 
 
 def page(found: list[records.Record], why: dict[str, str], same: Set[str] = frozenset()) -> str:

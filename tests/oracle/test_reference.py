@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import pytest
 
-from tests.helpers.constructed_reference import made
+from tests.helpers.constructed.reference import made
 from tests.oracle.by_heyoka import PRECISIONS, SYSTEMS, State, determinant, oracle
 from verify.reference.make.models import Data
 

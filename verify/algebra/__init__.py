@@ -1,0 +1,1 @@
+"""Formulas, the differential ring in which zero is decided, series, jets, enclosures."""

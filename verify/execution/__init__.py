@@ -1,0 +1,1 @@
+"""Where tasks are computed, and what is kept of them."""

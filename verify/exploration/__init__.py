@@ -1,0 +1,1 @@
+"""Properties held against sampled scenes, and the scenes that are worst for float64."""

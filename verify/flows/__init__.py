@@ -1,0 +1,1 @@
+"""The exact flow: in closed form, by extrapolation, along closed orbits."""

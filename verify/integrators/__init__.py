@@ -1,0 +1,1 @@
+"""Somebody else's step function: loaded, traced, proved or measured, and judged."""

@@ -1,0 +1,1 @@
+"""Step map → program → loop → N steps; and the rounding of a step, counted."""

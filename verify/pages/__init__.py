@@ -1,1 +1,1 @@
-"""Turns results into pages and computes nothing itself; `paper/` holds the paper as data."""
+"""Results → HTML and Markdown. Nothing is computed here."""

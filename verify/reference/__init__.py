@@ -1,1 +1,1 @@
-"""Reference data: its generator, comparer and schema will live here; `verify` never imports it."""
+"""Reference data: numbers whose every digit is known, for integrators to be tested against."""

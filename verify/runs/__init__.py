@@ -1,0 +1,1 @@
+"""One run of N steps, and the bounds of its numbers."""

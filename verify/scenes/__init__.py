@@ -1,0 +1,1 @@
+"""What is asked: scenes, their sections and values, and what results look like. Data alone."""

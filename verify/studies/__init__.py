@@ -1,0 +1,1 @@
+"""One question a folder: separation, stability, regions, error against run time, growth, proofs."""

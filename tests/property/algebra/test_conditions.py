@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.constructed_schemes import Made, conditions
-from tests.helpers.random_formulas import polynomials, rationals
+from tests.helpers.constructed.schemes import Made, conditions
+from tests.helpers.sampled.formulas import polynomials, rationals
 from verify.algebra.generators import embed
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions

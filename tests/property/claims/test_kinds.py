@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.exact_orbits import Case, exact
 from tests.helpers.mutation import mutants
-from tests.helpers.random_formulas import (
+from tests.helpers.sampled.formulas import (
     H,
     P,
     Q,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.flow_checks import Case, energy_defect, group_defect, motion_defect
-from tests.helpers.random_formulas import Q, plain, rationals
+from tests.helpers.sampled.formulas import Q, plain, rationals
 from verify.flows.closed_form import blow_up
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import systems

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from tests.property.studies.test_growth_law import wells
 from verify.algebra.formula import parse
 from verify.algebra.generators import embed

@@ -12,8 +12,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers import random_formulas as strategies
 from tests.helpers.fixed_checks import FRACTION_OF
+from tests.helpers.sampled import formulas as strategies
 from verify.arithmetic.systems import fixed, mpfr
 from verify.arithmetic.wide import engine
 from verify.arithmetic.wide.translate import Translator

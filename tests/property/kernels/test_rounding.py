@@ -15,7 +15,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import polynomials, rationals, trigonometric
+from tests.helpers.sampled.formulas import polynomials, rationals, trigonometric
 from verify.arithmetic.balls import bounds, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError

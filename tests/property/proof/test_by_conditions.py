@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.constructed_schemes import Made, conditions, made_of, proof_of
-from tests.helpers.random_formulas import H, P, Q, plain, rationals
+from tests.helpers.constructed.schemes import Made, conditions, made_of, proof_of
+from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
 from verify.algebra.jets import Jets, Series
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions

@@ -12,7 +12,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import (
+from tests.helpers.sampled.formulas import (
     P,
     Q,
     evaluate,

@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import (
+from tests.helpers.sampled.formulas import (
     H,
     P,
     Q,
@@ -19,7 +19,7 @@ from tests.helpers.random_formulas import (
     rationals,
     zero_there,
 )
-from tests.helpers.random_maps import determinant, order_of_flow
+from tests.helpers.sampled.maps import determinant, order_of_flow
 from verify.algebra.formula import parse, to_text
 from verify.algebra.generators import embed
 from verify.algebra.ring import Decision

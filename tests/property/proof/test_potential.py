@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import P, Q, plain, polynomials, rationals
+from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.potential import Potential, potential_of

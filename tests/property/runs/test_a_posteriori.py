@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.exact_orbits import OBSERVABLES, Case, assert_contained, enclosed_finely
-from tests.helpers.random_formulas import polynomials, rationals, trigonometric
+from tests.helpers.sampled.formulas import polynomials, rationals, trigonometric
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import H, P, Q, plain, polynomials, zero_there
+from tests.helpers.sampled.formulas import H, P, Q, plain, polynomials, zero_there
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import rationals
+from tests.helpers.sampled.formulas import rationals
 from verify.schemes.free_lie_words import (
     KINDS,
     MOST_ORDER,

@@ -17,7 +17,7 @@ from tests.helpers.implicit_steps import (
     planted,
     steps,
 )
-from tests.helpers.random_formulas import P, Q, plain, polynomials, trigonometric
+from tests.helpers.sampled.formulas import P, Q, plain, polynomials, trigonometric
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove

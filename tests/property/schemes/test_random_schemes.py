@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.constructed_schemes import proof_of
-from tests.helpers.random_formulas import H, P, Q, plain, rationals
+from tests.helpers.constructed.schemes import proof_of
+from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
 from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import H, P, Q, plain, polynomials, rationals
-from tests.helpers.random_maps import coefficients, determinant, order_of_flow, planted
+from tests.helpers.sampled.formulas import H, P, Q, plain, polynomials, rationals
+from tests.helpers.sampled.maps import coefficients, determinant, order_of_flow, planted
 from verify.algebra.formula import parse
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import plain, polynomials
+from tests.helpers.sampled.formulas import plain, polynomials
 from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -16,7 +16,7 @@ from hypothesis import assume, event, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import monomial, rationals
+from tests.helpers.sampled.formulas import monomial, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import GrowthLaw, growth_law
 from verify.runs.run import run

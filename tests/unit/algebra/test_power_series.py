@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify.algebra.generators import embed
 from verify.algebra.power_series import Series, at_point, delta_j, partials
 from verify.algebra.ring import Poly, Ring

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_runs import (
+from tests.helpers.constructed.runs import (
     CLAIM,
     FLAT,
     made_findings,

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_runs import CLAIM, Given, made_findings, made_run, made_scene
+from tests.helpers.constructed.runs import CLAIM, Given, made_findings, made_run, made_scene
 from verify.claims.findings import Findings
 from verify.claims.growth import growth_tasks
 from verify.claims.judge import check_claim

@@ -14,7 +14,7 @@ import pytest
 import sympy
 
 from tests.helpers.mutation import mutants
-from tests.helpers.random_formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
+from tests.helpers.sampled.formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
 from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings

@@ -7,7 +7,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from tests.helpers.constructed_runs import (
+from tests.helpers.constructed.runs import (
     CLAIM,
     FLAT,
     STARTS,

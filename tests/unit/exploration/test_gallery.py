@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.constructed_galleries import at, gallery, shown
+from tests.helpers.constructed.galleries import at, gallery, shown
 from verify.commands.hunt import _command, _keep_scenes, _when
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS

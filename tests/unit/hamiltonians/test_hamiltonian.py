@@ -7,7 +7,7 @@ import sympy
 from hypothesis import given
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import P, Q, outcome, plain, polynomials, trigonometric
+from tests.helpers.sampled.formulas import P, Q, outcome, plain, polynomials, trigonometric
 from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians import systems

@@ -21,7 +21,7 @@ from tests.helpers.implicit_steps import (
     step_map,
     steps,
 )
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import newton
 from verify.runs.run import run

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import polynomials
+from tests.helpers.sampled.formulas import polynomials
 from verify.arithmetic.balls import bounds, rational_ball
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian

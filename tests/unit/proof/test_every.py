@@ -9,7 +9,7 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
 from verify.algebra.jets import Jets, multiplied
 from verify.errors import InputError

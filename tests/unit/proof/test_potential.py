@@ -3,7 +3,7 @@
 import pytest
 import sympy
 
-from tests.helpers.random_formulas import P, Q
+from tests.helpers.sampled.formulas import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import potential
 from verify.proof.order import prove

@@ -15,7 +15,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import (
+from tests.helpers.sampled.formulas import (
     H,
     P,
     Q,

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from tests.helpers.constructed_galleries import gallery, shown
+from tests.helpers.constructed.galleries import gallery, shown
 from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.report import make_report

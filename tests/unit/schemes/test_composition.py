@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import sympy
 
-from tests.helpers.random_formulas import P, Q
+from tests.helpers.sampled.formulas import P, Q
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial

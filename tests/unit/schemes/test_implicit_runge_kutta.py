@@ -6,7 +6,7 @@ import pytest
 import sympy
 
 from tests.helpers.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
 from verify.algebra.conditions import Condition
 from verify.errors import InputError

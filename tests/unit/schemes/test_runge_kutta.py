@@ -13,7 +13,7 @@ import mpmath
 import pytest
 import sympy
 
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from verify import arithmetic, schemes
 from verify.algebra.enclosure import enclose
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -6,7 +6,7 @@ import pytest
 import sympy
 
 from tests.helpers.planted_errors import SPLITTINGS
-from tests.helpers.random_formulas import P, Q, plain
+from tests.helpers.sampled.formulas import P, Q, plain
 from tests.helpers.stepper import Stepper
 from verify import schemes
 from verify.errors import InputError

@@ -7,7 +7,7 @@ import mpmath
 import pytest
 import sympy
 
-from tests.helpers.random_formulas import (
+from tests.helpers.sampled.formulas import (
     H,
     P,
     Q,

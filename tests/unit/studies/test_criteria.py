@@ -7,7 +7,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from tests.helpers.constructed_runs import STEP_SIZES, Given, made_proof, made_run
+from tests.helpers.constructed.runs import STEP_SIZES, Given, made_proof, made_run
 from verify.execution.execute import compute_task
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult

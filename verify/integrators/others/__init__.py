@@ -1,0 +1,1 @@
+"""Released integrators and printed tables, held against what they claim."""

@@ -1,0 +1,1 @@
+"""What a user's step does to symbols and to dual numbers."""

@@ -1,0 +1,1 @@
+"""Pictures: matplotlib figures as inline SVG, and their captions."""

@@ -1,0 +1,1 @@
+"""Scenes → reference data: orbits and exact flows, every number correctly rounded."""

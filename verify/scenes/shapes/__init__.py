@@ -1,0 +1,1 @@
+"""Closed outlines in the plane; `named/` has one shape a file."""

@@ -1,0 +1,1 @@
+"""Error against run time, of schemes, number systems and peers."""

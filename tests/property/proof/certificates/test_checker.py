@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_certificates import (
+from tests.helpers.sampled.certificates import (
     TINY,
     Data,
     certificates,
@@ -22,7 +22,7 @@ from tests.helpers.random_certificates import (
     of_drawn,
     zero,
 )
-from tests.helpers.random_formulas import P, Q
+from tests.helpers.sampled.formulas import P, Q
 from verify.errors import InputError
 from verify.proof.certificates.checker import Algebra, function, times
 from verify.proof.certificates.file import checked, statement

@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.constructed_schemes import made_of, proof_of
-from tests.helpers.random_certificates import EVERY, Data, as_read
-from tests.helpers.random_formulas import rationals
+from tests.helpers.constructed.schemes import made_of, proof_of
+from tests.helpers.sampled.certificates import EVERY, Data, as_read
+from tests.helpers.sampled.formulas import rationals
 from verify.errors import InputError
 from verify.proof.certificates import every as certificate
 from verify.proof.certificates.checker import check, poly

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_certificates import Data, certificates, true
+from tests.helpers.sampled.certificates import Data, certificates, true
 from verify.proof.certificates.checker import check
 
 # -- what a forger does ---------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.known_areas import measured
-from tests.helpers.random_formulas import polynomials
+from tests.helpers.sampled.formulas import polynomials
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import LeftRangeError
 from verify.scenes.shapes.outline import Outline

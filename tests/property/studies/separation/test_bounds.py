@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.exact_separation import links
-from tests.helpers.random_separations import (
+from tests.helpers.sampled.separations import (
     DUFFING,
     FIXED,
     KNOWN,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.exact_separation import links
-from tests.helpers.random_separations import KNOWN, SHORT, bent, separated, starts, step_sizes
+from tests.helpers.sampled.separations import KNOWN, SHORT, bent, separated, starts, step_sizes
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.exact_separation import links
-from tests.helpers.random_formulas import monomial, polynomials, rationals
+from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, Separation
 from verify.studies.separation.working import Stopped

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_separations import KNOWN, separated, starts, step_sizes
+from tests.helpers.sampled.separations import KNOWN, separated, starts, step_sizes
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import Keeper

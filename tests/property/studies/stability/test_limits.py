@@ -6,7 +6,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.random_formulas import formulas, rationals
+from tests.helpers.sampled.formulas import formulas, rationals
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.stability import KINDS

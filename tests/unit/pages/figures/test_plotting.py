@@ -8,11 +8,11 @@ import matplotlib as mpl
 import pytest
 from matplotlib.figure import Figure
 
-from tests.helpers.constructed_flows import FAILED, THREE, flow
-from tests.helpers.constructed_growth import TWO
-from tests.helpers.constructed_separations import CROSSING, grid
-from tests.helpers.constructed_stability import MAP
-from tests.helpers.constructed_work import ladder, result
+from tests.helpers.constructed.flows import FAILED, THREE, flow
+from tests.helpers.constructed.growth import TWO
+from tests.helpers.constructed.separations import CROSSING, grid
+from tests.helpers.constructed.stability import MAP
+from tests.helpers.constructed.work import ladder, result
 from tests.unit.pages.test_page import claim, real, run
 from verify.errors import InputError
 from verify.pages import plotting

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from tests.helpers.constructed_flows import FAILED, circle, exact, flow, image, outline, spiral
+from tests.helpers.constructed.flows import FAILED, circle, exact, flow, image, outline, spiral
 from verify.pages.figures.flow_figure import grid_of
 from verify.pages.figures.label_place import place_of
 from verify.pages.sections.flow_view import flow_view

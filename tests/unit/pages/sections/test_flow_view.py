@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_flows import EULER, FAILED, LONG, THREE, TWO, exact, flow, image
+from tests.helpers.constructed.flows import EULER, FAILED, LONG, THREE, TWO, exact, flow, image
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_growth_view import text_of
@@ -43,7 +43,7 @@ def test_a_scene_without_regions_shows_nothing_of_them() -> None:
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
     assert not absent & imported_by(
-        "from tests.helpers.constructed_flows import FAILED, flow", f"render(report(({made},)))"
+        "from tests.helpers.constructed.flows import FAILED, flow", f"render(report(({made},)))"
     )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_galleries import CROSSED, KEPT, NOTHING, at, gallery, shown, split
+from tests.helpers.constructed.galleries import CROSSED, KEPT, NOTHING, at, gallery, shown, split
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, Reader, claim, report, scene
@@ -48,7 +48,7 @@ def test_without_a_hunt_nothing_of_it_is_shown() -> None:
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
     assert not absent & imported_by(
-        "from tests.helpers.constructed_galleries import gallery", f"render({made})"
+        "from tests.helpers.constructed.galleries import gallery", f"render({made})"
     )
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_growth import LOST, TWO, of, prediction
+from tests.helpers.constructed.growth import LOST, TWO, of, prediction
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, Reader, proof, report, run, scene
@@ -33,7 +33,7 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
     assert not absent & imported_by(
-        "from tests.helpers.constructed_growth import LOST", f"render(report(({made},)))"
+        "from tests.helpers.constructed.growth import LOST", f"render(report(({made},)))"
     )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_separations import (
+from tests.helpers.constructed.separations import (
     BELOW,
     BOTH,
     CROSSING,
@@ -56,7 +56,7 @@ def test_a_page_without_runs_has_no_terms_of_runs() -> None:
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
     assert not absent & imported_by(
-        "from tests.helpers.constructed_separations import BELOW", f"render(report(({made},)))"
+        "from tests.helpers.constructed.separations import BELOW", f"render(report(({made},)))"
     )
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_stability import LARGEST, LEFT, MAP, NEVER, case
+from tests.helpers.constructed.stability import LARGEST, LEFT, MAP, NEVER, case
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import report, run, scene
@@ -28,7 +28,7 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
     assert not absent & imported_by(
-        "from tests.helpers.constructed_stability import LEFT", f"render(report(({made},)))"
+        "from tests.helpers.constructed.stability import LEFT", f"render(report(({made},)))"
     )
 
 

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tests.helpers.constructed_work import ladder, line, point, result, system
+from tests.helpers.constructed.work import ladder, line, point, result, system
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_growth_view import text_of
@@ -55,7 +55,7 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 )
 def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
     assert not absent & imported_by(
-        "from tests.helpers.constructed_work import result", f"render(report(({made},)))"
+        "from tests.helpers.constructed.work import result", f"render(report(({made},)))"
     )
 
 

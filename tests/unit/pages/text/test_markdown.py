@@ -15,10 +15,10 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from markupsafe import Markup
 
-from tests.helpers.constructed_growth import TWO
-from tests.helpers.constructed_separations import CROSSING
-from tests.helpers.constructed_stability import MAP, case
-from tests.helpers.constructed_work import ladder, result
+from tests.helpers.constructed.growth import TWO
+from tests.helpers.constructed.separations import CROSSING
+from tests.helpers.constructed.stability import MAP, case
+from tests.helpers.constructed.work import ladder, result
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
 from verify.pages.markdown.page import render, write

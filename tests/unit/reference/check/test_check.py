@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_reference import SCENES, changed, flipped, made, put, repaired
+from tests.helpers.constructed.reference import SCENES, changed, flipped, made, put, repaired
 from verify.errors import InputError
 from verify.reference.check.check import Checked, check
 from verify.reference.make.models import Data

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_reference import changed, made, put, repaired
+from tests.helpers.constructed.reference import changed, made, put, repaired
 from verify.errors import InputError
 from verify.execution.keeping import write_atomically
 from verify.reference.check.check import Checked, check

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_reference import changed, made
+from tests.helpers.constructed.reference import changed, made
 from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import Data

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_separations import CROSSING, point
+from tests.helpers.constructed.separations import CROSSING, point
 from tests.unit.pages.test_page import EVIL, Reader, claim, proof, report, run, scene
 from verify import Hamiltonian, Proof, StepMap, prove, separate_grid
 from verify import run as run_scheme

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.random_formulas import P, Q, lie_step, plain
+from tests.helpers.sampled.formulas import P, Q, lie_step, plain
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians import systems

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.constructed_work import line, point
+from tests.helpers.constructed.work import line, point
 from verify.scenes.results.work_precision import ComparisonResult, WorkLine
 from verify.studies.work_precision.lines import compare as compare_within
 from verify.studies.work_precision.lines import comparisons

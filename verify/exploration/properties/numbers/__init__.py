@@ -1,0 +1,1 @@
+"""Properties that speak of numbers: systems, bounds, parts, text."""

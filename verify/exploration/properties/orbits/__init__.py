@@ -1,0 +1,1 @@
+"""Properties that speak of whole orbits and of the exact flow."""

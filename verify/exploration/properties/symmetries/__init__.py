@@ -1,0 +1,1 @@
+"""Properties that speak of what a step keeps: area, coordinates, time."""

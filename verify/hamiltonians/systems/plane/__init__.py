@@ -1,0 +1,1 @@
+"""Autonomous systems of one degree of freedom."""

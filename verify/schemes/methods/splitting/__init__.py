@@ -1,0 +1,1 @@
+"""Compositions of kicks and drifts, for H = T(p) + V(q)."""

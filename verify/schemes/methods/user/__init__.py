@@ -1,0 +1,1 @@
+"""What users write themselves: formulas, and a splitting's coefficients."""

@@ -14,7 +14,7 @@ import mpmath
 import sympy
 from hypothesis import strategies as st
 
-from tests.helpers.random_formulas import P, Q, polynomials, rationals
+from tests.helpers.sampled.formulas import P, Q, polynomials, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.one import of_one

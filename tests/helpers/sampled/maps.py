@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import sympy
 from hypothesis import strategies as st
 
-from tests.helpers.random_formulas import H, P, Q, lie_step, plain, polynomials, rationals
+from tests.helpers.sampled.formulas import H, P, Q, lie_step, plain, polynomials, rationals
 
 
 @st.composite

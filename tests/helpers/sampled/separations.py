@@ -5,7 +5,7 @@ from fractions import Fraction
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from tests.helpers.random_formulas import monomial, polynomials, rationals
+from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import Chains, Separation

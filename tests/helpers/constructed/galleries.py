@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tests.helpers.constructed_separations import evaluation, point
+from tests.helpers.constructed.separations import evaluation, point
 from verify.scenes.results.exploration import Gallery, GalleryScene
 from verify.scenes.results.separation import EvaluationResult, PartsAt
 from verify.scenes.results.value import Value

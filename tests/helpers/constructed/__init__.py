@@ -1,0 +1,1 @@
+"""Results and data by hand, that say what a test wants."""

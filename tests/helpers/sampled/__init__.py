@@ -1,0 +1,1 @@
+"""Formulas, maps, certificates and separations that hypothesis draws."""
