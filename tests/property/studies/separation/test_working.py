@@ -245,12 +245,12 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
         kernel_run = KernelRun(Hamiltonian.parse(text), "lie2", start, steps, WORKING, 10, of)
         return WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
 
-    once = working(Keeper(None, "")).run(made, lambda _: None)
+    once = working(Keeper(None, "")).step_through(made, lambda _: None)
     if after < steps:
         with pytest.raises(KeyboardInterrupt):
-            working(keeper).run(made, interrupting)
+            working(keeper).step_through(made, interrupting)
     rest: list[int] = []
-    again = working(keeper).run(made, rest.append)
+    again = working(keeper).step_through(made, rest.append)
     # The step that was told last was not kept.
     assert sum(rest) == (steps - sum(told[:-1]) if after < steps else steps)
     for link in ("trajectory", "determinant", "plain", "closed_delta_j", "closed_form"):
