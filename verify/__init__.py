@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from verify.errors import InputError as InputError
     from verify.hamiltonians import systems as systems
     from verify.hamiltonians.hamiltonian import Hamiltonian as Hamiltonian
-    from verify.hamiltonians.system import System as System
+    from verify.hamiltonians.named_system import System as System
     from verify.pages.plotting import plot_over_time as plot_over_time
     from verify.pages.plotting import plot_runs as plot_runs
     from verify.pages.plotting import plot_separation as plot_separation
@@ -41,7 +41,7 @@ _HOMES = {
     "SeparationGrid": "verify.scenes.results.separation",
     "SeparationResult": "verify.scenes.results.separation",
     "StepMap": "verify.schemes.step_map",
-    "System": "verify.hamiltonians.system",
+    "System": "verify.hamiltonians.named_system",
     "Verdict": "verify.verdict",
     "load_scene": "verify.scenes.scene",
     "plot_over_time": "verify.pages.plotting",

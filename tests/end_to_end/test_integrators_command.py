@@ -45,8 +45,8 @@ def test_the_first_lines_say_what_is_installed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tables = others.get("literature")
-    one = [x for x in tables.subjects() if x.name == "OrdinaryDiffEq McAte4"]
-    monkeypatch.setattr(tables, "subjects", lambda: one)
+    one = [x for x in tables.integrators() if x.name == "OrdinaryDiffEq McAte4"]
+    monkeypatch.setattr(tables, "integrators", lambda: one)
     assert run("-o", str(tmp_path / "out")) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Installed here: none")

@@ -16,7 +16,7 @@ from typing import Any
 import flint
 
 from verify.algebra.enclosure import BALLS
-from verify.arithmetic.balls import bounds, middle_and_radius, rational_ball
+from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.program import Op
 from verify.kernels.rounding import rounding_of

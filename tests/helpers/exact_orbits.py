@@ -15,7 +15,7 @@ import flint
 import sympy
 
 from tests.helpers.sampled.formulas import H, P, Q, lie_step, plain, plain_delta_j
-from verify.arithmetic.balls import in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun

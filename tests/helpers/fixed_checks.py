@@ -15,7 +15,7 @@ from typing import Any
 import flint
 
 from verify.algebra.enclosure import BALLS
-from verify.arithmetic.balls import bounds, middle_and_radius, rational_ball
+from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
 from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide import engine
 from verify.arithmetic.wide.engine import Fixed

@@ -14,7 +14,7 @@ import sympy
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.flows.closed_form import evaluate
 from verify.hamiltonians.motion import Motion
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 
 WORKING = 160  # digits
 STEP = 40  # the derivative is a difference over 10^−STEP, wrong by about 10^(−2·STEP)

@@ -10,7 +10,7 @@ import numpy as np
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.shapes.outline import Outline, Point, bezier
 from verify.studies.regions.area import Goal, Measured, Probe
-from verify.studies.regions.point_systems import FloatCarrier, WideCarrier
+from verify.studies.regions.point_carriers import FloatCarrier, WideCarrier
 
 FINE = Goal(change=Fraction(0), area=Fraction(1, 10**13))
 OSCILLATOR = Hamiltonian.parse("p**2/2 + q**2/2")

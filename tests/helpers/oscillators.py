@@ -6,8 +6,8 @@ from typing import Any
 import mpmath
 from hypothesis import strategies as st
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
-from verify.algebra.generators import embed
 from verify.flows.closed_orbit import Element
 from verify.hamiltonians.hamiltonian import Hamiltonian
 

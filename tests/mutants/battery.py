@@ -95,7 +95,7 @@ def battery(
     properties = {n: p for n, p in catalogue().items() if not only or n in only}
     made = [example_of(scene) for scene in drawn_scenes(examples, seed)]
     if plan is None:
-        used.kept = [k for k, example in enumerate(made) if _proved_in(example, budget)]
+        used.kept = [k for k, sample in enumerate(made) if _proved_in(sample, budget)]
         made = [made[k] for k in used.kept]
         for name, one in properties.items():  # one scene of each, to know which are dear
             if used.killed(name, one, made[:1], budget):
@@ -105,8 +105,8 @@ def battery(
     else:
         made, looks, limit = [made[k] for k in plan["kept"]], plan["looks"], math.inf
         own = getattr(import_module(module), "EXAMPLES", ()) if module else ()
-        made.sort(key=lambda example: example.scheme.name not in own)
-        near = sum(example.scheme.name in own for example in made)
+        made.sort(key=lambda sample: sample.scheme.name not in own)
+        near = sum(sample.scheme.name in own for sample in made)
         looks = {name: max(most, near) for name, most in looks.items()}
     for name, most in looks.items():
         if name in properties and used.killed(name, properties[name], made[:most], limit):
@@ -114,10 +114,10 @@ def battery(
     return used.found() if used.said else used.found(("every scene", "refused", "nothing is said"))
 
 
-def _proved_in(example: Any, seconds: float) -> bool:
+def _proved_in(sample: Any, seconds: float) -> bool:
     before = time.process_time()
     with contextlib.suppress(Exception):  # a property will say so
-        _ = example.proof
+        _ = sample.proof
     return time.process_time() - before <= seconds
 
 
@@ -136,12 +136,12 @@ class _Used:
     def killed(self, name: str, one: Any, examples: list[Any], budget: float) -> bool:
         """Looks at examples until the property's budget is used up; whether one is wrong."""
         violated = violation()
-        for example in examples:
+        for sample in examples:
             if self.seconds.get(name, 0) > budget:
                 break
             before = time.process_time()
             try:
-                self.said += bool(one.holds(example))
+                self.said += bool(one.holds(sample))
             except violated as error:
                 self.wrong = (name, "violated", str(error))
             except Exception as error:

@@ -21,7 +21,7 @@ from tests.oracle.by_heyoka import (
     oracle,
 )
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius
 from verify.schemes import get
 
 POINTS = [(Fraction(p, 8), Fraction(q, 8)) for p, q in ((4, 10), (-6, 3), (2, -12))]

@@ -113,7 +113,7 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
     Without a pattern that a formula could share, and of both signs, since a root or a logarithm
     may be defined on one side only, or far out; the same points in every call.
     """
-    for values in _near(len(names)):
+    for values in _halton_points(len(names)):
         yield dict(zip(names, values, strict=True))
     state = 12345
     for count in range(_FAR_POINTS):
@@ -128,7 +128,7 @@ def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
 
 
 @lru_cache(maxsize=16)
-def _near(count: int) -> list[tuple[Fraction, ...]]:
+def _halton_points(count: int) -> list[tuple[Fraction, ...]]:
     """So many coordinates of each of the first points."""
     primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
     size = [Fraction(primes[(k + 3) % 10], primes[(k + 6) % 10]) for k in range(count)]

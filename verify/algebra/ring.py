@@ -31,7 +31,7 @@ _MOST_FACTORS = 4
 
 
 class Ring(DifferentialRing):
-    """The ring of the given variables with room for `room` generators; see `generators.embed`."""
+    """The ring of the given variables with room for `room` generators; see `embedding.embed`."""
 
     # -- the decision -------------------------------------------------------------------------
 

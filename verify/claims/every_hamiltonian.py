@@ -9,8 +9,8 @@ from typing import Any
 
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import parse, symbol, to_text
-from verify.algebra.generators import embed
 from verify.claims.area import ProvedOrder, judge_area, judge_order
 from verify.claims.findings import result
 from verify.claims.formulas import PRINTED_AS, delta_j_printed, differs_below

@@ -14,7 +14,7 @@ from typing import Any
 
 import flint
 
-from verify.arithmetic.balls import Ball, fixed, in_reach, precision, rational_ball, shown
+from verify.arithmetic.arb import Ball, fixed, in_reach, precision, rational_ball, shown
 from verify.arithmetic.exact import text
 from verify.claims.findings import Checks, Findings, result
 from verify.claims.kinds import BoundedClaim, GrowthClaim

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
-from verify.arithmetic.balls import (
+from verify.arithmetic.arb import (
     Ball,
     bounds,
     in_reach,

@@ -76,7 +76,7 @@ def check_flow_distance(claim: FlowDistanceClaim, findings: Findings) -> ClaimRe
     at, worst = max(known, key=lambda each: Fraction(each[1].distance or 0))
     evidence = (
         f"the largest of {len(known)} Hausdorff distances from the exact flow’s outlines is "
-        f"{worst.distance} ± {worst.distance_error} ({_where(at)}; allowed here: "
+        f"{worst.distance} ± {worst.distance_error} ({_step_and_count(at)}; allowed here: "
         f"{text(claim.within)})"
     )
     return result(claim, verdict, evidence, details)
@@ -124,14 +124,14 @@ def _largest(known: list[tuple[_At, FlowImage]]) -> str:
         return "nothing was measured"
     at, image = max(known, key=lambda each: _ends(each[1])[1])
     measured = f"{image.area_change} ± {image.probe_error}"
-    return f"the area of the region changes by {measured} of it ({_where(at)})"
+    return f"the area of the region changes by {measured} of it ({_step_and_count(at)})"
 
 
 def _against(known: list[tuple[_At, FlowImage]], allowed: Fraction) -> str:
     return f"{_largest(known)}, the largest of {len(known)} changes; allowed here: {text(allowed)}"
 
 
-def _where(at: _At) -> str:
+def _step_and_count(at: _At) -> str:
     return f"h = {at[0]}, N = {at[1]}"
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from verify.arithmetic.balls import Ball, ball, lg, precision
+from verify.arithmetic.arb import Ball, ball, lg, precision
 from verify.claims.findings import Findings, result
 from verify.errors import InputError
 from verify.scenes.results.claim import ClaimResult

@@ -106,7 +106,7 @@ def scene_for(
     if claim.scheme not in found.schemes and not (isinstance(claim, ON_RUNS) and runs):
         known = ", ".join(found.schemes)
         raise InputError("scheme", claim.scheme, f"is not in scene {name}: {known}")
-    asked = set(runs) - _own_keys(claim)
+    asked = set(runs) - _selecting_keys(claim)
     if isinstance(claim, ON_RUNS) and (asked or isinstance(claim, _ALWAYS_OWN)):
         bare = found.model_copy(
             update={"schemes": (claim.scheme,), "grid": None, "separation": (), "series": ()}
@@ -133,7 +133,7 @@ def _check_flows(claim: FlowClaim, name: str, scene: Scene) -> None:
             raise InputError("scheme", claim.scheme, f"is not in {source}: {', '.join(maps)}")
 
 
-def _own_keys(claim: Claim) -> set[str]:
+def _selecting_keys(claim: Claim) -> set[str]:
     """What names runs of a scene's grid among all of them, and asks for no others."""
     return set(RUN_KEYS) & set(type(claim).model_fields)
 

@@ -14,7 +14,7 @@ from verify.errors import InputError
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from verify.scenes.results.value import Value
+    from verify.scenes.results.bounded_value import Value
     from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
     from verify.scenes.scene import Scene
     from verify.studies.work_precision.task import WorkPrecisionTask
@@ -39,7 +39,7 @@ def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -
     asked = [each for each in scenes if each.work_precision]
     if not asked:
         raise InputError("scene", scene, "has no [work_precision]")
-    found = list(_measured(asked) if cluster is None else _measured_there(asked, cluster))
+    found = list(_measured(asked) if cluster is None else _measured_on_cluster(asked, cluster))
     for name, result in found:
         if output is not None:
             several = len(found) > 1
@@ -62,7 +62,7 @@ def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult
             yield scene.name, task.measure(advance)
 
 
-def _measured_there(
+def _measured_on_cluster(
     scenes: "list[Scene]", cluster: str
 ) -> "Iterator[tuple[str, WorkPrecisionResult]]":
     """On the cluster, one after another: the times are of the machine that each result names."""

@@ -113,7 +113,7 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
         "delta_j": found.delta_j,
         "area_preserving": found.area_preserving,
         "convergence_order": found.convergence_order,
-        "convergence_order_known": found.order_known,
+        "convergence_order_known": found.order_decided,
         "witness": {name: text(value) for name, value in witness.items()},
         "telescopes": potential.holds,
         "potential": potential.text,

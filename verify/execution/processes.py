@@ -46,7 +46,7 @@ class Processes:
 
     @cached_property
     def _context(self) -> Any:
-        return _forked_beside_this(self._modules)
+        return _fork_server(self._modules)
 
     def release(self, future: "Future[Any]") -> None:
         pool = self._busy.pop(future)
@@ -79,7 +79,7 @@ def _process(context: Any) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
 
 
-def _forked_beside_this(modules: Sequence[str]) -> Any:
+def _fork_server(modules: Sequence[str]) -> Any:
     """How a process comes to be: forked, but not from this one.
 
     This one may have threads (the progress bar's, a kernel's). One beside it has none, has imported

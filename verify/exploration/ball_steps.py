@@ -11,7 +11,7 @@ from fractions import Fraction
 import flint
 
 from verify.algebra.enclosure import enclose_all
-from verify.arithmetic.balls import Ball, rational_ball, shown
+from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.schemes.step_map import StepMap
 

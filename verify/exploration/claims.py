@@ -99,19 +99,19 @@ def claim_property(text: str) -> Property:
     data: dict[str, Any] = json.loads(text)
     claim = KINDS[data["kind"]].model_validate(data)
     sentence = claim.statement or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
-    return Property(claim.id, sentence, lambda example: _holds(claim, example), claim.scheme)
+    return Property(claim.id, sentence, lambda sample: _holds(claim, sample), claim.scheme)
 
 
-def _holds(claim: Claim, example: Sample) -> bool:
+def _holds(claim: Claim, sample: Sample) -> bool:
     """Raises Violation where the claim is refuted for the example's H and run."""
     separable = getattr(claim, "every", None) == EVERY_SEPARABLE
-    if separable and not example.hamiltonian.field()[0].separable():
+    if separable and not sample.hamiltonian.field()[0].separable():
         return False
-    asked = _of_scheme(example, claim.scheme)
+    asked = _of_scheme(sample, claim.scheme)
     if asked is None or not asked.ordinary:
         return False
     try:
-        found = _judged(claim, asked)
+        found = _verdict_on(claim, asked)
     except InputError:  # too long a formula, or an end of the run that cannot be had
         return False
     if found.verdict is Verdict.REFUTED:
@@ -119,10 +119,10 @@ def _holds(claim: Claim, example: Sample) -> bool:
     return found.verdict is not Verdict.UNDECIDED
 
 
-def _of_scheme(example: Sample, name: str) -> Sample | None:
+def _of_scheme(sample: Sample, name: str) -> Sample | None:
     """The example with that scheme; None where the scheme does not take its H."""
-    scene = example.scene.model_copy(update={"schemes": (name,), "name": _NAME})
-    asked = replace(example, scheme=get(name), scene=scene)
+    scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
+    asked = replace(sample, scheme=get(name), scene=scene)
     try:
         _ = asked.step_map
     except InputError:
@@ -130,17 +130,17 @@ def _of_scheme(example: Sample, name: str) -> Sample | None:
     return asked
 
 
-def _judged(claim: Claim, example: Sample) -> Any:
+def _verdict_on(claim: Claim, sample: Sample) -> Any:
     """The claim's result for the example, a `verify.scenes.results.core.ClaimResult`."""
-    claim = claim.model_copy(update={"scene": _NAME} | _without_every(claim, example))
-    scenes = {_NAME: _scene(claim, example)}
+    claim = claim.model_copy(update={"scene": _NAME} | _without_every(claim, sample))
+    scenes = {_NAME: _scene(claim, sample)}
     plan = Plan()
     known = add_claims(plan, [claim], scenes)
     results = execute(plan, Store(None), where=THIS_PROCESS)
     return check_claim(claim, Findings(scenes, {**known, **results}))
 
 
-def _without_every(claim: Claim, example: Sample) -> dict[str, Any]:
+def _without_every(claim: Claim, sample: Sample) -> dict[str, Any]:
     """What changes where a claim of every H is made of this one.
 
     An order that is not passed for all H together may well be passed for this one.
@@ -148,21 +148,21 @@ def _without_every(claim: Claim, example: Sample) -> dict[str, Any]:
     if not getattr(claim, "every", None):
         return {}
     if isinstance(claim, DeltaJClaim):
-        return {"every": None, "formula": of_hamiltonian(claim, example.hamiltonian)}
+        return {"every": None, "formula": of_hamiltonian(claim, sample.hamiltonian)}
     if isinstance(claim, OrderClaim | ConvergenceOrderClaim):
         return {"every": None, "at_least": True}
     return {"every": None}
 
 
-def _scene(claim: Claim, example: Sample) -> Scene:
+def _scene(claim: Claim, sample: Sample) -> Scene:
     """The example's scene, with the runs that the claim speaks of."""
-    scene = example.scene
+    scene = sample.scene
     if not isinstance(claim, ON_RUNS):
         return scene
-    h = example.step_size
-    runs: dict[str, Any] = {"q": example.q, "p": example.p}
+    h = sample.step_size
+    runs: dict[str, Any] = {"q": sample.q, "p": sample.p}
     if isinstance(claim, MonotoneClaim):  # it compares step sizes over one time
-        runs |= {"step_sizes": (h / 2, h), "time": example.steps * h}
+        runs |= {"step_sizes": (h / 2, h), "time": sample.steps * h}
     else:
-        runs |= {"step_size": h, "steps": example.steps}
+        runs |= {"step_size": h, "steps": sample.steps}
     return scene_for(claim, {"scene": _NAME}, runs, lambda _: scene)[1]

@@ -10,7 +10,7 @@ from fractions import Fraction
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.arithmetic.balls import Ball, rational_ball
+from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps, unlike
 from verify.exploration.property import Violation
@@ -22,12 +22,12 @@ Matrix = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
 _P, _Q = symbol("p"), symbol("q")
 
 
-def knows_no_coordinates(example: Sample) -> bool:
+def knows_no_coordinates(sample: Sample) -> bool:
     """Whether the scheme treats p and q alike, so that every linear map may be asked for."""
-    return isinstance(example.scheme.every_h, TaylorSeries | RungeKutta)
+    return isinstance(sample.scheme.every_h, TaylorSeries | RungeKutta)
 
 
-def transformed_hamiltonian(example: Sample, matrix: Matrix, factor: Fraction) -> Hamiltonian:
+def transformed_hamiltonian(sample: Sample, matrix: Matrix, factor: Fraction) -> Hamiltonian:
     """K(z) = factor · H(M⁻¹ z)."""
     (a, b), (c, d) = matrix
     determinant = a * d - b * c
@@ -35,24 +35,24 @@ def transformed_hamiltonian(example: Sample, matrix: Matrix, factor: Fraction) -
         _rational(x / determinant) * _P + _rational(y / determinant) * _Q
         for x, y in ((d, -b), (-c, a))
     )
-    expression = example.hamiltonian.exact.xreplace({_P: p, _Q: q})
+    expression = sample.hamiltonian.exact.xreplace({_P: p, _Q: q})
     return Hamiltonian(_rational(factor) * expression)
 
 
-def same_step(example: Sample, matrix: Matrix, factor: Fraction, time: Fraction) -> bool:
+def same_step(sample: Sample, matrix: Matrix, factor: Fraction, time: Fraction) -> bool:
     """Holds Φ_K of h · `time` at M z against M Φ_H(z); False where one of them is not known.
 
     Raises Violation where they differ.
     """
-    if not example.brief:
+    if not sample.brief:
         return False
     (a, b), (c, d) = matrix
-    p, q = example.p, example.q
-    ours = ball_steps(example.step_map, p, q, example.step_size, 1)
+    p, q = sample.p, sample.q
+    ours = ball_steps(sample.step_map, p, q, sample.step_size, 1)
     if ours is None or not ours[-1].sharp:
         return False
-    other = example.scheme.step_map(transformed_hamiltonian(example, matrix, factor))
-    theirs = ball_steps(other, a * p + b * q, c * p + d * q, example.step_size * time, 1)
+    other = sample.scheme.step_map(transformed_hamiltonian(sample, matrix, factor))
+    theirs = ball_steps(other, a * p + b * q, c * p + d * q, sample.step_size * time, 1)
     if theirs is None or not theirs[-1].sharp:
         return False
     with working_precision(BITS):

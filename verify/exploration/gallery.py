@@ -64,11 +64,11 @@ def gallery(
 
 
 def _task(worst: Worst, steps: int) -> SeparationTask:
-    example = Sample.of(scene_of(worst))
+    sample = Sample.of(scene_of(worst))
     return SeparationTask(
-        **example.scene.given(),
-        scheme=example.scheme.name,
-        **example.asked | {"steps": steps},
+        **sample.scene.hamiltonian_fields(),
+        scheme=sample.scheme.name,
+        **sample.run_arguments | {"steps": steps},
         digits=_DIGITS,
     )
 

@@ -32,15 +32,15 @@ class Measure:
     value: Callable[[Sample, int], float | None]
 
 
-def rounding_share(example: Sample, digits: int = DIGITS) -> float | None:
+def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest rounding part over the greatest truncation part, at checkpoints of a run.
 
     The greatest ones, as Λ itself may pass through 0, where any error is infinitely large.
     """
-    if _stays(example, digits) is None:
+    if _stays(sample, digits) is None:
         return None
     try:
-        chain = Separation(*example.given).chains(max(1, digits // _SHARE)).plain
+        chain = Separation(*sample.kernel_inputs).chains(max(1, digits // _SHARE)).plain
     except Stopped:
         return None
     truncation, rounding = (_greatest(*chain.trail(n)) for n in ("truncation", "total"))
@@ -53,50 +53,50 @@ def _greatest(trail: Sequence[Fraction], bound: Fraction) -> Fraction:
     return top if top > 10 * bound else Fraction(0)
 
 
-def digits_lost(example: Sample, digits: int = DIGITS) -> float | None:
+def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the error of float64's p and q after the run, in units of its roundoff.
 
     Relative to the farthest that the orbit is from (0, 0): where it comes near to that, no digit is
     lost that anything hangs on.
     """
-    exact = _stays(example, digits)
+    exact = _stays(sample, digits)
     if exact is None:
         return None
-    found = _job(example, frozenset()).run(number_systems.get("float64", 17))
-    if found.done < example.steps:
+    found = _job(sample, frozenset()).run(number_systems.get("float64", 17))
+    if found.done < sample.steps:
         return None
-    points = ({"p": example.p, "q": example.q}, *exact.trail)
+    points = ({"p": sample.p, "q": sample.q}, *exact.trail)
     size = max(abs(x[n]) for x in points for n in "pq")
     error = max(abs(found.values[n] - exact.values[n]) for n in "pq")
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
-def growth(example: Sample, digits: int = DIGITS) -> float | None:
+def growth(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it."""
-    found = _stays(example, digits)
+    found = _stays(sample, digits)
     if found is None or not found.values["lambda_max"]:
         return None
     return _lg(found.values["lambda_max"])
 
 
-def orbit(example: Sample) -> list[tuple[Fraction, Fraction]]:
+def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
-    run = KernelRun(*example.given, frozenset(), 0, sections=_POINTS)
+    run = KernelRun(*sample.kernel_inputs, frozenset(), 0, sections=_POINTS)
     trail = run.run(number_systems.get("mpfr", DIGITS)).trail
-    return [(example.q, example.p), *((x["q"], x["p"]) for x in trail)]
+    return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(example: Sample, digits: int) -> Outcome | None:
+def _stays(sample: Sample, digits: int) -> Outcome | None:
     """The run with so many digits; None where it goes far."""
-    found = _job(example, frozenset({"lambda_max"})).run(number_systems.get("mpfr", digits))
-    if found.done < example.steps:
+    found = _job(sample, frozenset({"lambda_max"})).run(number_systems.get("mpfr", digits))
+    if found.done < sample.steps:
         return None
     near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
     return found if near else None
 
 
-def _job(example: Sample, observables: frozenset[str]) -> KernelRun:
-    return KernelRun(*example.given, observables, 0)
+def _job(sample: Sample, observables: frozenset[str]) -> KernelRun:
+    return KernelRun(*sample.kernel_inputs, observables, 0)
 
 
 def _lg(x: Fraction) -> float:

@@ -34,7 +34,7 @@ def neighbours(
             return
         seen.add((formula, q, p, size))
         try:
-            yield _made(scene, formula, q, p, size)
+            yield _scene(scene, formula, q, p, size)
         except InputError:  # such as an H that is not defined there
             return
 
@@ -50,7 +50,7 @@ def neighbours(
         yield from made(other, start.q, start.p, h)
 
 
-def _made(scene: Scene, formula: str, q: Fraction, p: Fraction, h: Fraction) -> Scene:
+def _scene(scene: Scene, formula: str, q: Fraction, p: Fraction, h: Fraction) -> Scene:
     assert scene.grid is not None  # noqa: S101 - as above
     grid = {
         "steps": scene.grid.steps,

@@ -29,9 +29,9 @@ def check_properties(
     looked_at, failed = Counter[str](), Counter[str]()
     first: dict[str, Failure] = {}
     for number in numbers:
-        example = Sample.of(sample_scene(space, seed, number))
+        sample = Sample.of(sample_scene(space, seed, number))
         for each in properties:
-            spoke, wrong = outcome(each, example)
+            spoke, wrong = outcome(each, sample)
             looked_at[each.name] += spoke
             if wrong:
                 failed[each.name] += 1
@@ -45,10 +45,10 @@ def check_properties(
     )
 
 
-def outcome(asked: Property, example: Sample) -> tuple[bool, str]:
+def outcome(asked: Property, sample: Sample) -> tuple[bool, str]:
     """Whether the property speaks of the example, and what is wrong; empty where nothing is."""
     try:
-        return asked.holds(example), ""
+        return asked.holds(sample), ""
     except Violation as violation:
         return True, str(violation)
     except Exception as error:  # whatever the code under test may raise is a finding

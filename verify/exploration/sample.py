@@ -111,12 +111,12 @@ class Sample:
         return self.turn % one_in == after
 
     @property
-    def given(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
-        """What a `Job` and a `Separation` begin with."""
+    def kernel_inputs(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
+        """What a `KernelRun` and a `Separation` begin with."""
         return self.hamiltonian, self.scheme.name, self.start, self.steps
 
     @property
-    def asked(self) -> dict[str, Any]:
+    def run_arguments(self) -> dict[str, Any]:
         """What `run` and `separate` are called with beside H and the scheme."""
         return {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
 

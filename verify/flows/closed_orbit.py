@@ -18,8 +18,8 @@ from typing import Literal
 
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.generators import embed
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.errors import InputError

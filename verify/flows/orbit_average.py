@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.balls import in_reach, middle_and_radius
+from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.flows.closed_orbit import Element, Orbit, Start, closed_orbit
 from verify.flows.extrapolation import NoFlowError, Number, State

@@ -57,7 +57,7 @@ def exact_points(hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[F
     followed so far, and where the check at the sample fails.
     """
     work = _Work.of(hamiltonian, p, q, times)
-    known = bool(len(work.p)) and _known(hamiltonian, work)
+    known = bool(len(work.p)) and _has_closed_form(hamiltonian, work)
     if known:
         work.in_closed_form()
     else:
@@ -66,7 +66,7 @@ def exact_points(hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[F
     return work.checked(_SAMPLE if known else _SAMPLE_NUMERICAL)
 
 
-def _known(hamiltonian: Hamiltonian, work: "_Work") -> bool:
+def _has_closed_form(hamiltonian: Hamiltonian, work: "_Work") -> bool:
     return closed_form(hamiltonian, Fraction(work.p[0]), Fraction(work.q[0])) is not None
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import sympy
 
+from verify.algebra.embedding import MAX_TERMS, embed
 from verify.algebra.formula import parameter_name, parse, symbol, to_text
-from verify.algebra.generators import MAX_TERMS, embed
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text

@@ -12,13 +12,13 @@ from functools import lru_cache
 
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.generators import embed
 from verify.errors import InputError
 from verify.hamiltonians import potential_motion
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.motion import Motion, Values
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 from verify.hamiltonians.systems import all_systems
 
 _MOST_TERMS = 8

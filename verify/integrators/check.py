@@ -52,7 +52,7 @@ def check_integrator(
     faults, first = examined(step, points)
     if any(fault.fatal for fault in faults):
         return _no_step(faults)
-    found = _found(step, hamiltonian, points)
+    found = _examine(step, hamiltonian, points)
     later = changed_since(step, first)
     if later:
         return _no_step([*faults, *later])
@@ -68,7 +68,7 @@ def _no_step(faults: Sequence[Fault]) -> Finding:
     return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
 
 
-def _found(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
+def _examine(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
     notes: list[str] = []
     try:
         with within(_PROOF_SECONDS, "its proof takes too long"):
@@ -96,7 +96,7 @@ def _exchanged(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) ->
     exchange = {"p": "q", "q": "p", "h": "h"}
     a, b, c = (exchange[name] for name in step.order)
     other = replace(step, order=(a, b, c))
-    if not _found(other, hamiltonian, points).verdict.holds:
+    if not _examine(other, hamiltonian, points).verdict.holds:
         return []
     return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
 
@@ -126,7 +126,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
         order=proof.order,
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
-        order_known=proof.convergence_decided,
+        order_decided=proof.convergence_decided,
         area_at_least=proof.first.power or MOST_ORDERS + 1,
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
@@ -210,7 +210,7 @@ def _measured_area(
     return replace(
         other,
         convergence_order=found.convergence_order,
-        order_known=found.order_known,
+        order_decided=found.order_decided,
         reason=f"{other.reason} (the coefficients of ΔJ are not decided: {found.reason})",
         notes=(*found.notes, *other.notes),
         leading=found.leading,

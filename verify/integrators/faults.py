@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.integrators.step import State, Step, StepError, last_line, where
+from verify.integrators.step import State, Step, StepError, last_line, line_of_error
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def changed_since(step: Step, first: Mapping[State, State]) -> list[Fault]:
 
 
 def _not_a_function(state: State, before: State, after: State) -> Fault:
-    found = f"{before} and then {after}{where(*state, _STEPS[0])}"
+    found = f"{before} and then {after}{line_of_error(*state, _STEPS[0])}"
     return Fault("not a function", f"it is not deterministic: it returns {found}")
 
 
@@ -74,7 +74,7 @@ def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
 
 
 def _failure(state: State, error: Exception) -> Fault:
-    place = where(*state, _STEPS[0])
+    place = line_of_error(*state, _STEPS[0])
     if isinstance(error, StepError):
         return Fault("not a step", str(error))
     return Fault("raises", f"it raises {last_line(error)}{place}")

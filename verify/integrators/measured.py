@@ -35,8 +35,8 @@ def _as_it_stands(found: Measured) -> Finding:
     area, distance = found.area, found.distance
     exact = all(row.error <= 10 * row.error_noise for row in found.rows)
     order = None if distance.power is None else distance.power - 1
-    preserving, said = _area_said(found)
-    verdict, told = Verdict.MEASURED, _order_said(distance, exact)
+    preserving, said = _area_sentence(found)
+    verdict, told = Verdict.MEASURED, _order_sentence(distance, exact)
     sure = distance.tail is None or distance.tail.small
     if order is not None and order < 1:
         verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"
@@ -49,14 +49,14 @@ def _as_it_stands(found: Measured) -> Finding:
         order=area.power,
         area_preserving=preserving,
         convergence_order=order,
-        order_known=exact or (order is not None and sure),
+        order_decided=exact or (order is not None and sure),
         largest=abs(found.largest.delta_j),
         probe_error=found.noise,
     )
     return finding.noting(*_notes(found))
 
 
-def _order_said(distance: Fitted, exact: bool) -> str:
+def _order_sentence(distance: Fitted, exact: bool) -> str:
     if exact:
         return "the map is the exact flow to its last digits"
     if distance.power is None:
@@ -67,7 +67,7 @@ def _order_said(distance: Fitted, exact: bool) -> str:
     return f"the map's order is {distance.power - 1}, {seen}"
 
 
-def _area_said(found: Measured) -> tuple[bool | None, str]:
+def _area_sentence(found: Measured) -> tuple[bool | None, str]:
     """Whether ΔJ is 0 as far as can be seen, and what is seen of it."""
     if found.area.power is not None:
         return False, f"ΔJ shrinks as h^{found.area.power}"
@@ -97,7 +97,7 @@ def _consistent(found: Finding) -> Finding:
     if found.verdict is Verdict.REFUTED or area is None or order is None or area > order:
         return found
     reason = f"{found.reason}, which no map of order {order} does: a small mistake, or a tolerance"
-    return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_known=False)
+    return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
 
 
 def _notes(found: Measured) -> list[str]:

@@ -50,7 +50,7 @@ class Finding:
 
     `order`: ΔJ = O(h^order) and no better, None where det J ≡ 1 or it is not known.
     `area_at_least`: then ΔJ = O(h^area_at_least) may be known. `convergence_order`: None where no
-    difference from the exact flow is found, or, with `order_known` False, where it is not known.
+    difference from the exact flow is found, or, with `order_decided` False, where it is not known.
     `leading`, `delta_j`: formulas, of a proof. `largest`: the largest |ΔJ| that was measured, and
     `probe_error`: the error of such a value.
     """
@@ -62,7 +62,7 @@ class Finding:
     area_preserving: bool | None = None
     area_at_least: int | None = None
     convergence_order: int | None = None
-    order_known: bool = False
+    order_decided: bool = False
     leading: str | None = None
     delta_j: str | None = None
     proof: Proof | None = field(default=None, repr=False)
@@ -76,8 +76,8 @@ class Finding:
     def scheme(self) -> bool:
         """Whether it is shown to agree with the exact flow up to h, at least."""
         if self.convergence_order is None:
-            return self.order_known
-        return self.convergence_order >= 1 and (self.order_known or self.how == "proof")
+            return self.order_decided
+        return self.convergence_order >= 1 and (self.order_decided or self.how == "proof")
 
     def noting(self, *notes: str) -> "Finding":
         return replace(self, notes=(*self.notes, *notes))
@@ -88,7 +88,7 @@ def broken(claims: Claims, found: Finding) -> list[tuple[str, bool | None, str]]
     judged: list[tuple[str, bool | None, str]] = []
     if claims.order is not None:
         holds = None
-        if found.order_known:
+        if found.order_decided:
             holds = found.convergence_order is None or found.convergence_order >= claims.order
         known = f"the map agrees with the exact flow up to h^{found.convergence_order} only"
         judged.append((f"order {claims.order}", holds, known))

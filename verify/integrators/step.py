@@ -70,7 +70,7 @@ class Step:
                 result = self.raw(self.function, p, q, h)
         x, y = (_real(x) for x in self.pair(result))
         if x - x != 0 or y - y != 0:
-            raise StepError(f"it returns {x:g}, {y:g}{where(p, q, h)}")
+            raise StepError(f"it returns {x:g}, {y:g}{line_of_error(p, q, h)}")
         return x, y
 
     def pair(self, result: Any) -> tuple[Any, Any]:
@@ -128,7 +128,7 @@ def within(seconds: float, problem: str) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3))
 
 
-def where(p: float, q: float, h: float) -> str:
+def line_of_error(p: float, q: float, h: float) -> str:
     return f" at p = {p:g}, q = {q:g}, h = {h:g}"
 
 

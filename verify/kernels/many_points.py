@@ -80,7 +80,7 @@ class PointMap:
             list(threads.map(advance, range(0, len(p), _SHARE)))
         lost = np.flatnonzero(~np.all(np.isfinite(carried), axis=0))
         if lost.size:
-            raise _left(p[lost[0]], q[lost[0]], self.arithmetic.name)
+            raise _points_out_of_range(p[lost[0]], q[lost[0]], self.arithmetic.name)
         return carried
 
     def _one_by_one(self, p: Sequence[Any], q: Sequence[Any]) -> list[list[Any]]:
@@ -94,7 +94,7 @@ class PointMap:
                 done = -1
             if done < self.steps or not all(map(self.arithmetic.finite, after)):
                 at = [float(self.arithmetic.exact(x)) for x in z]
-                raise _left(at[0], at[1], self.arithmetic.name)
+                raise _points_out_of_range(at[0], at[1], self.arithmetic.name)
             return tuple(after)
 
         with self.arithmetic.context():
@@ -119,7 +119,7 @@ class PointMap:
         return tuple(found)
 
 
-def _left(p: float, q: float, name: str) -> LeftRangeError:
+def _points_out_of_range(p: float, q: float, name: str) -> LeftRangeError:
     return LeftRangeError(
         f"the point (q, p) = ({q:.6g}, {p:.6g}) leaves the range of {name}, or of H"
     )

@@ -14,7 +14,7 @@ from itertools import product
 
 import flint
 
-from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.kernel import Kernel
 from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse

@@ -47,7 +47,7 @@ class Rounded:
 Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
 
 
-def is_known(arithmetic: Arithmetic) -> bool:
+def is_finite(arithmetic: Arithmetic) -> bool:
     """Whether the errors of the arithmetic's operations are known."""
     return arithmetic.name in ("fixed", *_FUNCTIONS)
 

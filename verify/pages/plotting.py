@@ -24,7 +24,7 @@ from verify.pages.figures.svg import styled
 from verify.pages.figures.work_precision_plots import error_panels
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.sections.growth_view import orbits
-from verify.pages.sections.plots import rows_of
+from verify.pages.sections.scene_plots import rows_of
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.growth import GrowthLawResult
 from verify.scenes.results.regions import FlowResult
@@ -59,14 +59,14 @@ def plot_runs(
     ]
     if not lines:
         raise InputError("runs", len(runs), f"hold no {quantity} to draw at two step sizes or more")
-    return _made(lambda: figures.draw_against_step_size(lines, QUANTITIES[quantity], slopes))
+    return _figure(lambda: figures.draw_against_step_size(lines, QUANTITIES[quantity], slopes))
 
 
 def plot_over_time(run: RunResult) -> Figure:
     """det J, ΔJ and Λ over t of a run that holds a series, as bands between their extremes."""
     if not run.series:
         raise InputError("run", run.scheme, "holds no series; run(…, points=400) keeps one")
-    return _made(lambda: figures.draw_over_time(run))
+    return _figure(lambda: figures.draw_over_time(run))
 
 
 def plot_separation(grid: SeparationGrid) -> Figure:
@@ -76,7 +76,7 @@ def plot_separation(grid: SeparationGrid) -> Figure:
         raise InputError(
             "grid", len(grid.points), "does not hold truncation and rounding at two step sizes"
         )
-    return _made(lambda: crossover_figure.draw_truncation_against_rounding(lines, marks))
+    return _figure(lambda: crossover_figure.draw_truncation_against_rounding(lines, marks))
 
 
 def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
@@ -84,7 +84,7 @@ def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
     drawable = orbits(laws)
     if not drawable:
         raise InputError("laws", len(laws), "hold no prediction to draw at two step sizes")
-    return _made(lambda: growth_figure.draw_predicted_against_measured(drawable))
+    return _figure(lambda: growth_figure.draw_predicted_against_measured(drawable))
 
 
 def plot_table(claim: ClaimResult) -> Figure:
@@ -93,7 +93,7 @@ def plot_table(claim: ClaimResult) -> Figure:
     printed, computed = rows_of(view) if view.is_table else (figures.Line("", ()), [])
     if len(printed.points) < 2 or not computed:
         raise InputError("claim", claim.id, "is no table with two step sizes to draw")
-    return _made(lambda: figures.draw_printed_against_computed(computed, printed))
+    return _figure(lambda: figures.draw_printed_against_computed(computed, printed))
 
 
 def plot_work_precision(found: WorkPrecisionResult) -> Figure:
@@ -101,22 +101,22 @@ def plot_work_precision(found: WorkPrecisionResult) -> Figure:
     panels = error_panels(found)
     if not panels[0].lines:
         raise InputError("found", len(found.lines), "hold no run with an error and a run time")
-    return _made(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))
+    return _figure(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))
 
 
 def plot_stability(over: StabilityMapResult) -> Figure:
     """Verdicts in the plane of step size and stiffness."""
-    return _made(lambda: stability_figure.draw_plane(stability_figure.plane_of(over)))
+    return _figure(lambda: stability_figure.draw_plane(stability_figure.plane_of(over)))
 
 
 def plot_flow(flow: FlowResult) -> Figure:
     """A region and its images by each map, q to the right and p upwards, on equal axes."""
     if not flow.before or not any(image.outlines for image in flow.images):
         raise InputError("flow", flow.shape, "holds no image to draw")
-    return _made(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
+    return _figure(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
 
 
-def _made(draw: Callable[[], Figure]) -> Figure:
+def _figure(draw: Callable[[], Figure]) -> Figure:
     """The figure on white; what a title says is drawn stands at the vertical axis."""
     # What the caller sets in place of our labels may be a formula between dollar signs.
     with styled(**{"figure.facecolor": "white", "axes.facecolor": "white"}):

@@ -25,7 +25,7 @@ def prove_by_conditions(scheme: Scheme, generic: ByConditions) -> EveryProof:
     asked = tuple(c for c in generic.order_conditions(scheme.order) if c.order)
     area = generic.area_conditions()
     preserved = bool(area) and all(condition.holds for condition in area)
-    verdict, reason = _judged(scheme, asked, area)
+    verdict, reason = _verdict(scheme, asked, area)
     return EveryProof(
         scheme.name,
         generic.separable,
@@ -57,7 +57,7 @@ def _count(generic: ByConditions, order: int) -> str:
     return f"{count} condition{'' if count == 1 else 's'} on the coefficients"
 
 
-def _judged(
+def _verdict(
     scheme: Scheme, asked: Sequence[Condition], area: Sequence[Condition]
 ) -> tuple[Verdict, str]:
     wrong = first_wrong(asked)

@@ -135,7 +135,7 @@ def _of_series(scheme: Scheme, generic: BySeries, separable: bool) -> EveryProof
             verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
         return EveryProof(scheme.name, separable, verdict, reason, None, None, agreed)
     leading = coefficients[order - 1]
-    verdict, reason = _judged(scheme, order, agreed)
+    verdict, reason = _verdict(scheme, order, agreed)
     found, formula, checked = _telescoping(jets, generic, leading, order)
     return EveryProof(
         scheme.name,
@@ -159,7 +159,7 @@ def _of_series(scheme: Scheme, generic: BySeries, separable: bool) -> EveryProof
     )
 
 
-def _judged(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, str]:
+def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, str]:
     if agreed < scheme.order:
         return Verdict.REFUTED, _missed(scheme, agreed)
     if scheme.area_preserving:

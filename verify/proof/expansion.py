@@ -7,8 +7,8 @@ from functools import cached_property
 
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import checked
-from verify.algebra.generators import embed
 from verify.algebra.quotient_series import QuotientSeries
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError
@@ -92,13 +92,13 @@ class Expansion:
         return QuotientSeries(self.ring, self.length + 1).of(self._derivatives[0])
 
     def leading(self) -> Leading:
-        found = first_left(self.coefficient, self.length)
+        found = first_nonzero(self.coefficient, self.length)
         if found is None and not self.polynomial:
             return Leading(self.length, Decision(None))
         return found or VANISHES
 
 
-def first_left(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
+def first_nonzero(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
     """The first of the coefficients that is not shown to vanish; None where all are."""
     for n in range(length):
         ring, x = coefficient(n)

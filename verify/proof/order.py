@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from verify.algebra.conditions import Condition
-from verify.algebra.generators import embed
+from verify.algebra.embedding import embed
 from verify.algebra.power_series import Series, delta_j
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.hamiltonian import VectorField
-from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_left
+from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
@@ -103,12 +103,12 @@ def leading_of(step_map: StepMap, series: _BySeries | None = None) -> Leading:
             # All coefficients looked at vanish; ΔJ itself may still be shown not to.
             return Leading(None, step.ring.decide(step.delta_j))
         return leading
-    found = first_left(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
+    found = first_nonzero(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
     return found or VANISHES
 
 
 def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
-    found = first_left(series.of_delta_j, MOST_ORDERS + 1)
+    found = first_nonzero(series.of_delta_j, MOST_ORDERS + 1)
     if found is not None:
         return found
     whole = step_map.whole

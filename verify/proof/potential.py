@@ -14,8 +14,8 @@ from itertools import chain, combinations_with_replacement, islice, product
 
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose, points
-from verify.algebra.generators import embed
 from verify.algebra.linear_combination import combination, may_combine
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError

@@ -75,7 +75,7 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
         graded.setdefault(grade, {})[tuple(map(int, monomial))] = coefficient
     total = jets.zero
     for grade, part in graded.items():
-        found, rank, unknowns = _solved(jets, grade, jets.context.from_dict(part))
+        found, rank, unknowns = _solve_for_potential(jets, grade, jets.context.from_dict(part))
         if found is None:
             return Telescoping(
                 False,
@@ -116,7 +116,9 @@ def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
     )
 
 
-def _solved(jets: Jets, grade: tuple[int, int, int], x: Poly) -> tuple[Poly | None, int, int]:
+def _solve_for_potential(
+    jets: Jets, grade: tuple[int, int, int], x: Poly
+) -> tuple[Poly | None, int, int]:
     """(G with X·G = x, the rank of X on such G, their number of monomials).
 
     x has all its monomials of one grade, and so may G have: X respects grades. G contains neither p

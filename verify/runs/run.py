@@ -13,7 +13,7 @@ from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.balls import in_reach, middle_and_radius
+from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
@@ -25,8 +25,8 @@ from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded
 from verify.runs.float64 import bounded
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.value import Value
 from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
 from verify.schemes.step_map import StepMap
 

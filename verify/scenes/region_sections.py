@@ -56,7 +56,7 @@ class PlacedShape(Frozen):
 
     def made(self) -> Shape:
         """The shape where it is put."""
-        return _made(*self._key())
+        return _placed(*self._key())
 
     def _key(self) -> "_Key":
         at = self.centre
@@ -68,7 +68,7 @@ _Key = tuple[str | None, tuple[Corner, ...] | None, str | None, Fraction, Fracti
 
 # A plan asks for the same few shapes again for each map and number of steps.
 @lru_cache(maxsize=64)
-def _made(
+def _placed(
     name: str | None,
     corners: tuple[Corner, ...] | None,
     path: str | None,
@@ -93,7 +93,7 @@ def _made(
 def _reach(*key: Any) -> Any:
     """The greatest coordinate of some points of each arc, in mpmath's numbers of any size."""
     mp = MPContext()
-    arcs = (arc for outline in _made(*key).outlines for arc in outline.arcs)
+    arcs = (arc for outline in _placed(*key).outlines for arc in outline.arcs)
     points = (arc(mp, mp.mpf(k) / 2) for arc in arcs for k in (0, 1))
     return max(abs(x) for point in points for x in point)
 
@@ -137,6 +137,6 @@ class Flow(PlacedShape):
                 raise InputError("steps", count, f"allowed: 1 … {MAX_STEPS}")
         return tuple(sorted(found))
 
-    def shape_given(self) -> PlacedShape:
+    def placed_shape(self) -> PlacedShape:
         """Where which shape is, without the rest."""
         return PlacedShape(**{n: getattr(self, n) for n in PlacedShape.model_fields})

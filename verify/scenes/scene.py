@@ -233,7 +233,7 @@ class Scene(Frozen):
                  if name not in _IDENTITY}  # fmt: skip
         return self.model_copy(update=empty | sections)
 
-    def given(self) -> dict[str, Any]:
+    def hamiltonian_fields(self) -> dict[str, Any]:
         """H as a task has it: its formula, and its parameter values exactly."""
         exact = self.exact_hamiltonian()
         return {"hamiltonian": exact.formula, "parameters": dict(exact.values)}

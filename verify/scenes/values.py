@@ -29,14 +29,14 @@ Digits = Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)]
 Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
 
 
-def _known(name: str) -> str:
+def _known_arithmetic(name: str) -> str:
     if name != AUTO and name not in number_systems.names():
         allowed = ", ".join((AUTO, *number_systems.names()))
         raise InputError("arithmetic", name, f"unknown; allowed: {allowed}")
     return name
 
 
-ArithmeticName = Annotated[str, AfterValidator(_known)]
+ArithmeticName = Annotated[str, AfterValidator(_known_arithmetic)]
 
 
 @drawn_by("initial_values")

@@ -1,7 +1,7 @@
 """Implicit Runge–Kutta methods by their coefficients.
 
 k_i = f(z + h Σ a_ij k_j), i = 1 … s, and z' = z + h Σ b_i k_i. Coefficients are algebraic numbers,
-exact. What is asked of them is decided in the ring of `verify.algebra.generators.embed`, by exact
+exact. What is asked of them is decided in the ring of `verify.algebra.embedding.embed`, by exact
 algebra, and what is not zero there is enclosed by Arb; no coefficient is ever rounded for it.
 """
 
@@ -12,10 +12,10 @@ from functools import cached_property, lru_cache
 import sympy
 
 from verify.algebra.conditions import Condition
+from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
-from verify.algebra.generators import embed
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.exact import known_digits
 
 _SHOWN = 5  # digits of a residue

@@ -29,10 +29,10 @@ import flint
 import sympy
 
 from verify.algebra.conditions import Condition
+from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
-from verify.algebra.generators import embed
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.balls import in_reach, middle_and_radius
+from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import known_digits
 from verify.errors import InputError
 from verify.schemes.every_hamiltonian import StageEquations

@@ -174,7 +174,7 @@ def _confining(d: Drawer, plan: Plan) -> Sum:
     for _ in range(extra):
         _outgrown(d, made, powers, mixed=not plan.separable)
     if plan.kind != "polynomial":
-        _add_own(d, made, plan, TermRequest("confining", not plan.separable))
+        _add_term_of_kind(d, made, plan, TermRequest("confining", not plan.separable))
     elif not plan.separable:
         _add_mixed(d, made, powers, leading)
     return made
@@ -228,7 +228,7 @@ def _open(d: Drawer, plan: Plan) -> Sum:
     for _ in range(d.whole(0, max(0, left - (exponent > 0)))):
         _beside(d, made, plan, (x, y), exponent)
     if plan.kind != "polynomial":
-        _add_own(d, made, plan, TermRequest("open", not plan.separable, x, y, direction))
+        _add_term_of_kind(d, made, plan, TermRequest("open", not plan.separable, x, y, direction))
     elif not plan.separable:
         made.add(d.signed(), _mixed_monomial(d))
     return made
@@ -262,13 +262,13 @@ def _free(d: Drawer, plan: Plan) -> Sum:
         else:
             made.add(d.signed(), power(d.pick(("p", "q")), d.whole(1, degree)))
     if plan.kind != "polynomial":
-        _add_own(d, made, plan, TermRequest("free", not plan.separable))
+        _add_term_of_kind(d, made, plan, TermRequest("free", not plan.separable))
     elif not plan.separable:
         made.add(d.signed(), _mixed_monomial(d))
     return made
 
 
-def _add_own(d: Drawer, made: Sum, plan: Plan, want: TermRequest) -> None:
+def _add_term_of_kind(d: Drawer, made: Sum, plan: Plan, want: TermRequest) -> None:
     """The term of the plan's kind, and one or two where there is room."""
     for _ in range(1 + (len(made) + 1 < d.limits.terms and d.whole(0, 3) == 3)):
         numerator, denominator, positive = OWN[plan.kind](d, want)

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import log10
 
-from verify.arithmetic.balls import ball, precision, slope
+from verify.arithmetic.arb import ball, precision, slope
 from verify.proof.expansion import MOST_ORDERS
 from verify.scenes.results.claim import CriterionResult
 from verify.scenes.results.proof import ProofResult
@@ -76,7 +76,7 @@ def _from_order(number: int, r: int, how: str, runs: Sequence[RunResult]) -> tup
             f"scene's is open, as {len(left)} of {len(runs)} runs leave the range"
         )
     where = "on every fixed [0, T] on which the exact solution exists"
-    return Verdict.PROVED, f"{bound} {where}{_seen(name, runs)}"
+    return Verdict.PROVED, f"{bound} {where}{_slopes_sentence(name, runs)}"
 
 
 def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
@@ -95,7 +95,7 @@ def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
     return Verdict.UNDECIDED, f"{text}, too close to {least} to tell"
 
 
-def _seen(name: str, runs: Sequence[RunResult]) -> str:
+def _slopes_sentence(name: str, runs: Sequence[RunResult]) -> str:
     slopes = measured_slopes(name, runs)
     return f"; measured slope {_range(slopes)} over the grid" if slopes else ""
 

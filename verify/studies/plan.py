@@ -30,7 +30,7 @@ def plan_scenes(scenes: list[Scene]) -> Plan:
 
 
 def proof_task(scene: Scene, scheme: str, *, formulas: bool = True) -> ProofTask:
-    return ProofTask(**scene.given(), scheme=scheme, formulas=formulas)
+    return ProofTask(**scene.hamiltonian_fields(), scheme=scheme, formulas=formulas)
 
 
 def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
@@ -38,7 +38,7 @@ def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
     assert scene.grid is not None  # noqa: S101 - asked for by grids only
     grid, at = scene.grid, scene.grid.initial_values[start]
     return RunTask(
-        **scene.given(), scheme=scheme,
+        **scene.hamiltonian_fields(), scheme=scheme,
         step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, arithmetic=grid.arithmetic,
         digits=grid.digits, observables=grid.observables, points=0,
     )  # fmt: skip
@@ -50,7 +50,7 @@ def separation_task(
     """The split of the grid's run for a step size and the index of an initial value."""
     at = grid.initial_values[start]
     return SeparationTask(
-        **scene.given(), scheme=scheme,
+        **scene.hamiltonian_fields(), scheme=scheme,
         step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, digits=SEPARATED_DIGITS,
     )  # fmt: skip
 
@@ -60,7 +60,7 @@ def growth_task(scene: Scene, scheme: str, start: int) -> GrowthTask:
     assert scene.grid is not None  # noqa: S101 - asked for by grids only
     at = scene.grid.initial_values[start]
     return GrowthTask(
-        **scene.given(), scheme=scheme,
+        **scene.hamiltonian_fields(), scheme=scheme,
         q=at.q, p=at.p, digits=AVERAGE_DIGITS,
     )  # fmt: skip
 
@@ -75,7 +75,7 @@ def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
     series = scene.series[index]
     at = series.initial_value
     return RunTask(
-        **scene.given(), scheme=scheme,
+        **scene.hamiltonian_fields(), scheme=scheme,
         step_size=series.step_size, steps=series.count, q=at.q, p=at.p,
         arithmetic=series.arithmetic, digits=series.digits, observables=CLOSED_FORM,
         points=series.points,

@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
-from verify.scenes.results.value import Value
 
 
 def value(text: str) -> Value:

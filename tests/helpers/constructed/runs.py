@@ -8,10 +8,10 @@ from verify.arithmetic.exact import decimal, text
 from verify.claims.findings import Findings
 from verify.claims.judge import check_claims
 from verify.claims.kinds import Claim
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.value import Value
 from verify.scenes.scene import Scene, scene_from
 from verify.studies.plan import grid_task, proof_task
 from verify.verdict import Verdict

@@ -3,6 +3,7 @@
 from decimal import Decimal
 from typing import Any
 
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
     EvaluationResult,
     GrowthResult,
@@ -10,7 +11,6 @@ from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationResult,
 )
-from verify.scenes.results.value import Value
 from verify.studies.separation.separate import as_grid
 
 PARTS = ("input", "trajectory", "determinant", "product")

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import (
     CostResult,
     SlopeResult,

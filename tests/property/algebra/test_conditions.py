@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions
 from tests.helpers.sampled.formulas import polynomials, rationals
-from verify.algebra.generators import embed
+from verify.algebra.embedding import embed
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.symmetry import by_series, palindromic, prove_symmetry

@@ -14,8 +14,8 @@ from verify.flows.closed_form import blow_up
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import systems
 from verify.hamiltonians.known_flows import closed_form
+from verify.hamiltonians.named_system import System
 from verify.hamiltonians.potential_motion import in_potential
-from verify.hamiltonians.system import System
 
 CLOSED = [system for system in systems.all_systems().values() if system.flow is not None]
 PARTS = st.builds(Fraction, st.integers(-90, 90), st.just(100))

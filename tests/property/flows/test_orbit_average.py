@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import P, Q, plain
 from tests.property.studies.test_growth_law import wells
+from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
-from verify.algebra.generators import embed
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import polynomials, rationals, trigonometric
-from verify.arithmetic.balls import bounds, rational_ball
+from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath

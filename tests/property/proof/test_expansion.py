@@ -20,11 +20,11 @@ from tests.helpers.sampled.formulas import (
     zero_there,
 )
 from tests.helpers.sampled.maps import determinant, order_of_flow
+from verify.algebra.embedding import embed
 from verify.algebra.formula import parse, to_text
-from verify.algebra.generators import embed
 from verify.algebra.ring import Decision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_left
+from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_nonzero
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
@@ -102,7 +102,7 @@ def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: in
 def test_the_first_coefficient_left_is_the_first_that_is_not_0(given_: list[str]) -> None:
     ring, found = embed([parse(x) for x in given_], ("p", "q"))
     first = next((n for n, x in enumerate(found) if x != 0), None)
-    left = first_left(lambda n: (ring, found[n]), len(found))
+    left = first_nonzero(lambda n: (ring, found[n]), len(found))
     assert (left.power if left else None) == first
     whole = sum((parse(x) * H**n for n, x in enumerate(given_)), sympy.S.Zero)
     ring, (x,) = embed([whole], ("p", "q", "h"))

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.algebra.generators import embed
+from verify.algebra.embedding import embed
 from verify.errors import InputError
 from verify.proof.by_conditions import first_wrong, prove_by_conditions
 from verify.proof.symmetry import prove_symmetry

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import NAMES, evaluate, formulas, is_real, plain, points
+from verify.algebra.embedding import embed
 from verify.algebra.formula import _Reader, parse, symbol, to_text
-from verify.algebra.generators import embed
 from verify.algebra.monomials import Monomials
 from verify.errors import InputError
 

@@ -6,7 +6,7 @@ import pytest
 import sympy
 
 from tests.helpers.sampled.formulas import P, Q, plain
-from verify.algebra.generators import embed
+from verify.algebra.embedding import embed
 from verify.algebra.power_series import Series, at_point, delta_j, partials
 from verify.algebra.ring import Poly, Ring
 from verify.hamiltonians.hamiltonian import Hamiltonian

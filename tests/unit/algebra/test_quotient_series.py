@@ -4,8 +4,8 @@ import pytest
 import sympy
 
 from verify import schemes
+from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
-from verify.algebra.generators import embed
 from verify.algebra.quotient_series import QuotientSeries
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion

@@ -22,9 +22,9 @@ from tests.helpers.sampled.formulas import (
     points,
     polynomials,
 )
+from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
 from verify.algebra.formula import parse
-from verify.algebra.generators import embed
 from verify.algebra.ring import Decision, Ring
 from verify.errors import InputError
 

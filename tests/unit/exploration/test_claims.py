@@ -167,7 +167,7 @@ steps = 5
 q = 1
 p = 0
 """
-    example = Sample.of(
+    sample = Sample.of(
         scene_from(
             {
                 "hamiltonian": "p**2/2 + q**4/4",
@@ -179,9 +179,9 @@ p = 0
     )
     (true,) = claims_of(tmp_path, made.replace("DIRECTION", "increases"))
     (false,) = claims_of(tmp_path, made.replace("DIRECTION", "decreases"))
-    assert claim_property(true).holds(example)
+    assert claim_property(true).holds(sample)
     with pytest.raises(Violation, match=r"from h = 0\.05 to 0\.1"):
-        claim_property(false).holds(example)
+        claim_property(false).holds(sample)
 
 
 def test_claims_of_one_scene_are_left_out_with_the_reason() -> None:

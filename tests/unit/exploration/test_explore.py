@@ -40,8 +40,8 @@ def plant(monkeypatch: pytest.MonkeyPatch, planted: Property) -> None:
 def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A property with a planted falsehood: no H has q³ in it."""
 
-    def holds(example: Sample) -> bool:
-        if "q**3" in (example.scene.hamiltonian or ""):
+    def holds(sample: Sample) -> bool:
+        if "q**3" in (sample.scene.hamiltonian or ""):
             raise Violation("it has q**3")
         return True
 

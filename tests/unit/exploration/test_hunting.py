@@ -42,7 +42,7 @@ Plant = Callable[[Callable[[Sample], float | None]], None]
 @pytest.fixture
 def plant(monkeypatch: pytest.MonkeyPatch) -> Plant:
     def planted(value: Callable[[Sample], float | None]) -> None:
-        measure = Measure("planted", "planted", lambda example, _: value(example))
+        measure = Measure("planted", "planted", lambda sample, _: value(sample))
         monkeypatch.setitem(MEASURES, "planted", measure)
 
     return planted
@@ -55,8 +55,8 @@ def search(task: HuntTask) -> HuntResult:
 def near(q: str, p: str) -> Callable[[Sample], float]:
     """By far the greatest at one initial value, and ever greater towards it."""
 
-    def value(example: Sample) -> float:
-        far = abs(example.q - Fraction(q)) + abs(example.p - Fraction(p))
+    def value(sample: Sample) -> float:
+        far = abs(sample.q - Fraction(q)) + abs(sample.p - Fraction(p))
         return -math.log10(far + Fraction(1, 10**9))
 
     return value
@@ -87,8 +87,8 @@ def test_what_is_out_of_bounds_is_not_found(plant: Plant) -> None:
 def test_a_planted_term_of_h_is_found(plant: Plant) -> None:
     """A needle that no slope leads to: only drawing finds it, and its coefficient is then moved."""
 
-    def value(example: Sample) -> float:
-        term = {str(t): c for t, c in example.hamiltonian.exact.as_coefficients_dict().items()}
+    def value(sample: Sample) -> float:
+        term = {str(t): c for t, c in sample.hamiltonian.exact.as_coefficients_dict().items()}
         c = abs(Fraction(str(term.get("p**3", 0))))
         return 5 + float(min(c, Fraction(50))) if c else 0.0
 
@@ -100,8 +100,8 @@ def test_a_planted_term_of_h_is_found(plant: Plant) -> None:
 def test_a_value_that_another_precision_does_not_confirm_is_dropped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def value(example: Sample, digits: int) -> float:
-        return float(example.q) + (digits > 40) * (example.q > 0)
+    def value(sample: Sample, digits: int) -> float:
+        return float(sample.q) + (digits > 40) * (sample.q > 0)
 
     monkeypatch.setitem(MEASURES, "planted", Measure("planted", "", value))
     found = search(task(count=40)).worst
@@ -122,7 +122,7 @@ def test_no_scene_with_a_value_is_an_empty_find(plant: Plant) -> None:
 def test_no_more_scenes_are_measured_than_asked_for(plant: Plant) -> None:
     for count in (1, 2, 30):
         seen: list[Sample] = []
-        plant(lambda example, seen=seen: seen.append(example) or 0.0)  # type: ignore[misc]
+        plant(lambda sample, seen=seen: seen.append(sample) or 0.0)  # type: ignore[misc]
         found = search(task(count=count))
         assert found.examples <= count
         assert len(seen) <= count + len(found.worst), "each of the worst once more"
@@ -130,7 +130,7 @@ def test_no_more_scenes_are_measured_than_asked_for(plant: Plant) -> None:
 
 def test_all_scenes_that_are_looked_at_are_within_the_bounds(plant: Plant) -> None:
     seen: list[Sample] = []
-    plant(lambda example: seen.append(example) or float(sum(map(abs, example.start.values()))))  # type: ignore[func-returns-value]
+    plant(lambda sample: seen.append(sample) or float(sum(map(abs, sample.start.values()))))  # type: ignore[func-returns-value]
     search(task())
     least, most = island_search.STEP_SIZES
     assert len(seen) > 150

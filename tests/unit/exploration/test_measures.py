@@ -11,27 +11,27 @@ from verify.scenes.scene import scene_from
 from verify.studies.separation.separate import separate
 
 
-def example(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:
+def sample(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:
     grid = {"steps": steps, "step_sizes": [h], "initial_values": [{"q": q, "p": p}]}
     return Sample.of(scene_from({"hamiltonian": formula, "schemes": [scheme], "grid": grid}, "x"))
 
 
 def test_growth_of_the_oscillator_is_its_closed_form() -> None:
     """lie2 on (p² + ω²q²)/2: det J = 1 + (ωh)⁴/4."""
-    found = growth(example("p**2/2 + 9*q**2/2", "1", "0", "0.1", 50))
+    found = growth(sample("p**2/2 + 9*q**2/2", "1", "0", "0.1", 50))
     expected = math.log10(math.expm1(50 * math.log1p(0.3**4 / 4)))
     assert found == pytest.approx(expected, abs=1e-12)
-    assert growth(example("p**2/2 + q**2/2", "1", "0", "0.1", 50, "symplectic-euler")) is None
+    assert growth(sample("p**2/2 + q**2/2", "1", "0", "0.1", 50, "symplectic-euler")) is None
 
 
 def test_rounding_share_is_that_of_a_separation() -> None:
-    asked = example("p**2/2 - cos(q)", "1", "0.5", "0.001", 200)
+    asked = sample("p**2/2 - cos(q)", "1", "0.5", "0.001", 200)
     largest = separate(
         asked.hamiltonian, "lie2", q="1", p="0.5", step_size="0.001", steps=200
     ).plain.largest  # type: ignore[union-attr]
     expected = math.log10(float(largest["total"]) / float(largest["truncation"]))
     assert rounding_share(asked) == pytest.approx(expected, abs=1e-4)
-    same = example("p**2/2 - cos(q)", "1", "0.5", "0.001", 200, "symplectic-euler")
+    same = sample("p**2/2 - cos(q)", "1", "0.5", "0.001", 200, "symplectic-euler")
     assert rounding_share(same) is None, "no truncation to be a share of"
 
 
@@ -50,17 +50,17 @@ def test_digits_lost_is_the_error_of_a_float64_loop() -> None:
         exact, floats = (q + h * p, p - h * q), (fq + 0.05 * fp, fp - 0.05 * fq)
         size = max(size, *map(abs, exact)) if (k + 1) % 25 == 0 else size  # 16 checkpoints
     error = max(abs(Fraction(f) - e) for f, e in zip(floats, exact, strict=True))
-    found = digits_lost(example("p**2/2 + q**2/2", "1", "0.5", "0.05", 400, "euler"))
+    found = digits_lost(sample("p**2/2 + q**2/2", "1", "0.5", "0.05", 400, "euler"))
     assert found == pytest.approx(math.log10(error / size * 2**53), abs=1e-9)
 
 
 def test_passing_the_origin_loses_no_digits() -> None:
     """q' = 1 from −1.1: q comes to 0 after 11 steps, where a relative error would be infinite."""
-    found = digits_lost(example("p", "-1.1", "0", "0.1", 11))
+    found = digits_lost(sample("p", "-1.1", "0", "0.1", 11))
     assert found is not None
     assert found < 1
 
 
 def test_an_orbit_that_goes_far_has_no_measure() -> None:
-    far = example("p*q", "2", "1", "0.1", 100)
+    far = sample("p*q", "2", "1", "0.1", 100)
     assert [each.value(far, 40) for each in MEASURES.values()] == [None] * 3

@@ -6,8 +6,8 @@ from typing import Any
 import mpmath
 import pytest
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
-from verify.algebra.generators import embed
 from verify.flows.closed_orbit import Orbit, closed_orbit
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.orbit_average import Average, average, bounded_part, phase

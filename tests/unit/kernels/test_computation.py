@@ -14,7 +14,7 @@ from tests.unit.kernels.test_program import STATE, VARIABLES, Polynomial, polyno
 from verify import arithmetic
 from verify.algebra.enclosure import Enclosures, enclose_all
 from verify.algebra.ring import Poly
-from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.computation import Observed, computed, step_map_of

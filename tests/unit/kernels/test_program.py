@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from verify import arithmetic
+from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.generators import embed
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import OBSERVABLES, Kernel, kernel_for
 from verify.kernels.program import Evaluator, Program

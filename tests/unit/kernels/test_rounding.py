@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import polynomials
-from verify.arithmetic.balls import bounds, rational_ball
+from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Writer

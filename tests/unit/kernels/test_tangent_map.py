@@ -14,7 +14,7 @@ import flint
 import pytest
 
 from tests.helpers.exact_orbits import case, jacobian
-from verify.arithmetic.balls import bounds, rational_ball
+from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr, mpmath

@@ -20,11 +20,11 @@ from verify.execution.executors import THIS_PROCESS
 from verify.pages.environment import TEMPLATES
 from verify.pages.page import render, write
 from verify.pages.text.typography import number
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Provenance, Report, SceneResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.value import Value
 from verify.scenes.scene import scene_from
 from verify.verdict import Verdict
 

@@ -9,7 +9,7 @@ import flint
 import pytest
 
 from tests.helpers.exact_orbits import assert_contained, case, enclosed_finely
-from verify.arithmetic.balls import bounds, rational_ball
+from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, float64, mpfr, mpmath
 from verify.execution.keeping import Keeper

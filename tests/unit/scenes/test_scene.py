@@ -14,7 +14,8 @@ from verify.errors import InputError
 from verify.execution import execute
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.frozen import Frozen
-from verify.scenes.results import claim, growth, proof, separation, value
+from verify.scenes.results import bounded_value as value
+from verify.scenes.results import claim, growth, proof, separation
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
 from verify.scenes.results import run as run_results

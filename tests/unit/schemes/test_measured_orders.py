@@ -14,7 +14,7 @@ import sympy
 from tests.helpers.planted_errors import with_error, with_hidden_error
 from tests.helpers.stepper import Stepper
 from verify import schemes
-from verify.arithmetic.balls import slope
+from verify.arithmetic.arb import slope
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions

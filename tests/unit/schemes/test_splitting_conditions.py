@@ -21,7 +21,7 @@ from tests.helpers.planted_errors import (
     with_swapped_stages,
 )
 from verify import schemes
-from verify.algebra.generators import embed
+from verify.algebra.embedding import embed
 from verify.algebra.jets import Jets
 from verify.errors import InputError
 from verify.proof.by_conditions import prove_by_conditions

@@ -8,7 +8,7 @@ import pytest
 from tests.helpers.planted_errors import SPLITTINGS
 from tests.helpers.stepper import Stepper
 from verify import arithmetic, schemes
-from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.lowering import Lowering

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import pytest
 
+from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
-from verify.algebra.generators import embed
 from verify.algebra.ring import Ring
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get

@@ -14,7 +14,7 @@ from typing import Any
 
 import flint
 
-from verify.arithmetic.balls import middle_and_radius, rational_ball
+from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import ESCAPE_BITS, Arithmetic, bits_for, interpreted
 
@@ -42,7 +42,7 @@ def at_bits(bits: int) -> Arithmetic:
         number=number,
         exact=lambda x: middle_and_radius(x)[0],
         radius=lambda x: middle_and_radius(x)[1],
-        finite=_known,
+        finite=_in_range,
         context=context,
         functions={
             **{f: getattr(flint.arb, f) for f in names},
@@ -62,6 +62,6 @@ def at_bits(bits: int) -> Arithmetic:
 _ESCAPE = flint.arb(2) ** ESCAPE_BITS
 
 
-def _known(x: Any) -> bool:
+def _in_range(x: Any) -> bool:
     """In range, and not so wide that nothing is known of it: more precision is what helps then."""
     return bool(abs(x) < _ESCAPE and (x.rel_accuracy_bits() > 0 or x.rad() < 1))

@@ -32,11 +32,11 @@ def make(digits: int) -> Arithmetic:
 
 def at_bits(bits: int) -> Arithmetic:
     # A context takes 1 ms, and is no other thread's: mpmath's functions change it for a while.
-    return _made(bits, get_ident())
+    return _arithmetic(bits, get_ident())
 
 
 @lru_cache(maxsize=32)
-def _made(bits: int, _thread: int) -> Arithmetic:
+def _arithmetic(bits: int, _thread: int) -> Arithmetic:
     context = MPContext()
     context.prec = bits
 

@@ -134,7 +134,7 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     """The flow of a generic H, whose partial derivatives up to `order` are variables."""
     pairs = [(i, n - i) for n in range(1, order + 1) for i in range(n, -1, -1)]
     ring = Differential(["h", *more, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])
-    _plane(ring)
+    _set_coordinates(ring)
     for i, j in pairs:
         if i + j < order:
             ring.set_gradient(f"H{i}_{j}", p=ring[f"H{i + 1}_{j}"], q=ring[f"H{i}_{j + 1}"])
@@ -143,7 +143,7 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     return Flow(ring, ring["H1_0"], ring["H0_1"])
 
 
-def _plane(ring: Differential) -> None:
+def _set_coordinates(ring: Differential) -> None:
     ring.set_gradient("p", p=ring.context.constant(1), q=ring.zero)
     ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
 
@@ -154,7 +154,7 @@ def of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4)
     The derivatives of F at u up to `order` are the variables F1, F2, …
     """
     ring = Differential(["h", *constants, "p", "q", *(f"F{k}" for k in range(1, order + 1))])
-    _plane(ring)
+    _set_coordinates(ring)
     inner, outer = (_polynomial(ring, text) for text in (u, rest))
     u_p, u_q = ring.diff(inner, "p"), ring.diff(inner, "q")
     for k in range(1, order):

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.generators import embed
 from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
 from verify.claims.theorems.differential import Flow, Poly, flow_of_every_hamiltonian
 from verify.hamiltonians import systems
@@ -42,7 +42,7 @@ def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.
 def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
     flow = flow_of_every_hamiltonian(MOST)
-    checks = [_generic(flow, name, recursion) for name in ("p", "q")]
+    checks = [_for_every_hamiltonian(flow, name, recursion) for name in ("p", "q")]
     for name in SYSTEMS:
         hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
         for order in range(1, eta + 1):
@@ -68,7 +68,7 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     )
 
 
-def _generic(flow: Flow, name: str, recursion: Recursion) -> Check:
+def _for_every_hamiltonian(flow: Flow, name: str, recursion: Recursion) -> Check:
     powers = flow.lie_derivatives(name, MOST)
     gaps = [recursion(flow, powers[n - 1]) - powers[n] for n in range(1, MOST + 1)]
     return vanishes(f"Eq. 4 and 5 give Lⁿ = Xⁿ {name} for a generic H, n = 1 … {MOST}", *gaps)

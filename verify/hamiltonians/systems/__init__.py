@@ -9,7 +9,7 @@ from verify.discovery import Catalogue
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.hamiltonians.system import System
+    from verify.hamiltonians.named_system import System
 
 _FILES = Catalogue(__name__, __path__)
 

@@ -27,75 +27,77 @@ from verify.integrators.results import Finding
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
-_Found = tuple[Verdict, str, tuple[tuple[str, ...], ...]]
+_Judgement = tuple[Verdict, str, tuple[tuple[str, ...], ...]]
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
 
 
-def claims_of(subject: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
+def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
     """One claim for the order and one for symplecticity, where they are made; of a printed table
     one for the order and one for its digits. `prefix` begins the ids."""
-    method = subject.method
+    method = integrator.method
 
-    def claim(what: str, statement: str, found: _Found, code: str = "") -> ClaimResult:
+    def claim(what: str, statement: str, found: _Judgement, code: str = "") -> ClaimResult:
         verdict, evidence, details = found
         told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or isinstance(method, Compared)
         return ClaimResult(
-            id=f"{prefix}/{subject.name}/{what}",
+            id=f"{prefix}/{integrator.name}/{what}",
             kind=what,
-            source=subject.name,
+            source=integrator.name,
             section=section,
-            statement=f"{statement} ({subject.source})",
+            statement=f"{statement} ({integrator.source})",
             scene="",
             verdict=verdict,
-            evidence=f"{evidence}. Driven: {subject.driven}",
+            evidence=f"{evidence}. Driven: {integrator.driven}",
             details=details,
             reproduction=code if told else "",
         )
 
     if isinstance(method, Compared):
-        yield claim("agreement", method.statement, method.compare(), subject.reproduction)
+        yield claim("agreement", method.statement, method.compare(), integrator.reproduction)
         return
     if isinstance(method, PrintedTable):
-        assert subject.order is not None  # noqa: S101 - of printed tables it is always claimed
-        found = judge_order(method, subject.order)
-        said = of_printed(found, subject.order, method)
-        yield claim("order", f"order {subject.order}", said, subject.reproduction)
+        assert integrator.order is not None  # noqa: S101 - of printed tables it is always claimed
+        found = judge_order(method, integrator.order)
+        said = of_printed(found, integrator.order, method)
+        yield claim("order", f"order {integrator.order}", said, integrator.reproduction)
         if found.verdict is not Verdict.REFUTED and method.units:
             said = of_digits(found, method)
-            code = reproductions.of_digits(method, found.nearest, subject.order)
+            code = reproductions.of_digits(method, found.nearest, integrator.order)
             yield claim("digits", "every digit is right, to one unit of the last", said, code)
         return
-    code, driven = subject.reproduction, isinstance(method, FloatStep)
+    code, driven = integrator.reproduction, isinstance(method, FloatStep)
     point = ((isinstance(method, FloatStep) and method.points) or POINTS)[0]
-    if subject.order is not None:
-        shown = reproductions.of_order(code, point, subject.order) if driven else code
-        yield claim("order", f"order {subject.order}", _order(subject), shown)
-    if subject.area_preserving:
+    if integrator.order is not None:
+        shown = reproductions.of_order(code, point, integrator.order) if driven else code
+        yield claim("order", f"order {integrator.order}", _order(integrator), shown)
+    if integrator.area_preserving:
         shown = reproductions.of_area(code, point) if driven else code
-        yield claim("area", "symplectic: det J ≡ 1", _area(subject), shown)
+        yield claim("area", "symplectic: det J ≡ 1", _area(integrator), shown)
 
 
-def _order(subject: ReleasedIntegrator) -> _Found:
-    assert subject.order is not None  # noqa: S101 - as it is called
-    if isinstance(subject.method, ExactTableau):
-        table = subject.method
-        order = order_of(table.tableau, subject.order, table.rounded)
+def _order(integrator: ReleasedIntegrator) -> _Judgement:
+    assert integrator.order is not None  # noqa: S101 - as it is called
+    if isinstance(integrator.method, ExactTableau):
+        table = integrator.method
+        order = order_of(table.tableau, integrator.order, table.rounded)
         repaired = ""
-        if order.order < subject.order and not table.rounded:
-            repaired = repair(table.tableau, subject.order)
+        if order.order < integrator.order and not table.rounded:
+            repaired = repair(table.tableau, integrator.order)
         area = symplecticity(table.tableau, table.rounded)
-        return of_tableau(subject.order, order, area, table.rounded, repaired)
-    assert isinstance(subject.method, FloatStep)  # noqa: S101 - the one kind that is left
-    return of_measured_order(subject.order, finding(subject.method), subject.area_preserving)
+        return of_tableau(integrator.order, order, area, table.rounded, repaired)
+    assert isinstance(integrator.method, FloatStep)  # noqa: S101 - the one kind that is left
+    return of_measured_order(
+        integrator.order, finding(integrator.method), integrator.area_preserving
+    )
 
 
-def _area(subject: ReleasedIntegrator) -> _Found:
-    if isinstance(subject.method, ExactTableau):
-        found = symplecticity(subject.method.tableau, subject.method.rounded)
+def _area(integrator: ReleasedIntegrator) -> _Judgement:
+    if isinstance(integrator.method, ExactTableau):
+        found = symplecticity(integrator.method.tableau, integrator.method.rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
         return verdict[found.holds], found.said, ()
-    assert isinstance(subject.method, FloatStep)  # noqa: S101 - the one kind that is left
-    return of_measured_area(finding(subject.method))
+    assert isinstance(integrator.method, FloatStep)  # noqa: S101 - the one kind that is left
+    return of_measured_area(finding(integrator.method))
 
 
 # -- tableaux -------------------------------------------------------------------------------------
@@ -103,7 +105,7 @@ def _area(subject: ReleasedIntegrator) -> _Found:
 
 def of_tableau(
     claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: str = ""
-) -> _Found:
+) -> _Judgement:
     """Of exact coefficients by proof; of floats up to their rounding."""
     ends = (
         f"; of h^{found.order + 1}, {found.next} fails by {found.residue:.3g}" if found.next else ""
@@ -133,7 +135,7 @@ def of_tableau(
 # -- printed tables -------------------------------------------------------------------------------
 
 
-def of_printed(found: OrderVerdict, claimed: int, table: PrintedTable) -> _Found:
+def of_printed(found: OrderVerdict, claimed: int, table: PrintedTable) -> _Judgement:
     """Whether the order can be had within ten units of the digits."""
     count = f"{found.checked} condition{'' if found.checked == 1 else 's'}"
     if found.verdict is Verdict.PROVED:
@@ -182,7 +184,7 @@ def _alone(found: OrderVerdict, table: PrintedTable) -> str:
     )
 
 
-def of_digits(found: OrderVerdict, table: PrintedTable) -> _Found:
+def of_digits(found: OrderVerdict, table: PrintedTable) -> _Judgement:
     """Whether all digits are right to one unit of the last."""
     if found.digits is None:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
@@ -238,9 +240,9 @@ def _short(x: Fraction) -> str:
 # -- floats ---------------------------------------------------------------------------------------
 
 
-def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> _Found:
+def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> _Judgement:
     """A measured order against the claimed one; what is not known refutes nothing."""
-    order, known = found.convergence_order, found.order_known
+    order, known = found.convergence_order, found.order_decided
     beside = ""
     if area_claimed is None and found.area_preserving is False:
         beside = f". {_NOT_CLAIMED}, and area is not preserved"
@@ -252,7 +254,7 @@ def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -
     return Verdict.UNDECIDED, f"{found.reason}{notes}", ()
 
 
-def of_measured_area(found: Finding) -> _Found:
+def of_measured_area(found: Finding) -> _Judgement:
     """An area defect above the probe's own error refutes; none that is seen is MEASURED."""
     error = "unknown" if found.probe_error is None else f"{found.probe_error:.1e}"
     if found.area_preserving:

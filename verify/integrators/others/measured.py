@@ -21,12 +21,12 @@ _SPAN = 1.9  # times the least step of a stretch its largest must be, for a powe
 _NO_SCHEME = ("frozen", "ignores h", "not a function")
 
 
-def _not_known(found: Finding, first: float, last: float) -> Finding:
+def _undecided(found: Finding, first: float, last: float) -> Finding:
     """Of a power that is seen over a short stretch only, as one may be in passing."""
     said = f"a power of h is seen from h = {first:.2g} to {last:.2g} only, too short a stretch"
     reason = f"{said}; {found.reason.partition('; ')[2]}"
     return replace(
-        found, verdict=Verdict.UNDECIDED, reason=reason, convergence_order=None, order_known=False
+        found, verdict=Verdict.UNDECIDED, reason=reason, convergence_order=None, order_decided=False
     )
 
 
@@ -47,7 +47,7 @@ def finding(method: FloatStep) -> Finding:
         told = of_measured(found, step, hamiltonian, points)
         seen = found.distance
         if seen.power is not None and seen.first < _SPAN * seen.last:
-            return _not_known(told, seen.first, seen.last)
+            return _undecided(told, seen.first, seen.last)
         return told
     except FAILURES as error:
         said = str(error) if isinstance(error, StepError) else last_line(error)

@@ -8,7 +8,7 @@ from typing import Any
 
 import flint
 
-from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius
 from verify.integrators.others.printed_table import PrintedTable, evaluated
 from verify.schemes.free_lie_words import LogCondition, of_logarithm, residue, step
 

@@ -59,7 +59,7 @@ def judge_order(table: PrintedTable, order: int) -> OrderVerdict:
         return _exactly(table, order)
     with working_precision(_BITS):
         highest = min(order + 1, most)
-        return _of(NearbyCoefficients(table, table.asked(highest)), order, highest)
+        return _of(NearbyCoefficients(table, table.conditions(highest)), order, highest)
 
 
 def _of(near: NearbyCoefficients, order: int, highest: int) -> OrderVerdict:

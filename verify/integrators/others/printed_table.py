@@ -96,7 +96,7 @@ class PrintedTable:
         own = (x for (kind, _), x in zip(self.parts, self.sizes, strict=True) if kind == name)
         return bool(sympy.expand(sum(own, sympy.S.Zero) - 1) == 0)
 
-    def asked(self, order: int) -> tuple[LogCondition, ...]:
+    def conditions(self, order: int) -> tuple[LogCondition, ...]:
         """The conditions of orders 1 … `order` that do not hold by the form of the table alone."""
         by_form = {"Σ kicks = 1": "kick", "Σ drifts = 1": "drift", "Σ w = 1": "step"}
         return tuple(

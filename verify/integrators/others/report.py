@@ -20,10 +20,10 @@ from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 TITLE = "The integrators of others, verified"
-_Told = Callable[[str], None]
+_OnLibrary = Callable[[str], None]
 
 
-def make_integrators_report(command: str, told: _Told | None = None) -> Report:
+def make_integrators_report(command: str, told: _OnLibrary | None = None) -> Report:
     """The report of all libraries that are installed, and of the printed tables.
 
     `told` is called with what each library is called before it is looked at.
@@ -73,24 +73,24 @@ def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[st
     prefix = str(module.TITLE).replace(" ", "-")
     failed: list[tuple[str, str]] = []
     claims: list[ClaimResult] = []
-    for subject in _subjects(module, failed):
+    for integrator in _integrators(module, failed):
         try:
-            claims += claims_of(subject, section, prefix)
+            claims += claims_of(integrator, section, prefix)
         except FAILURES as error:
             if module.LIBRARY is None:
                 raise  # no one else's code was run: it is ours that is wrong
-            failed.append((f"{module.TITLE}: {subject.name}", f"fails: {last_line(error)}"))
+            failed.append((f"{module.TITLE}: {integrator.name}", f"fails: {last_line(error)}"))
     if module.LIBRARY is None:
         claims.append(_shears(section, prefix))
     return claims, failed
 
 
-def _subjects(module: Any, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
-    """Its subjects, up to where the library fails: most fail when they are imported."""
+def _integrators(module: Any, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
+    """Its integrators, up to where the library fails: most fail when they are imported."""
     try:
         if module.LIBRARY is not None:
             import_module(module.LIBRARY)
-        yield from module.subjects()
+        yield from module.integrators()
     except FAILURES as error:
         if module.LIBRARY is None:
             raise

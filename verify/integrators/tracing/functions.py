@@ -33,13 +33,13 @@ def copied(function: Any, kind: Kind) -> Any:
     return _Copier(kind).value(function)
 
 
-def _own(x: types.FunctionType) -> bool:
+def _is_users(x: types.FunctionType) -> bool:
     """Whether it is the user's: not of Python's library, nor of one that is full of floats."""
     home = (x.__module__ or "").partition(".")[0]
     return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
 
 
-def _own_module(x: types.ModuleType) -> bool:
+def _is_users_module(x: types.ModuleType) -> bool:
     """Whether it is the user's: neither of Python's library nor installed."""
     folders = Path(getattr(x, "__file__", None) or "site-packages").parts
     standard = x.__name__.partition(".")[0] in sys.stdlib_module_names
@@ -62,7 +62,7 @@ class _Copier:
         if isinstance(x, types.ModuleType):
             if x.__name__ in _MODULES:
                 return _Module(x, self)
-            return _Helpers(x, self) if _own_module(x) else x
+            return _Helpers(x, self) if _is_users_module(x) else x
         if isinstance(x, functools.partial):
             bound = {name: self.value(v) for name, v in x.keywords.items()}
             return functools.partial(self.value(x.func), *map(self.value, x.args), **bound)
@@ -73,7 +73,7 @@ class _Copier:
         if isinstance(inner, types.FunctionType) and not isinstance(x, types.FunctionType):
             return self.value(inner)
         if isinstance(x, types.FunctionType):
-            return self.function(x) if _own(x) else x
+            return self.function(x) if _is_users(x) else x
         return self.replacement(x)
 
     def replacement(self, x: Any) -> Any:

@@ -25,11 +25,11 @@ from verify.pages.figures.axes import (
     whole_numbers,
 )
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.notebook_figure import Drawing
 from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.pages.text.typography import start, superscript
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult, SeriesPoint
-from verify.scenes.results.value import Value
 
 _POINT = 1 / 72  # inch; a figure's size is given in points, which are its SVG's user units
 _WIDTH = 370

@@ -18,7 +18,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from verify.pages.figures.axes import grid_lines
 from verify.pages.figures.label_place import Box, dots, place_of
-from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.notebook_figure import Drawing
 from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.pages.text.typography import number, whole
 from verify.scenes.results.regions import CarriedOutline, DrawnOutline, FlowImage, FlowResult

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from verify.pages.figures.axes import MOST_STYLES, decades, grid_lines, line_style, step_sizes
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.notebook_figure import Drawing
 from verify.pages.figures.svg import INK, drawing
 
 _POINT = 1 / 72

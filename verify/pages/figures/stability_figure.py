@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import decades, grid_lines
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.notebook_figure import Drawing
 from verify.pages.figures.svg import INK, SERIES, drawing
 from verify.scenes.results.stability import Kind, StabilityMapResult
 

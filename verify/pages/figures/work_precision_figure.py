@@ -19,7 +19,7 @@ from matplotlib.markers import CARETUPBASE, MarkerStyle
 from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
-from verify.pages.figures.plot_figure import Drawing
+from verify.pages.figures.notebook_figure import Drawing
 from verify.pages.figures.svg import INK, SERIES, drawing
 
 _POINT = 1 / 72

@@ -9,10 +9,10 @@ from math import isfinite, log10
 from statistics import median
 from typing import TYPE_CHECKING
 
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.plot import Plot
 from verify.pages.text.typography import listed, superscript
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
 
 if TYPE_CHECKING:

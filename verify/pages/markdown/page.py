@@ -13,9 +13,9 @@ from jinja2 import Environment
 
 from verify.execution.keeping import write_atomically
 from verify.pages.environment import environment
-from verify.pages.figures.plot import Plot
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.markdown import tables as markdown_tables
-from verify.pages.markdown.text import Markdown, escaped, in_html, markdown, table
+from verify.pages.markdown.from_markup import Markdown, escaped, in_html, markdown, table
 from verify.pages.page import DATA
 from verify.pages.sections.first_screen import SIGNS
 from verify.pages.sections.views import PageView, page_view

@@ -4,7 +4,7 @@ no rows of headings inside."""
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from verify.pages.markdown.text import Markdown, escaped, table
+from verify.pages.markdown.from_markup import Markdown, escaped, table
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.sections.run_table import RunTable
 from verify.pages.text.typography import cell, sentence
@@ -12,7 +12,7 @@ from verify.scenes.results.claim import CriterionResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
-    from verify.pages.sections.flow_view import CarriedView, Cell
+    from verify.pages.sections.flow_view import Cell, RegionView
     from verify.pages.sections.growth_view import GrowthView
     from verify.pages.sections.separation_view import SeparationView
     from verify.pages.sections.stability_view import StabilityView
@@ -118,7 +118,7 @@ def stability_table(view: "StabilityView") -> Markdown:
     return table(heads, rows, "llrrll")
 
 
-def region_table(view: "CarriedView") -> Markdown:
+def region_table(view: "RegionView") -> Markdown:
     heads = ("map", "N", "t", "change of area", "mean of Λ", "distance", "arithmetic")
     rows = [
         (r.map, r.steps, r.time, _pair(r.change), _pair(r.mean), _pair(r.distance), r.arithmetic)

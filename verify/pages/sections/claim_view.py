@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from verify.scenes.results.claim import ClaimResult
 
 if TYPE_CHECKING:
-    from verify.pages.figures.plot import Plot
+    from verify.pages.figures.captioned_plot import Plot
 
 _PRINTED = "printed"  # how the printed row of a table claim's details begins
 

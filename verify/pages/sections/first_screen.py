@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.plot import Plot
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.sections.scene_view import SceneView
 from verify.pages.text.typography import listed, superscript, whole
@@ -103,7 +103,7 @@ def finding(
 ) -> str:
     if report.claims:
         return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(told)}."
-    proofs, judged = _proofs(report), _judged(report)
+    proofs, judged = _proofs(report), _stability_tiles(report)
     if not proofs and not judged:
         if gallery:
             return gallery.finding
@@ -118,7 +118,7 @@ def _proofs(report: Report) -> list[ProofResult]:
     return [proof for scene in report.scenes for proof in scene.proofs]
 
 
-def _judged(report: Report) -> list[StabilityResult]:
+def _stability_tiles(report: Report) -> list[StabilityResult]:
     return [case for scene in report.scenes for case in scene.stability]
 
 
@@ -187,7 +187,7 @@ def _tiles(report: Report) -> list[Tile]:
             for v, (sign, meaning) in SIGNS.items()
             if verdicts[v]
         ]
-    proofs, judged = _proofs(report), _judged(report)
+    proofs, judged = _proofs(report), _stability_tiles(report)
     if judged and len(proofs) > _FEW:
         return _tiles_of_runs(judged)
     if len(proofs) > _FEW:

@@ -14,12 +14,12 @@ _NOTED = 1.5  # times as long: an outline drawn out so far is spoken of
 
 
 def picture_sentences(flow: FlowResult, grid: Grid) -> Iterator[str]:
-    yield from _drawn_out(grid)
+    yield from _stretched(grid)
     yield from _upon_each_other(flow, line_width(grid))
     yield from _upon_before(grid)
 
 
-def _drawn_out(grid: Grid) -> Iterator[str]:
+def _stretched(grid: Grid) -> Iterator[str]:
     """By the first map that has images, at the most steps: for the eye the others are as it is."""
     images = [image for row in grid.panels for image in row[0].images]
     if not images:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.figures.plot import Plot
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.flow_finding import IS, finding, findings, region_of
 from verify.pages.text.typography import listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
@@ -30,7 +30,7 @@ class ImageRow:
 
 
 @dataclass(frozen=True)
-class CarriedView:
+class RegionView:
     """One region: what it is, its images; no `plot` where nothing can be drawn."""
 
     result: FlowResult
@@ -46,19 +46,19 @@ class FlowView:
     """All that a scene asks for."""
 
     finding: tuple[str, ...]
-    regions: tuple[CarriedView, ...]
+    regions: tuple[RegionView, ...]
 
-    def of(self, source: str) -> tuple[CarriedView, ...]:
+    def of(self, source: str) -> tuple[RegionView, ...]:
         return tuple(region for region in self.regions if region.result.source == source)
 
 
 def flow_view(flows: Sequence[FlowResult], anchor: str) -> FlowView:
-    regions = [_carried(flow, f"flow-{i}-of-{anchor}") for i, flow in enumerate(flows)]
+    regions = [_region(flow, f"flow-{i}-of-{anchor}") for i, flow in enumerate(flows)]
     return FlowView(tuple(findings(flows)), tuple(regions))
 
 
-def _carried(flow: FlowResult, anchor: str) -> CarriedView:
-    return CarriedView(
+def _region(flow: FlowResult, anchor: str) -> RegionView:
+    return RegionView(
         result=flow,
         anchor=anchor,
         title=_title(flow),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.plot import Plot
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.gallery_finding import findings, in_short, lambda_of, run_beyond
 from verify.pages.text import mathml
 from verify.pages.text.typography import NBSP, start, step, whole
@@ -119,7 +119,7 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
     """Truncation against rounding, which the first screen shows of the worst, and the orbit."""
     of = each.separation
     series = of.plain.series if of.plain else ()
-    drawable = [at for at in series if _known(at.truncation) or _known(at.total)]
+    drawable = [at for at in series if _bounded_number(at.truncation) or _bounded_number(at.total)]
     if len(drawable) > 1:
         from verify.pages.figures import gallery_figure
 
@@ -127,13 +127,13 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
         svg = gallery_figure.parts(each, name=f"parts-of-{anchor}", label=f"{lead}.")
         # That of the worst scene stands on the first screen, far from its card.
         formula = [_formula(of.hamiltonian)] if place == 1 else []
-        yield Plot(svg, f"{lead}.", Markup(" ").join([*formula, _parts_said(each)]))
+        yield Plot(svg, f"{lead}.", Markup(" ").join([*formula, _parts_sentence(each)]))
     if len(each.orbit) > 1:
         from verify.pages.figures import gallery_figure
 
         lead = f"Scene {place}: the orbit in the (q, p) plane, {whole(steps)} steps"
         svg = gallery_figure.orbit(each.orbit, steps, name=f"orbit-of-{anchor}", label=f"{lead}.")
-        yield Plot(svg, f"{lead}.", _orbit_said(each, steps))
+        yield Plot(svg, f"{lead}.", _orbit_sentence(each, steps))
 
 
 def _formula(text: str) -> Markup:
@@ -143,20 +143,20 @@ def _formula(text: str) -> Markup:
     return Markup("H{0}={0}{1}.").format(NBSP, mathml.formula(text))
 
 
-def _parts_said(each: GalleryScene) -> str:
+def _parts_sentence(each: GalleryScene) -> str:
     of = each.separation
     series = of.plain.series if of.plain else ()
     said = [
         f"Λ in float64, evaluated the plain way, split after up to {whole(of.steps)} steps: what "
         "the scheme does to area, and what rounding adds."
     ]
-    if any(not _known(size) for at in series for size in (at.truncation, at.total)):
+    if any(not _bounded_number(size) for at in series for size in (at.truncation, at.total)):
         said.append("What is 0, or of what no digit is known, has no place on these axes.")
     said.append(f"In place of exact arithmetic: {of.arithmetic}; {of.error_method}.")
     return " ".join(said)
 
 
-def _orbit_said(each: GalleryScene, steps: int) -> str:
+def _orbit_sentence(each: GalleryScene, steps: int) -> str:
     shown = len(each.orbit) - 1
     every = -(-steps // shown)
     points = "each step" if every == 1 else f"every {whole(every)} steps"
@@ -165,7 +165,7 @@ def _orbit_said(each: GalleryScene, steps: int) -> str:
     return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits.{at_rest}"
 
 
-def _known(size: str) -> bool:
+def _bounded_number(size: str) -> bool:
     from verify.pages.figures.logarithm import lg
 
     return lg(size) > float("-inf")

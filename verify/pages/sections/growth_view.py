@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from verify.pages.figures.captioned_plot import Plot, few
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.plot import Plot, few
 from verify.pages.text import mathml
 from verify.pages.text.typography import NBSP, listed, number, start, step, superscript, whole
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
-from verify.scenes.results.value import Value
 
 if TYPE_CHECKING:
     from verify.pages.figures.growth_figure import Orbit
@@ -162,7 +162,7 @@ def _percent(value: Fraction) -> str:
 
 def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     """|Λ| predicted and measured, where there are step sizes to compare."""
-    drawable = [each for each in laws if len(_drawn(each)) > 1]
+    drawable = [each for each in laws if len(_orbit_figure(each)) > 1]
     if not drawable:
         return
     from verify.pages.figures import growth_figure
@@ -176,7 +176,7 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
 
 def orbits(laws: Sequence[GrowthLawResult]) -> "list[Orbit]":
     """Those along which two step sizes and more can be drawn."""
-    return [_orbit(each) for each in laws if len(_drawn(each)) > 1]
+    return [_orbit(each) for each in laws if len(_orbit_figure(each)) > 1]
 
 
 def _caption(law: AverageResult) -> str:
@@ -193,7 +193,7 @@ def _caption(law: AverageResult) -> str:
     )
 
 
-def _drawn(each: GrowthLawResult) -> list[PredictionResult]:
+def _orbit_figure(each: GrowthLawResult) -> list[PredictionResult]:
     """Those of whose Λ and difference a digit is known."""
     return [
         p
@@ -211,7 +211,7 @@ def _orbit(each: GrowthLawResult) -> "Orbit":
         placed = ((h, lg(value.value)) for h, value in values if value)
         return Line(start(each.law), tuple(placed))
 
-    points = _drawn(each)
+    points = _orbit_figure(each)
     return growth_figure.Orbit(
         predicted=line((p.step_size, p.predicted) for p in points),
         measured=line((p.step_size, p.measured) for p in points),

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from verify.pages.figures.plot import Plot
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.claim_view import Anchors, ClaimView
 from verify.pages.sections.scene_view import SceneView
 from verify.scenes.paper_figures import PaperFigure

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.plot import computed
+from verify.pages.figures.captioned_plot import computed
 from verify.pages.text.typography import number, start, value, whole
 from verify.scenes.results.run import RunResult
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures.plot import Plot
-from verify.pages.sections import plots
+from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections import scene_plots
 from verify.pages.sections.run_table import RunTable, run_table
 from verify.pages.text import mathml
 from verify.pages.text.typography import listed, prose, sentence, whole
@@ -90,9 +90,9 @@ def _scheme_view(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeV
         leading=leading,
         every=every,
         every_finding=_every_finding(every) if every else Markup(""),
-        plots=tuple(plots.against_step_size(runs, scene, proof, name=anchor)),
+        plots=tuple(scene_plots.against_step_size(runs, scene, proof, name=anchor)),
         series=tuple(
-            plots.over_time(run, name=f"time-{index}-of-{anchor}")
+            scene_plots.over_time(run, name=f"time-{index}-of-{anchor}")
             for index, run in enumerate(series)
         ),
         sources=tuple(run.source for run in series),

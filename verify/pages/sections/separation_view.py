@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from markupsafe import Markup
 
-from verify.pages.figures.plot import Plot, few
+from verify.pages.figures.captioned_plot import Plot, few
 from verify.pages.figures.separation_caption import WAYS, caption, end_of
 from verify.pages.sections.separation_finding import (
     PARTS,
@@ -18,13 +18,13 @@ from verify.pages.sections.separation_finding import (
     growth_finding,
 )
 from verify.pages.text.typography import NBSP, number, start, step, whole
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
     EvaluationResult,
     GrowthResult,
     SeparationGrid,
     SeparationResult,
 )
-from verify.scenes.results.value import Value
 
 MOST_ROWS = 600
 
@@ -133,15 +133,17 @@ def _parts_row(point: SeparationResult) -> PartsRow:
     return PartsRow(
         step_size=h,
         steps=steps,
-        truncation=_known(parts.truncation),
+        truncation=_bounded_number(parts.truncation),
         plain=_compared(point.plain),
-        parts=tuple(_known(getattr(parts, name), strong=name == greatest) for name in PARTS),
+        parts=tuple(
+            _bounded_number(getattr(parts, name), strong=name == greatest) for name in PARTS
+        ),
         closed_form=_compared(closed) if closed else none,
         failure="",
     )
 
 
-def _known(found: Value, *, strong: bool = False) -> Markup:
+def _bounded_number(found: Value, *, strong: bool = False) -> Markup:
     """The first of the known digits; where none is known, the bound."""
     if Decimal(found.value) == 0 and found.bound != "0":
         return Markup("|·|{0}≤{0}{1}").format(NBSP, few(found.bound))
@@ -152,11 +154,11 @@ def _known(found: Value, *, strong: bool = False) -> Markup:
 def _compared(evaluation: EvaluationResult) -> Markup:
     gap = decades_below(evaluation)
     if gap is None:
-        return _known(evaluation.parts.total)
+        return _bounded_number(evaluation.parts.total)
     side = "below" if gap > 0 else "above"
     kind = "bound" if gap > 0 else "bound over"
     return Markup('{} <span class="{}">{:.1f} decades {}</span>').format(
-        _known(evaluation.parts.total), kind, abs(gap), side
+        _bounded_number(evaluation.parts.total), kind, abs(gap), side
     )
 
 

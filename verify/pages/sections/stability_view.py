@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain, short
-from verify.pages.figures.plot import Plot
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.text.typography import listed, number, step, whole
 from verify.pages.text.words import counts_of
 from verify.scenes.results.report import SceneResult

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures.plot import Plot
-from verify.pages.sections import plots
+from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections import scene_plots
 from verify.pages.sections.claim_view import Anchors, ClaimView
 from verify.pages.sections.first_screen import FirstScreen, first_screen
 from verify.pages.sections.paper_figure_view import PaperFigureView, paper_figure_views
@@ -86,7 +86,7 @@ def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[Claim
         anchor = anchors.take("claim", result.id)
         claim = ClaimView(result, anchor, *scenes.get(result.scene, ("", "")))
         if claim.is_table:
-            claim = replace(claim, plot=plots.table(claim, name=f"table-of-{anchor}"))
+            claim = replace(claim, plot=scene_plots.table(claim, name=f"table-of-{anchor}"))
         found.append(claim)
     return tuple(found)
 

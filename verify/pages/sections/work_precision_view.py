@@ -7,10 +7,10 @@ from decimal import Decimal
 
 from markupsafe import Markup, escape
 
-from verify.pages.figures.plot import Plot, few
+from verify.pages.figures.captioned_plot import Plot, few
 from verify.pages.figures.work_precision_plots import plots
 from verify.pages.text.typography import NBSP, number, start, step, whole
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import (
     CostResult,
     SlopeResult,

@@ -11,10 +11,10 @@ from decimal import Decimal, InvalidOperation
 from markupsafe import Markup, escape
 
 from verify.pages.text import mathml
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationResult
-from verify.scenes.results.value import Value
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
 NBSP = "\u00a0"

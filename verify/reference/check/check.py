@@ -158,7 +158,7 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
         text = text_of(contents[name], name)
         found.differences += consistency.of_text(schema_text(name), text, name)
     scenes = _scenes(manifest, own, found)
-    _told(manifest, scenes, found)
+    _check_provenance(manifest, scenes, found)
     _complete(manifest, scenes, found)
     for name, scene in scenes.items():
         data = read.get(f"{name}.json")
@@ -250,7 +250,7 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
     return scenes
 
 
-def _told(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
+def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
     """The command and the versions, as far as they can be told to be wrong."""
     try:
         words = shlex.split(manifest.command)

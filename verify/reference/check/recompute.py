@@ -88,7 +88,7 @@ def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> 
             found.not_recomputed.append(f"{file}: {label}: has no values")
             continue
         if row.status == "left range":
-            left = _left(orbit, row, file, label, found, final)
+            left = _leaves_range(orbit, row, file, label, found, final)
             if left is None:
                 return
             continue
@@ -139,7 +139,7 @@ class _Orbit:
         return {"p": self.p, "q": self.q, "delta_j": self.ahead()[1], "mse": mean, "lam": self.lam}
 
 
-def _left(
+def _leaves_range(
     orbit: _Orbit, row: OrbitPoint, file: str, label: str, found: Findings, final: bool
 ) -> int | None:
     """The step after which the orbit is beyond 2^4000, or not defined; None where it is neither.

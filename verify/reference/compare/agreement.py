@@ -131,7 +131,7 @@ def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: st
 
 def is_single(value: Fraction, unit: Fraction) -> bool:
     """Whether it is a single-precision number, up to its printing, or one's shortest decimal."""
-    near = _single_near(value)
+    near = _nearest_single(value)
     return near is not None and (
         abs(Fraction(float(near)) - value) <= unit or _shortest(near, value)
     )
@@ -140,7 +140,7 @@ def is_single(value: Fraction, unit: Fraction) -> bool:
 def chance_of_single(value: Fraction, unit: Fraction) -> float:
     """How likely a number that is not of single precision would pass for one: those of few digits
     do, and everything that is printed with seven."""
-    near = _single_near(value)
+    near = _nearest_single(value)
     bits = value.denominator.bit_length() + value.numerator.bit_length()
     if near is None or bits < _SHORT_BITS:
         return 1.0
@@ -150,7 +150,7 @@ def chance_of_single(value: Fraction, unit: Fraction) -> float:
     return min(1.0, max(_LEAST_CHANCE, float(room / Fraction(float(np.spacing(abs(near)))))))
 
 
-def _single_near(value: Fraction) -> np.float32 | None:
+def _nearest_single(value: Fraction) -> np.float32 | None:
     try:
         near = np.float32(struct.unpack("f", struct.pack("f", float(value)))[0])
     except OverflowError:

@@ -12,7 +12,7 @@ from fractions import Fraction
 import flint
 
 from verify.algebra.enclosure import enclose_all
-from verify.arithmetic.balls import around, in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.computation import step_map_of
 from verify.kernels.orbit import Orbit

@@ -12,10 +12,10 @@ from fractions import Fraction
 from functools import partial
 
 from verify.reference.compare.agreement import chance_of_single, is_single
+from verify.reference.compare.column_meanings import readings
 from verify.reference.compare.findings import DOUBLE, SINGLE, Fit, Named, RunFindings, Verdict
 from verify.reference.compare.judge import AREA, STATE, Judge
 from verify.reference.compare.mistakes import Mistake, of_inputs, of_states, without_synonyms
-from verify.reference.compare.readings import readings
 from verify.reference.compare.setting import Setting
 
 _FARTHER = 30  # times: the right setting is off by so much more than a mistake that fits

@@ -12,10 +12,10 @@ from fractions import Fraction
 
 from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance import Allowance
+from verify.reference.compare.column_meanings import Foretold, value_of
 from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
 from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import PublishedRun
-from verify.reference.compare.readings import Foretold, value_of
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Bounded, Points, Setting, number_of
 from verify.reference.compare.submitted import Row

@@ -1,7 +1,7 @@
 """What may be wrong with somebody's run: each mistake makes another setting of the right one.
 
 Adding a mistake is adding a line. What may be wrong with an area error alone is in
-`verify.reference.compare.readings`.
+`verify.reference.compare.column_meanings`.
 """
 
 from collections.abc import Iterator

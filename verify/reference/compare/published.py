@@ -87,7 +87,7 @@ class Published:
         for runs in self.by_scene.values():
             yield from runs
 
-    def given(self, scene: str, key: str) -> list[str]:
+    def values_of(self, scene: str, key: str) -> list[str]:
         """What the scene's runs have for one of `KEYS`, each once."""
         name = {"q0": "q", "p0": "p"}.get(key, key)
         return list(dict.fromkeys(getattr(x.run, name) for x in self.scene(scene)))

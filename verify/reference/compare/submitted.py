@@ -193,7 +193,7 @@ class _Keys:
             return None
         for name in KEYS:
             if name not in told:
-                values = self.ours.given(scene, name)
+                values = self.ours.values_of(scene, name)
                 if len(values) > 1:
                     raise InputError(
                         f"--{_option(name)}", "", f"is wanted, as no column of {lines.name} is "

@@ -13,7 +13,7 @@ from typing import Literal
 import flint
 
 from verify.algebra.enclosure import enclose_all
-from verify.arithmetic.balls import around, in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError

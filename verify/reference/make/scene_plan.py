@@ -47,7 +47,7 @@ def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
 
 def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
     """Section by section: scheme, initial value, step size."""
-    given = scene.given() if scene.reference else {}
+    given = scene.hamiltonian_fields() if scene.reference else {}
     for section in scene.reference:
         for scheme in schemes_of(scene, section):
             for at in section.initial_values:
@@ -60,7 +60,7 @@ def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
 
 def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
     """Section by section, where the flow is asked for: initial value, step size."""
-    given = scene.given() if scene.reference else {}
+    given = scene.hamiltonian_fields() if scene.reference else {}
     for section in scene.reference:
         if section.flow:
             for at in section.initial_values:

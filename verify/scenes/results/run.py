@@ -4,7 +4,7 @@ from typing import Literal
 
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, Seconds
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 
 _SHOWN = {
     "lambda": ("Λ", r"\Lambda"),

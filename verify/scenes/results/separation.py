@@ -5,7 +5,7 @@ from typing import Literal
 
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, Seconds
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 
 _PARTS = {
     "lambda_working": "Λ in float64",

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from verify.scenes.frozen import Frozen, Seconds
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
 

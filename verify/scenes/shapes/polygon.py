@@ -11,7 +11,7 @@ Pair = tuple[Value, Value]
 def meetings(corners: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
     """The sides i < j that have a point in common, neighbours apart; side k begins at corner k."""
     count = len(corners)
-    for i, j in _near(corners):
+    for i, j in _meeting_boxes(corners):
         if j - i not in (1, count - 1):
             ends = corners[i], corners[(i + 1) % count], corners[j], corners[(j + 1) % count]
             if _meet(*ends):
@@ -34,7 +34,7 @@ def twice_the_area(corners: Sequence[Pair]) -> Value:
     return sum(_cross(corners[0], a, b) for a, b in pairwise(corners[1:]))
 
 
-def _near(corners: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+def _meeting_boxes(corners: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
     """The pairs of sides whose boxes meet, the smaller index first."""
     boxes = []
     for k, (one, other) in enumerate(zip(corners, [*corners[1:], corners[0]], strict=True)):

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from verify.algebra.enclosure import enclose_over
 from verify.algebra.formula import to_text
-from verify.arithmetic.balls import (
+from verify.arithmetic.arb import (
     UNKNOWN,
     Ball,
     around,
@@ -28,9 +28,9 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, PredictionResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.value import Value
 
 ENCLOSED = "ball arithmetic at the equilibrium"
 ESTIMATED = "computed again with ten digits more and other points"
@@ -72,8 +72,8 @@ def average_of(
         potential=_shown(law.potential) if law and law.potential else "",
         orbit=found.orbit.kind if found else "undecided",
         reason=reason,
-        average=_known(found.value, found.bound, digits) if found else None,
-        period=_known(*period, digits) if period else None,
+        average=_bounded_value(found.value, found.bound, digits) if found else None,
+        period=_bounded_value(*period, digits) if period else None,
         error_kind="enclosed" if at_rest else "estimated",
         error_method=ENCLOSED if at_rest else ESTIMATED,
         seconds=time.perf_counter() - begun,
@@ -138,10 +138,10 @@ def _between(f: Element, run: RunResult) -> Ball:
 
 
 def _value(x: Ball) -> Value:
-    return _known(*middle_and_radius(x), _SHOWN)
+    return _bounded_value(*middle_and_radius(x), _SHOWN)
 
 
-def _known(value: Fraction, bound: Fraction, digits: int) -> Value:
+def _bounded_value(value: Fraction, bound: Fraction, digits: int) -> Value:
     shown, within = known_digits(value, bound, digits)
     return Value(value=shown, bound=within)
 

@@ -29,7 +29,7 @@ from verify.schemes import get
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
 from verify.studies.regions.hausdorff import FARTHEST, hausdorff
 from verify.studies.regions.mean_lambda import Mean, RegionMean
-from verify.studies.regions.point_systems import (
+from verify.studies.regions.point_carriers import (
     WIDE,
     ExactFlowCarrier,
     FloatCarrier,
@@ -55,7 +55,7 @@ _DETAIL = Goal(change=Fraction(1, 100), area=Fraction(1, 10**5))
 
 
 @dataclass(frozen=True)
-class _Carried:
+class _OutlineImage:
     """One outline under the map, in float64: its panels' nodes before and after."""
 
     outline: Outline
@@ -130,7 +130,7 @@ def carry(
 
 def _measured(
     by: _Carrying, shape: Shape, digits: int
-) -> tuple[list[_Carried], SchemeCarrier | ExactFlowCarrier]:
+) -> tuple[list[_OutlineImage], SchemeCarrier | ExactFlowCarrier]:
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
     smaller, preserves = smaller_than_one(shape.outlines[0]), by.preserves_area
     if by.map == EXACT_FLOW:
@@ -159,7 +159,7 @@ def _unchanged(digits: int) -> Goal:
     return Goal(Fraction(0), Fraction(1, 10 ** (digits - _LOST)))
 
 
-def _all(shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal) -> list[_Carried]:
+def _all(shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal) -> list[_OutlineImage]:
     goals = [goal, *[_DETAIL] * (len(shape.outlines) - 1)]
     found = []
     for outline, measured in zip(
@@ -167,7 +167,7 @@ def _all(shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal) -> l
     ):
         before = [plane.floats(panel.start) for panel in measured.panels]
         after = [plane.floats(panel.image) for panel in measured.panels]
-        found.append(_Carried(outline, measured, before, after))
+        found.append(_OutlineImage(outline, measured, before, after))
     return found
 
 
@@ -181,7 +181,7 @@ def _is_unresolved(measured: Measured) -> bool:
 
 
 def _areas(
-    carried: Sequence[_Carried], plane: SchemeCarrier | ExactFlowCarrier, preserves: bool
+    carried: Sequence[_OutlineImage], plane: SchemeCarrier | ExactFlowCarrier, preserves: bool
 ) -> dict[str, Any]:
     region = carried[0].measured
     problem = _problem(region, preserves)
@@ -210,12 +210,14 @@ def _problem(region: Measured, preserves: bool) -> str:
     return ""
 
 
-def _outlines(carried: Sequence[_Carried], curves: Sequence[np.ndarray]) -> list[CarriedOutline]:
+def _outlines(
+    carried: Sequence[_OutlineImage], curves: Sequence[np.ndarray]
+) -> list[CarriedOutline]:
     fine = _extent(curves) / DRAWN
     return [_outline(each, curve, fine) for each, curve in zip(carried, curves, strict=True)]
 
 
-def _outline(carried: _Carried, curve: np.ndarray, fine: float) -> CarriedOutline:
+def _outline(carried: _OutlineImage, curve: np.ndarray, fine: float) -> CarriedOutline:
     measured = carried.measured
     area = abs(measured.area)  # of a curve that runs clockwise it has a sign
     change, error = _shown(measured.change, measured.error)
@@ -242,7 +244,7 @@ def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
 # -- beside the areas -----------------------------------------------------------------------------
 
 
-def _mean(by: _Carrying, region: _Carried) -> dict[str, Any]:
+def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
     # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
     x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
@@ -260,7 +262,7 @@ def _mean(by: _Carrying, region: _Carried) -> dict[str, Any]:
 
 
 def _distance(
-    hamiltonian: Hamiltonian, span: Fraction, carried: Sequence[_Carried]
+    hamiltonian: Hamiltonian, span: Fraction, carried: Sequence[_OutlineImage]
 ) -> dict[str, Any]:
     """The greatest Hausdorff distance of an outline from its image by the exact flow.
 

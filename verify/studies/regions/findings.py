@@ -24,17 +24,17 @@ def _flow(scene: Scene, flow: Flow, results: Mapping[str, Frozen]) -> FlowResult
         centre=(text(flow.centre.q), text(flow.centre.p)),
         scale=text(flow.scale),
         step_size=text(flow.step_size),
-        before=_drawn(flow),
+        before=_outlines_to_draw(flow),
         images=tuple(r for r in images if isinstance(r, FlowImage)),
         source=flow.source,
     )
 
 
-def _drawn(flow: Flow) -> tuple[DrawnOutline, ...]:
+def _outlines_to_draw(flow: Flow) -> tuple[DrawnOutline, ...]:
     from verify.studies.regions.polyline import text as points_text
     from verify.studies.regions.polyline import traced
 
-    shape = flow.shape_given().made()
+    shape = flow.placed_shape().made()
     return tuple(
         DrawnOutline(name=outline.name, points=points_text(points))
         for outline, points in zip(shape.outlines, traced(shape), strict=True)

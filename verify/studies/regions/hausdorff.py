@@ -103,7 +103,7 @@ def _compiled() -> Callable[..., tuple[float, float]]:
     from numba.extending import register_jitable
 
     make_compilable()
-    for function in (_distance, _upper, _along):
+    for function in (_distance, _upper, _greatest_on_segment):
         register_jitable(function)
     compiled: Callable[..., tuple[float, float]]
     compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(_directed)
@@ -139,7 +139,7 @@ def _upper(part: Any, start: Any, end: Any, enough: float) -> tuple[float, float
     return bound, min(max(low, 0.05), 0.95)
 
 
-def _along(
+def _greatest_on_segment(
     row: Any, near: Any, others: Any, tree: Any, work: Any, low: float, rounding: float
 ) -> tuple[float, float]:
     """The greatest distance of a point of one segment from `others`: at least, and at most.
@@ -194,6 +194,6 @@ def _directed(
         near[k, 1] = near[follows, 0]
         if rows[k, 2] != rows[follows, 0] or rows[k, 3] != rows[follows, 1]:
             near[k, 1] = nearest(rows[k, 2], rows[k, 3], others, tree, near[k, 0], work[0])[1]
-        low, bound = _along(rows[k], near[k], others, tree, work, low, rounding)
+        low, bound = _greatest_on_segment(rows[k], near[k], others, tree, work, low, rounding)
         high = max(high, bound, low)
     return low, high

@@ -38,7 +38,7 @@ def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
 
 def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
     """One a map and number of steps, in that order."""
-    exact, given, shape = scene.exact_hamiltonian(), scene.given(), flow.shape_given()
+    exact, given, shape = scene.exact_hamiltonian(), scene.hamiltonian_fields(), flow.placed_shape()
     for name in maps_of(scene, flow):
         by_scheme = name != EXACT_FLOW
         preserves = not by_scheme or get(name).step_map(exact).preserves_area

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-from verify.arithmetic.balls import slope
+from verify.arithmetic.arb import slope
 
 Name = Literal["random walk", "drift", "undecided"]
 _FIRST = 8  # values that a maximum is taken of, at least

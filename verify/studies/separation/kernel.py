@@ -81,7 +81,7 @@ def mixed_kernel(
     """
     step_map = step_map_of(hamiltonian, scheme)
     float64 = number_systems.get("float64", 17)
-    narrow = _written(step_map, float64, WORKING)
+    narrow = _uncompiled(step_map, float64, WORKING)
     if arithmetic.absolute and narrow.lowering.solves(narrow.roots):
         raise UnsupportedError(f"{arithmetic.name} follows no float64 that solves equations")
     value = {name: f"f_v{index}" for name, index in narrow.outputs.items()}
@@ -89,7 +89,7 @@ def mixed_kernel(
     before, inside = _lines(narrow, list(value), float64, "f_")
     inside += [f"f_det = {value['det']}", f"f_dj = {value['dj']}"]
 
-    wide = _written(step_map, arithmetic, frozenset({"lambda"}))
+    wide = _uncompiled(step_map, arithmetic, frozenset({"lambda"}))
     totals: dict[str, int] = {}
     if follow:
         _check(wide, arithmetic)
@@ -116,7 +116,7 @@ def mixed_kernel(
     return MixedKernel(function, narrow.parameters, limits, names, totals, wide, closed, source)
 
 
-def _written(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
+def _uncompiled(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
     """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
     uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
     return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()

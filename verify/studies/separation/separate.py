@@ -40,6 +40,7 @@ from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import check
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
     CrossoverResult,
     EvaluationResult,
@@ -49,7 +50,6 @@ from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationResult,
 )
-from verify.scenes.results.value import Value
 from verify.studies.separation.chain import AUTO, PARTS, QUANTITIES, Chain, Chains, Separation
 from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
 from verify.studies.separation.working import Stopped

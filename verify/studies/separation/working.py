@@ -24,8 +24,8 @@ from typing import Any, Literal
 import flint
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.balls import bounds as ends
-from verify.arithmetic.balls import in_reach, rational_ball
+from verify.arithmetic.arb import bounds as ends
+from verify.arithmetic.arb import in_reach, rational_ball
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.reach import limits

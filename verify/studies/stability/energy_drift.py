@@ -38,7 +38,7 @@ def drift_of(motion: RunMotion) -> Fraction | None:
     first = _rate(motion, run, trail)
     if first is None:
         return None
-    longer = replace(run, steps=_LONGER * trail.asked)
+    longer = replace(run, steps=_LONGER * trail.steps)
     if longer.steps <= MOST_INTERPRETED:
         again, _ = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
@@ -56,7 +56,7 @@ def too_short(motion: RunMotion) -> bool:
     orbit, (trail, _) = motion.orbit, motion.precise
     if orbit.period is None:
         return orbit.kind == "open"
-    return _LONGER * trail.asked * motion.run.step_size < _PERIODS * orbit.period
+    return _LONGER * trail.steps * motion.run.step_size < _PERIODS * orbit.period
 
 
 def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:

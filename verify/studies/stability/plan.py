@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
 from verify.scenes.scene import Scene
-from verify.studies.stability.tasks import LargestStepTask, StabilityMapTask, StabilityTask
+from verify.studies.stability.task import LargestStepTask, StabilityMapTask, StabilityTask
 
 
 def plan_stability(scenes: list[Scene]) -> Plan:
@@ -29,7 +29,7 @@ def need_stability(plan: Plan, scene: Scene) -> None:
 
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
     """Each run with its name: scene, section, scheme, step size and which initial value."""
-    given = scene.given() if scene.stability else {}
+    given = scene.hamiltonian_fields() if scene.stability else {}
     for section in scene.stability:
         for scheme in section.schemes or scene.schemes:
             for k, at in enumerate(section.initial_values, start=1):
@@ -45,7 +45,7 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
 
 
 def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
-    given = scene.given() if scene.largest_step else {}
+    given = scene.hamiltonian_fields() if scene.largest_step else {}
     for section in scene.largest_step:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:
@@ -53,7 +53,7 @@ def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
 
 
 def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
-    given = scene.given() if scene.stability_map else {}
+    given = scene.hamiltonian_fields() if scene.stability_map else {}
     for section in scene.stability_map:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:

@@ -59,7 +59,7 @@ class RunMotion:
     @cached_property
     def as_far(self) -> Trail:
         """The float64 run for as many steps as were done in high precision."""
-        asked = self.precise[0].asked
+        asked = self.precise[0].steps
         if asked == self.run.steps:
             return self.float64
         return follow(replace(self.run, steps=asked), float64())

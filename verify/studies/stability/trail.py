@@ -51,15 +51,15 @@ class Point:
 
 @dataclass(frozen=True)
 class Trail:
-    """States of a run; `done` steps of the `asked` stayed in the arithmetic's range."""
+    """States of a run; `done` steps of the `steps` stayed in the arithmetic's range."""
 
     points: tuple[Point, ...]
     done: int
-    asked: int
+    steps: int
 
     @property
     def finished(self) -> bool:
-        return self.done == self.asked
+        return self.done == self.steps
 
 
 def follow(run: Run, arithmetic: Arithmetic) -> Trail:
@@ -88,7 +88,7 @@ def _sections(steps: int) -> int:
 def follow_precisely(run: Run, digits: int) -> tuple[Trail, Arithmetic]:
     """The run to so many digits, compiled where that repays; with what it was run in.
 
-    Without a compiler only the first 300 000 of its steps are done, and `asked` says so.
+    Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
     """
     if run.steps >= WORTH_COMPILING:
         compiled = number_systems.get("fixed", digits)

@@ -72,7 +72,7 @@ def judge(run: Run) -> Judgement:
         return _not_the_scheme(motion)
     if not motion.stays(motion.float64):
         told = (
-            f"float64 leaves its bounds beyond the {precise.asked} steps of the run it is held to"
+            f"float64 leaves its bounds beyond the {precise.steps} steps of the run it is held to"
         )
         return Judgement("undecided", told, motion.orbit)
     lost = _vanished(motion)
@@ -108,7 +108,7 @@ def _scheme(motion: RunMotion) -> Judgement:
 def _not_the_scheme(motion: RunMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
     precise, _ = motion.precise
-    run, here = replace(motion.run, steps=precise.asked), motion.as_far
+    run, here = replace(motion.run, steps=precise.steps), motion.as_far
     confirmed = _confirmed(motion, run, precise)
     if confirmed is None:
         told = f"up to {_MOST_DIGITS} digits no two precisions give the same orbit"
@@ -133,7 +133,7 @@ def _confirmed(motion: RunMotion, run: Run, precise: Trail) -> _Precise | None:
     while digits <= _MOST_DIGITS:
         digits *= 2
         again, arithmetic = follow_precisely(run, digits)
-        if again.asked == last.asked and motion.together(again, last):
+        if again.steps == last.steps and motion.together(again, last):
             return digits, again, arithmetic
         last = again
     return None
@@ -144,7 +144,7 @@ def _range_alone(motion: RunMotion) -> bool:
 
     In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
     """
-    steps = min(motion.precise[0].asked, _RANGE_STEPS, motion.as_far.done + 1)
+    steps = min(motion.precise[0].steps, _RANGE_STEPS, motion.as_far.done + 1)
     run = replace(motion.run, steps=steps)
     precise = follow(run, motion.precise[1])
     if motion.together(follow(run, float64()), precise):
@@ -189,8 +189,8 @@ def _bounded(motion: RunMotion) -> Judgement:
     precise, _ = motion.precise
     rate = drift_of(motion)
     told = f"bounded over all {motion.run.steps} steps"
-    if precise.asked < motion.run.steps:
-        told += f", of which {precise.asked} were done in high precision too"
+    if precise.steps < motion.run.steps:
+        told += f", of which {precise.steps} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"
     if rate is None and too_short(motion):
         told += "; it goes round too few times to tell a drift of its energy from a swing"

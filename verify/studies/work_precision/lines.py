@@ -15,8 +15,8 @@ from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from itertools import combinations, pairwise
 
-from verify.arithmetic.balls import slope
-from verify.scenes.results.value import Value
+from verify.arithmetic.arb import slope
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import (
     ComparisonResult,
     CostResult,
@@ -64,7 +64,7 @@ def line(
 def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
     """The order of the error in h; `scale` is the orbit's size."""
     told = [x for x in points if x.limited_by == "truncation"]
-    return _near_alone(told, [(x, x.error) for x in within_orbit(told, scale)])
+    return _order_within_orbit(told, [(x, x.error) for x in within_orbit(told, scale)])
 
 
 def lambda_slope(
@@ -76,10 +76,10 @@ def lambda_slope(
             value=None, standard_error=None, points=0, reason="ΔJ ≡ 0 is proved: Λ is exactly 0"
         )
     told = [x for x in points if x.lambda_limited_by == "truncation"]
-    return _near_alone(told, [(x, x.lam) for x in within_orbit(told, scale)])
+    return _order_within_orbit(told, [(x, x.lam) for x in within_orbit(told, scale)])
 
 
-def _near_alone(
+def _order_within_orbit(
     told: Sequence[WorkPoint], found: Sequence[tuple[WorkPoint, Value | None]]
 ) -> SlopeResult:
     """The order over those that are near; it says how many are not."""

@@ -29,7 +29,12 @@ from verify.scenes.results.work_precision import (
 )
 from verify.studies.work_precision import peers as peer_catalogue
 from verify.studies.work_precision.lines import comparisons, lg, line
-from verify.studies.work_precision.peer import Answer, InitialValueProblem, PeerError, Solver
+from verify.studies.work_precision.peer_interface import (
+    Answer,
+    InitialValueProblem,
+    PeerError,
+    Solver,
+)
 from verify.studies.work_precision.runs import (
     ROUNDING_SHARE,
     Ladder,

@@ -13,7 +13,7 @@ def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTa
     schemes, sizes = section.schemes or scene.schemes, sorted(section.step_sizes, reverse=True)
     peers, left_out = _peers(section.peers)
     return WorkPrecisionTask(
-        **scene.given(),
+        **scene.hamiltonian_fields(),
         schemes=schemes,
         time=section.time,
         step_sizes=tuple(sizes),

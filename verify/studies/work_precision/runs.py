@@ -16,7 +16,7 @@ from math import isqrt
 from typing import Any
 
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.balls import in_reach, middle_and_radius
+from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import decimal, known_digits, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
@@ -27,7 +27,7 @@ from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
 from verify.studies.work_precision.step_cost import cost

@@ -15,7 +15,7 @@ from verify.scenes.shapes.user_outline import polygon
 from verify.schemes import get
 from verify.studies.regions.area import Goal
 from verify.studies.regions.mean_lambda import RegionMean
-from verify.studies.regions.point_systems import FloatCarrier
+from verify.studies.regions.point_carriers import FloatCarrier
 
 GOAL = Goal(change=Fraction(1, 10**5), area=Fraction(1, 10**13))
 schemes = st.sampled_from(["lie1", "lie2", "lie3"])

@@ -19,7 +19,7 @@ from tests.examples import drawn
 from tests.paths import vectors
 from tests.unit.runs.test_run_range import duffing_steps
 from verify import arithmetic
-from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.systems import ball
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for

@@ -47,14 +47,14 @@ def take_every_turn(patch: Patch) -> None:
     patch.setattr(Sample, "is_turn", lambda self, one_in, after=0: True)
 
 
-def with_map(example: Sample, change: Callable[[Substep], tuple[Any, Any]]) -> Sample:
+def with_map(sample: Sample, change: Callable[[Substep], tuple[Any, Any]]) -> Sample:
     """The example, its scheme's last part changed for every H."""
 
     def build(hamiltonian: Any) -> StepMap:
-        *before, last = example.scheme.build(hamiltonian).substeps
+        *before, last = sample.scheme.build(hamiltonian).substeps
         return StepMap(hamiltonian, (*before, Substep(last.field, *change(last))))
 
-    return replace(example, scheme=replace(example.scheme, build=build))
+    return replace(sample, scheme=replace(sample.scheme, build=build))
 
 
 def added(p_power: int, q_power: int, h_power: int, part: str = "p") -> Plant:
@@ -65,35 +65,35 @@ def added(p_power: int, q_power: int, h_power: int, part: str = "p") -> Plant:
         term = p**p_power * q**q_power * h**h_power / 1000
         return step.p_next + term * (part == "p"), step.q_next + term * (part == "q")
 
-    return lambda example, _: with_map(example, changed)
+    return lambda sample, _: with_map(sample, changed)
 
 
-def wrong_order(example: Sample, patch: Patch) -> Sample:
+def wrong_order(sample: Sample, patch: Patch) -> Sample:
     """A proof that says one order more."""
-    proof = example.proof
+    proof = sample.proof
     assert proof.convergence_order is not None
     wrong = replace(proof, convergence_order=proof.convergence_order + 1)
-    patch.setitem(example.__dict__, "proof", wrong)
-    return example
+    patch.setitem(sample.__dict__, "proof", wrong)
+    return sample
 
 
-def another_proof(example: Sample, patch: Patch) -> Sample:
+def another_proof(sample: Sample, patch: Patch) -> Sample:
     """The proof of another map: an h³ term of the wrong sign."""
-    twisted = added(1, 1, 3)(example, patch)
-    patch.setitem(example.__dict__, "proof", prove(twisted.step_map, example.scheme))
-    return example
+    twisted = added(1, 1, 3)(sample, patch)
+    patch.setitem(sample.__dict__, "proof", prove(twisted.step_map, sample.scheme))
+    return sample
 
 
-def sums_for_products(example: Sample, patch: Patch) -> Sample:
+def sums_for_products(sample: Sample, patch: Patch) -> Sample:
     """Λ as the sum of the ΔJ."""
     from verify.kernels.kernel import Writer
 
     kernel_for.cache_clear()
     patch.setattr(Writer, "product_of_factors", lambda self: self.accumulate("lam", "dj"))
-    return example
+    return sample
 
 
-def off_by_a_digit(example: Sample, patch: Patch) -> Sample:
+def off_by_a_digit(sample: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.numbers import number_systems_agree as module
 
     true = module.run
@@ -106,10 +106,10 @@ def off_by_a_digit(example: Sample, patch: Patch) -> Sample:
         return found.model_copy(update={"values": found.values | {"q": value}})
 
     patch.setattr(module, "run", wrong)
-    return example
+    return sample
 
 
-def a_part_twice(example: Sample, patch: Patch) -> Sample:
+def a_part_twice(sample: Sample, patch: Patch) -> Sample:
     from verify.studies.separation.chain import Chain
 
     true = Chain.trail
@@ -119,50 +119,50 @@ def a_part_twice(example: Sample, patch: Patch) -> Sample:
         return (tuple(2 * x for x in trail) if name == "product" else trail), bound
 
     patch.setattr(Chain, "trail", wrong)
-    return example
+    return sample
 
 
-def twice_the_potential(example: Sample, patch: Patch) -> Sample:
+def twice_the_potential(sample: Sample, patch: Patch) -> Sample:
     growth.growth_law.cache_clear()
     true = growth.potential_of_lie
     patch.setattr(growth, "potential_of_lie", lambda field, eta: 2 * true(field, eta))
-    return example
+    return sample
 
 
-def blind(example: Sample, patch: Patch) -> Sample:
+def blind(sample: Sample, patch: Patch) -> Sample:
     """A proof that never sees that an order is missed."""
     from verify.proof.order import Convergence
 
-    assert example.proof
+    assert sample.proof
     patch.setattr(Convergence, "misses", lambda self, claimed: False)
-    return example
+    return sample
 
 
-def a_lost_sign(example: Sample, patch: Patch) -> Sample:
+def a_lost_sign(sample: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.numbers import results_read_back as module
 
     true = module.scene_text
     patch.setattr(module, "scene_text", lambda scene: true(scene).replace('"-', '"'))
-    return example
+    return sample
 
 
-def believes_all(example: Sample, patch: Patch) -> Sample:
+def believes_all(sample: Sample, patch: Patch) -> Sample:
     """A checker for which every polynomial is zero."""
     from verify.proof.certificates.checker import Algebra
 
     patch.setattr(Algebra, "zero", lambda *_: None)
-    return example
+    return sample
 
 
-def an_order_too_high(example: Sample, patch: Patch) -> Sample:
+def an_order_too_high(sample: Sample, patch: Patch) -> Sample:
     from verify.exploration.properties.orders import every_hamiltonian as module
 
     true = module._proved
     patch.setattr(module, "_proved", lambda name: replace(true(name), order=4))
-    return example
+    return sample
 
 
-def half_a_flow(example: Sample, patch: Patch) -> Sample:
+def half_a_flow(sample: Sample, patch: Patch) -> Sample:
     """q moves with the flow of H, and p by half of it."""
     from verify.flows.extrapolation import Flow
 
@@ -174,10 +174,10 @@ def half_a_flow(example: Sample, patch: Patch) -> Sample:
         self._slopes = lambda p, q: (both(p, q)[0] / 2, both(p, q)[1])
 
     patch.setattr(Flow, "__init__", made)
-    return example
+    return sample
 
 
-def values_too_large(example: Sample, patch: Patch) -> Sample:
+def values_too_large(sample: Sample, patch: Patch) -> Sample:
     """The averaged function by a thousandth larger along the orbit."""
     from verify.flows.closed_orbit import Orbit
 
@@ -188,10 +188,10 @@ def values_too_large(example: Sample, patch: Patch) -> Sample:
             return [x + x / 1000 for x in true(self, g)]
 
     patch.setattr(Orbit, "values", wrong)
-    return example
+    return sample
 
 
-def a_part_misprinted(example: Sample, patch: Patch) -> Sample:
+def a_part_misprinted(sample: Sample, patch: Patch) -> Sample:
     from verify.studies.separation.chain import Chain
 
     true = Chain.final
@@ -201,7 +201,7 @@ def a_part_misprinted(example: Sample, patch: Patch) -> Sample:
         return (2 * value if name == "trajectory" else value), bound
 
     patch.setattr(Chain, "final", wrong)
-    return example
+    return sample
 
 
 PLANTED: dict[str, tuple[str, Plant]] = {

@@ -42,14 +42,14 @@ def tiny(p_power: int, q_power: int, h_power: int, part: str = "p", size: int = 
         term = p**p_power * q**q_power * h**h_power / 10**size
         return step.p_next + term * (part == "p"), step.q_next + term * (part == "q")
 
-    return lambda example, _: with_map(example, changed)
+    return lambda sample, _: with_map(sample, changed)
 
 
 def unseen(plant: Plant) -> Plant:
     """The same, and the proof is that of the true map."""
 
-    def planted(example: Sample, patch: Patch) -> Sample:
-        proof, wrong = example.proof, plant(example, patch)
+    def planted(sample: Sample, patch: Patch) -> Sample:
+        proof, wrong = sample.proof, plant(sample, patch)
         patch.setitem(wrong.__dict__, "proof", proof)
         return wrong
 
@@ -57,22 +57,22 @@ def unseen(plant: Plant) -> Plant:
 
 
 def claiming(**changes: object) -> Plant:
-    return lambda example, _: replace(example, scheme=replace(example.scheme, **changes))
+    return lambda sample, _: replace(sample, scheme=replace(sample.scheme, **changes))
 
 
 def proved(change: Callable[[Proof], dict[str, Any]]) -> Plant:
-    def planted(example: Sample, patch: Patch) -> Sample:
-        patch.setitem(example.__dict__, "proof", replace(example.proof, **change(example.proof)))
-        return example
+    def planted(sample: Sample, patch: Patch) -> Sample:
+        patch.setitem(sample.__dict__, "proof", replace(sample.proof, **change(sample.proof)))
+        return sample
 
     return planted
 
 
 def ruled(change: Callable[[GrowthLaw], GrowthLaw]) -> Plant:
-    def planted(example: Sample, patch: Patch) -> Sample:
+    def planted(sample: Sample, patch: Patch) -> Sample:
         true = growth_laws.growth_law
         patch.setattr(growth_laws, "growth_law", lambda *asked: change(true(*asked)))
-        return example
+        return sample
 
     return planted
 
@@ -91,7 +91,7 @@ def opposite(law: GrowthLaw) -> GrowthLaw:
 def measured(name: str, factor: Fraction) -> Plant:
     """That value of every run, times the factor."""
 
-    def planted(example: Sample, patch: Patch) -> Sample:
+    def planted(sample: Sample, patch: Patch) -> Sample:
         true = number_systems_agree.run
 
         def wrong(*asked: Any, **named: Any) -> Any:
@@ -101,7 +101,7 @@ def measured(name: str, factor: Fraction) -> Plant:
             return found.model_copy(update={"values": found.values | {name: value}})
 
         patch.setattr(number_systems_agree, "run", wrong)
-        return example
+        return sample
 
     return planted
 
@@ -109,7 +109,7 @@ def measured(name: str, factor: Fraction) -> Plant:
 def moved(one: str, other: str) -> Plant:
     """10^−14 taken from one part of Λ and given to another: they add up as before."""
 
-    def planted(example: Sample, patch: Patch) -> Sample:
+    def planted(sample: Sample, patch: Patch) -> Sample:
         true = Chain.trail
 
         def wrong(self: Chain, name: str) -> Any:
@@ -118,21 +118,21 @@ def moved(one: str, other: str) -> Plant:
             return tuple(x + by for x in trail), bound
 
         patch.setattr(Chain, "trail", wrong)
-        return example
+        return sample
 
     return planted
 
 
 def written(module: Any, name: str, old: str, new: str) -> Plant:
-    def planted(example: Sample, patch: Patch) -> Sample:
+    def planted(sample: Sample, patch: Patch) -> Sample:
         true = getattr(module, name)
         patch.setattr(module, name, lambda x: true(x).replace(old, new, 1))
-        return example
+        return sample
 
     return planted
 
 
-def boasting(example: Sample, patch: Patch) -> Sample:
+def boasting(sample: Sample, patch: Patch) -> Sample:
     """A proof that says one order too many of every map."""
     true = planted_errors.prove
 
@@ -141,7 +141,7 @@ def boasting(example: Sample, patch: Patch) -> Sample:
         return replace(found, convergence_order=found.convergence_order + 1)
 
     patch.setattr(planted_errors, "prove", wrong)
-    return example
+    return sample
 
 
 PLANTED: list[tuple[str, str, Plant]] = [
@@ -212,9 +212,9 @@ def test_what_twelve_digits_do_not_show_is_told() -> None:
 def test_a_field_that_wants_many_steps_in_a_short_time_is_left_out() -> None:
     """At such a place no flow is followed for minutes; a gentler one of the same kind is."""
     steep = "2*q**6/7 + 6*cosh(3*p + 3*q)/7 + 9*exp(2*p - 2*q)"
-    example = replace(example_of("lie1", steep), p=Fraction(-4, 3), q=Fraction(-61, 50))
-    assert not properties.get("exact-flows").holds(replace(example, p=Fraction(-40, 3)))
-    assert properties.get("exact-flows").holds(replace(example, p=Fraction(0), q=Fraction(0)))
+    sample = replace(example_of("lie1", steep), p=Fraction(-4, 3), q=Fraction(-61, 50))
+    assert not properties.get("exact-flows").holds(replace(sample, p=Fraction(-40, 3)))
+    assert properties.get("exact-flows").holds(replace(sample, p=Fraction(0), q=Fraction(0)))
 
 
 def test_where_h_is_steep_nothing_is_held_against_what_rounding_and_higher_orders_leave() -> None:
@@ -230,7 +230,7 @@ def test_where_h_is_steep_nothing_is_held_against_what_rounding_and_higher_order
 def test_what_more_digits_solve_otherwise_is_not_held_against_the_scheme() -> None:
     """Scene 69831 of seed 7, shrunk: 80 digits find a far solution of the second step."""
     formula = "p**4/2 + 3*q**2 + cosh(3*p + 2*q)/8 + 7*exp(2*p - 3*q)/5"
-    example = replace(example_of("implicit-midpoint", formula), p=Fraction(-2), q=Fraction(-1, 5))
+    sample = replace(example_of("implicit-midpoint", formula), p=Fraction(-2), q=Fraction(-1, 5))
     assert not properties.get("symplectic-schemes").holds(
-        replace(example, step_size=Fraction(1, 10))
+        replace(sample, step_size=Fraction(1, 10))
     )

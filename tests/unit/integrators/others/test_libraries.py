@@ -13,7 +13,7 @@ from verify.integrators.others import libraries as others
 from verify.integrators.others import report as integrators_report
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import Compared, FloatStep, ReleasedIntegrator
-from verify.integrators.others.libraries.nodepy import _of_own_orders, claimed
+from verify.integrators.others.libraries.nodepy import _order_method, claimed
 from verify.integrators.others.measured import finding
 from verify.integrators.others.report import make_integrators_report
 from verify.verdict import Verdict
@@ -44,8 +44,10 @@ def test_libraries_that_are_not_installed_are_left_out_and_named(
 ) -> None:
     hide(monkeypatch)
     tables = others.get("literature")
-    few = [x for x in tables.subjects() if x.name.startswith(("Ruth", "OrdinaryDiffEq", "Kahan"))]
-    monkeypatch.setattr(tables, "subjects", lambda: few)
+    few = [
+        x for x in tables.integrators() if x.name.startswith(("Ruth", "OrdinaryDiffEq", "Kahan"))
+    ]
+    monkeypatch.setattr(tables, "integrators", lambda: few)
     report = make_integrators_report("verify report integrators")
     missing = dict(report.left_out)
     for name in LIBRARIES:
@@ -72,7 +74,7 @@ def leaves() -> Any:
 
 def breaks_off() -> Any:
     yield ReleasedIntegrator("first", "by hand", "nowhere", Compared("it is itself", fails))
-    yield from others.get("literature").subjects()
+    yield from others.get("literature").integrators()
     raise ValueError("cannot convert NaN to integer ratio")
 
 
@@ -95,9 +97,9 @@ def test_a_library_that_fails_is_named_with_its_error_and_does_not_end_the_repor
 ) -> None:
     hide(monkeypatch, "scipy")
     tables = others.get("literature")
-    one = [x for x in tables.subjects() if x.name == "Ruth 3"]
-    monkeypatch.setattr(tables, "subjects", lambda: one)
-    monkeypatch.setattr(others.get("scipy"), "subjects", made)
+    one = [x for x in tables.integrators() if x.name == "Ruth 3"]
+    monkeypatch.setattr(tables, "integrators", lambda: one)
+    monkeypatch.setattr(others.get("scipy"), "integrators", made)
     monkeypatch.setattr(integrators_report, "import_module", lambda name: None)
     report = make_integrators_report("verify report integrators")
     left_out = dict(report.left_out)
@@ -117,7 +119,7 @@ def test_a_library_that_cannot_be_imported_has_no_claims(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.syspath_prepend(str(tmp_path))
     hide(monkeypatch, "galpy")
-    monkeypatch.setattr(others.get("literature"), "subjects", lambda: [])
+    monkeypatch.setattr(others.get("literature"), "integrators", lambda: [])
     report = make_integrators_report("verify report integrators")
     said = dict(report.left_out)["galpy"]
     assert said.startswith("is installed and fails: ModuleNotFoundError")
@@ -127,7 +129,7 @@ def test_a_library_that_cannot_be_imported_has_no_claims(
 
 def test_a_table_of_ours_that_fails_ends_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
     hide(monkeypatch)
-    monkeypatch.setattr(others.get("literature"), "subjects", fails)
+    monkeypatch.setattr(others.get("literature"), "integrators", fails)
     with pytest.raises(RuntimeError):
         make_integrators_report("verify report integrators")
 
@@ -172,29 +174,29 @@ def test_orders_are_read_from_the_names_of_nodepy(key: str, name: str, orders: A
 def test_order_of_nodepy_is_not_blamed_for_the_tolerance_that_it_tells(
     wrong: list[str], coarse: list[str], verdict: str
 ) -> None:
-    found, said, _ = _of_own_orders(3, wrong, coarse, (("method",),))
+    found, said, _ = _order_method(3, wrong, coarse, (("method",),))
     assert found.name == verdict
     assert all(x in said for x in wrong or coarse)
 
 
-def subjects(name: str) -> dict[str, ReleasedIntegrator]:
+def integrators(name: str) -> dict[str, ReleasedIntegrator]:
     pytest.importorskip(others.get(name).LIBRARY)
-    return {subject.name: subject for subject in others.get(name).subjects()}
+    return {integrator.name: integrator for integrator in others.get(name).integrators()}
 
 
 @pytest.mark.parametrize("name", LIBRARIES)
-def test_subjects_have_names_of_their_own_and_reproductions_that_compile(name: str) -> None:
+def test_integrators_have_names_of_their_own_and_reproductions_that_compile(name: str) -> None:
     pytest.importorskip(others.get(name).LIBRARY)
-    found = list(others.get(name).subjects())
-    assert len({subject.name for subject in found}) == len(found)
-    for subject in found:
-        compile(subject.reproduction, subject.name, "exec")
-        assert subject.source
-        assert subject.driven
+    found = list(others.get(name).integrators())
+    assert len({integrator.name for integrator in found}) == len(found)
+    for integrator in found:
+        compile(integrator.reproduction, integrator.name, "exec")
+        assert integrator.source
+        assert integrator.driven
 
 
 def test_tables_of_scipy_have_their_orders() -> None:
-    found = subjects("scipy")
+    found = integrators("scipy")
     for name in ("RK23, its table", "RK45, its table", "RK45, its error estimator"):
         (claim,) = claims_of(found[name], "scipy", "scipy")
         assert claim.verdict is Verdict.PROVED, claim.evidence
@@ -203,7 +205,7 @@ def test_tables_of_scipy_have_their_orders() -> None:
 
 
 def test_heyokas_taylor_step_is_lie_eta() -> None:
-    found = subjects("heyoka")["Taylor and lieη"].method
+    found = integrators("heyoka")["Taylor and lieη"].method
     assert isinstance(found, Compared)
     verdict, evidence, rows = found.compare()
     assert verdict is Verdict.MEASURED, evidence
@@ -220,22 +222,22 @@ def test_a_rounding_that_is_a_little_worse_refutes_no_taylor_step(
 
 
 def test_nodepys_lambert_is_of_order_two_and_its_misprint_is_found() -> None:
-    found = subjects("nodepy")
+    found = integrators("nodepy")
     (claim,) = claims_of(found["Lambert65"], "nodepy", "nodepy")
     assert claim.verdict is Verdict.REFUTED
     assert "3/16, 1/16 in place of 1/8, 1/8" in claim.evidence
 
 
 @pytest.mark.parametrize(
-    ("name", "subject", "order"),
+    ("name", "integrator", "order"),
     [
         ("galpy", "symplec4_c", 4),
         ("rebound", "LEAPFROG, order 4", 4),
         ("rebound", "WHFAST", 2),
     ],
 )
-def test_symplectic_integrators_are_as_claimed(name: str, subject: str, order: int) -> None:
-    method = subjects(name)[subject].method
+def test_symplectic_integrators_are_as_claimed(name: str, integrator: str, order: int) -> None:
+    method = integrators(name)[integrator].method
     assert isinstance(method, FloatStep)
     found = finding(method)
     assert found.convergence_order == order

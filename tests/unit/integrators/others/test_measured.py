@@ -32,11 +32,11 @@ def frozen(p: float, q: float, h: float) -> tuple[float, float]:
 
 
 def judged(step: Map, order: int, area: bool | None = True) -> list[Verdict]:
-    make: Callable[[], Map] = lambda: step  # noqa: E731 - a subject makes its step
-    subject = ReleasedIntegrator(
+    make: Callable[[], Map] = lambda: step  # noqa: E731 - a integrator makes its step
+    integrator = ReleasedIntegrator(
         "mine", "by hand", "nowhere", FloatStep(PENDULUM, make), order, area
     )
-    return [claim.verdict for claim in claims_of(subject, "mine", "mine")]
+    return [claim.verdict for claim in claims_of(integrator, "mine", "mine")]
 
 
 def test_true_claims_are_measured() -> None:
@@ -73,4 +73,4 @@ def test_a_power_that_is_seen_in_passing_only_is_not_known() -> None:
         return x + h**3 / (1 + (h / 0.62) ** 12), y
 
     found = finding(FloatStep(PENDULUM, lambda: passing, ladder=FINE[:14]))
-    assert not found.order_known
+    assert not found.order_decided

@@ -15,7 +15,7 @@ from verify.schemes.free_lie_words import KINDS, MOST_ORDER, conditions, residue
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
-TABLES = {subject.name: subject for subject in literature.subjects()}
+TABLES = {integrator.name: integrator for integrator in literature.integrators()}
 WRONG = {
     name
     for name in TABLES
@@ -267,8 +267,8 @@ def test_floats_show_the_orders_that_are_found(name: str, order: int) -> None:
 
 
 def test_a_reproduction_is_code_that_prints_the_slope() -> None:
-    for subject in TABLES.values():
-        compile(subject.reproduction, subject.name, "exec")
+    for integrator in TABLES.values():
+        compile(integrator.reproduction, integrator.name, "exec")
     (claim,) = claims_of(TABLES["ARKODE SPRK McLachlan 4-4"], "tables", "tables")
     assert claim.verdict is Verdict.REFUTED
     assert "sin(p)" in claim.reproduction, "T is not quadratic there"

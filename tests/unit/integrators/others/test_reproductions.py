@@ -14,7 +14,7 @@ from verify.integrators.others.printed_order import judge_order
 from verify.integrators.others.printed_table import PrintedTable
 from verify.verdict import Verdict
 
-TABLES = {subject.name: subject for subject in literature.subjects()}
+TABLES = {integrator.name: integrator for integrator in literature.integrators()}
 VERLET = """\
 from math import sin
 

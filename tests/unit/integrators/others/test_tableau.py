@@ -47,8 +47,8 @@ def test_order_and_symplecticity_are_proved(
 
 
 def verdicts(tableau: ExactTableau, order: int, area: bool | None) -> list[Verdict]:
-    subject = ReleasedIntegrator("mine", "by hand", "nowhere", tableau, order, area)
-    return [claim.verdict for claim in claims_of(subject, "mine", "mine")]
+    integrator = ReleasedIntegrator("mine", "by hand", "nowhere", tableau, order, area)
+    return [claim.verdict for claim in claims_of(integrator, "mine", "mine")]
 
 
 def test_claims_that_are_wrong_are_refuted() -> None:

@@ -9,7 +9,7 @@ from tests.unit.pages.test_page import claim, page_of, proof, report, run, scene
 from verify.pages.page import render
 from verify.pages.sections.claim_view import Anchors
 from verify.pages.sections.views import groups, page_view
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 from verify.verdict import Verdict
 
 # -- claims by section ----------------------------------------------------------------------------

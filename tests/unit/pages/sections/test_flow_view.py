@@ -15,10 +15,10 @@ from verify.pages.figures.svg import styled
 from verify.pages.page import render
 from verify.pages.text.typography import number
 from verify.scenes.paper_figures import PaperFigure
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.regions import FlowImage, FlowResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.run import SeriesPoint
-from verify.scenes.results.value import Value
 from verify.verdict import Verdict
 
 

@@ -19,10 +19,10 @@ from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, proof, report, run, scene
 from verify.pages.page import render
 from verify.pages.text.typography import grouped, step
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import SeriesPoint
 from verify.scenes.results.separation import SeparationGrid
-from verify.scenes.results.value import Value
 from verify.studies.separation.separate import as_grid
 
 

@@ -21,8 +21,8 @@ from tests.helpers.constructed.stability import MAP, case
 from tests.helpers.constructed.work import ladder, result
 from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
+from verify.pages.markdown.from_markup import Markdown, escaped, markdown, table
 from verify.pages.markdown.page import render, write
-from verify.pages.markdown.text import Markdown, escaped, markdown, table
 from verify.pages.page import render as page_as_html
 from verify.pages.sections.views import page_view
 from verify.pages.text import mathml

@@ -3,7 +3,7 @@
 import pytest
 
 from verify.pages.text import typography
-from verify.scenes.results.value import Value
+from verify.scenes.results.bounded_value import Value
 
 
 @pytest.mark.parametrize(

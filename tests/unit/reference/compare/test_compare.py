@@ -20,11 +20,11 @@ from tests.helpers.submitted_programs import (
     lie2,
     lie3,
 )
+from verify.reference.compare.column_meanings import readings
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import Published, load
-from verify.reference.compare.readings import readings
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.compare.submitted import read
 from verify.reference.make.make import PUBLISHED

@@ -10,7 +10,7 @@ import mpmath
 import pytest
 
 from verify import schemes
-from verify.arithmetic.balls import slope
+from verify.arithmetic.arb import slope
 from verify.errors import InputError
 from verify.execution.execute import compute_task
 from verify.flows.solution import exact_solution

@@ -12,14 +12,14 @@ from itertools import pairwise
 import flint
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.balls import Ball, around, rational_ball, shown
+from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.runs.run import run
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.value import Value
 
 _IN, _AFTER = 2, 1  # one in so many examples, and not those that are taken apart
 _DIGITS = 30
@@ -27,14 +27,14 @@ _COMPILED = 997  # of so many examples one is run in fixed point
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN, _AFTER) or not example.short:
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN, _AFTER) or not sample.short:
         return False
-    name = _turn(example)
-    wanted = _enclosed(example)
+    name = _turn(sample)
+    wanted = _enclosed(sample)
     if wanted is None:
         return False
-    found = _run(example, name, 17 if name == "float64" else _DIGITS)
+    found = _run(sample, name, 17 if name == "float64" else _DIGITS)
     if found is None:
         return False
     for quantity, value in found.values.items():
@@ -46,23 +46,23 @@ def holds(example: Sample) -> bool:
     return True
 
 
-def _turn(example: Sample) -> str:
+def _turn(sample: Sample) -> str:
     """The number system that is looked at: fixed, which is compiled, in few examples."""
-    turn = example.turn
+    turn = sample.turn
     if turn % _COMPILED == 0:
         return "fixed"
     names = [name for name in number_systems.names() if name != "fixed"]
     return names[turn // _IN % len(names)]
 
 
-def _enclosed(example: Sample) -> dict[str, Ball] | None:
-    if example.step_map.implicit:
-        found = _run(example, "mpfr", 40)
+def _enclosed(sample: Sample) -> dict[str, Ball] | None:
+    if sample.step_map.implicit:
+        found = _run(sample, "mpfr", 40)
         if found is None:
             return None
         return {n: _ball(v) for n, v in found.values.items()}
-    start = example.p, example.q, example.step_size
-    states = ball_steps(example.step_map, *start, example.steps)
+    start = sample.p, sample.q, sample.step_size
+    states = ball_steps(sample.step_map, *start, sample.steps)
     if states is None:
         return None
     if not all(state.sharp for state in states):
@@ -88,11 +88,11 @@ def _ball(value: Value) -> Ball:
         return around(Fraction(value.value), Fraction(value.bound))
 
 
-def _run(example: Sample, arithmetic: str, digits: int) -> RunResult | None:
+def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult | None:
     found = run(
-        example.hamiltonian,
-        example.scheme.name,
-        **example.asked,
+        sample.hamiltonian,
+        sample.scheme.name,
+        **sample.run_arguments,
         arithmetic=arithmetic,
         digits=digits,
         observables=_OBSERVABLES,

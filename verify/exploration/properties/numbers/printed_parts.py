@@ -15,13 +15,13 @@ _IN = 8  # one in so many examples
 _DIGITS = 6
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN) or not example.short:
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN) or not sample.short:
         return False
     found = separate(
-        example.hamiltonian,
-        example.scheme.name,
-        **example.asked,
+        sample.hamiltonian,
+        sample.scheme.name,
+        **sample.run_arguments,
         digits=_DIGITS,
     )
     if found.status != "finished":

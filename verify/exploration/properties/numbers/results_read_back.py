@@ -4,7 +4,7 @@ import tomllib
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.formula import to_text
-from verify.arithmetic.balls import shown
+from verify.arithmetic.arb import shown
 from verify.exploration.ball_steps import BITS
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
@@ -17,13 +17,13 @@ _SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
 
 
-def holds(example: Sample) -> bool:
-    if example.is_turn(_SCENES):
-        _must_be_same_scene(example.scene)
+def holds(sample: Sample) -> bool:
+    if sample.is_turn(_SCENES):
+        _must_be_same_scene(sample.scene)
     else:
-        _must_be_same(example)
-    if example.is_turn(_MAPS):
-        _must_be_same_map(example)
+        _must_be_same(sample)
+    if sample.is_turn(_MAPS):
+        _must_be_same_map(sample)
     return True
 
 
@@ -32,26 +32,26 @@ def _must_be_same_scene(scene: Scene) -> None:
         raise Violation("the scene's TOML reads back as another scene")
 
 
-def _must_be_same(example: Sample) -> None:
-    given, values = example.hamiltonian, []
+def _must_be_same(sample: Sample) -> None:
+    given, values = sample.hamiltonian, []
     read = Hamiltonian.parse(given.formula, dict(given.values))
     for hamiltonian in (given, read):
         field, _ = hamiltonian.field()
-        values.append([enclose(field.ring, x, example.start, BITS) for x in
+        values.append([enclose(field.ring, x, sample.start, BITS) for x in
                        (field.energy, field.h_p, field.h_q)])  # fmt: skip
     for x, y in zip(*values, strict=True):
         if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
             raise Violation(f"H reads back as another: {given.formula}")
 
 
-def _must_be_same_map(example: Sample) -> None:
-    closed = example.step_map.substeps[-1]
+def _must_be_same_map(sample: Sample) -> None:
+    closed = sample.step_map.substeps[-1]
     if closed.implicit or closed.staged or closed.length > _LONGEST:
         return
     texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
-    read = StepMap.from_formulas(example.hamiltonian, *texts).whole
+    read = StepMap.from_formulas(sample.hamiltonian, *texts).whole
     for name in ("p_next", "q_next"):
-        pair = [enclose(step.ring, getattr(step, name), example.start, BITS)
+        pair = [enclose(step.ring, getattr(step, name), sample.start, BITS)
                 for step in (closed, read)]  # fmt: skip
         if None not in pair and not pair[0].overlaps(pair[1]):
             raise Violation(f"{name} reads back as {shown(pair[1])}, and is {shown(pair[0])}")

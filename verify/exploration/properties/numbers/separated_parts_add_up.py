@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.balls import Ball, around, shown
+from verify.arithmetic.arb import Ball, around, shown
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps
@@ -24,14 +24,14 @@ _IN = 2  # one in so many examples
 _DIGITS = 8
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN) or not example.short:
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN) or not sample.short:
         return False
     try:
-        chains = Separation(*example.given).chains(_DIGITS)
+        chains = Separation(*sample.kernel_inputs).chains(_DIGITS)
     except Stopped:
         return False
-    exact, rounded = _wanted(example)
+    exact, rounded = _lambda_by_balls(sample)
     for chain in (chains.plain, chains.closed_form):
         if chain is not None:
             _must_add_up(chain)
@@ -39,7 +39,7 @@ def holds(example: Sample) -> bool:
             _must_reach("the truncation part is", truncation, bound, exact)
             both = truncation + inputs, bound + more
             _must_reach("truncation and input together are", *both, rounded)
-    run = KernelRun(*example.given, WORKING, 0)
+    run = KernelRun(*sample.kernel_inputs, WORKING, 0)
     bare = run.run(number_systems.get("float64", 17)).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
     alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
@@ -55,28 +55,28 @@ def _must_add_up(chain: Chain) -> None:
             raise Violation(f"the parts do not add up after {chain.marks[k]} steps")
 
 
-def _wanted(example: Sample) -> tuple[Ball | None, Ball | None]:
+def _lambda_by_balls(sample: Sample) -> tuple[Ball | None, Ball | None]:
     """Λ by balls, of the example's numbers and of the nearest float64s."""
-    start = example.p, example.q, example.step_size
-    exact = _area_error(example, example.step_map, start)
+    start = sample.p, sample.q, sample.step_size
+    exact = _area_error(sample, sample.step_map, start)
     rounded = tuple(map(_nearest, start))
-    given = {name: _nearest(x) for name, x in example.hamiltonian.values}
-    if given == dict(example.hamiltonian.values):
-        of_it = example.step_map
+    given = {name: _nearest(x) for name, x in sample.hamiltonian.values}
+    if given == dict(sample.hamiltonian.values):
+        of_it = sample.step_map
     else:
-        of_it = example.scheme.step_map(example.hamiltonian.with_values(given))
-    same = rounded == start and of_it is example.step_map
-    return exact, exact if same else _area_error(example, of_it, rounded)
+        of_it = sample.scheme.step_map(sample.hamiltonian.with_values(given))
+    same = rounded == start and of_it is sample.step_map
+    return exact, exact if same else _area_error(sample, of_it, rounded)
 
 
 def _nearest(x: Fraction) -> Fraction:
     return Fraction(float(x))
 
 
-def _area_error(example: Sample, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
+def _area_error(sample: Sample, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
     """Λ of the example's steps; None where balls do not know it."""
     p, q, h = start
-    states = ball_steps(step_map, p, q, h, example.steps)
+    states = ball_steps(step_map, p, q, h, sample.steps)
     if states is None or not states[-1].sharp:
         return None
     with working_precision(BITS):

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.balls import Ball, rational_ball, shown
+from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
@@ -24,15 +24,15 @@ _WITHIN = Fraction(1, 2**20)  # of 1 + |L|: what (G(φ_t z) − G(z))/t leaves o
 Point = tuple[Fraction, Fraction]
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN) or not example.ordinary:
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN) or not sample.ordinary:
         return False
-    field, _ = example.hamiltonian.field()
+    field, _ = sample.hamiltonian.field()
     flow = Flow(field, _DIGITS)
-    start = example.p, example.q
+    start = sample.p, sample.q
     try:
-        after = _followed(flow, start, _TIME)
-        back = _followed(flow, after, -_TIME)
+        after = _flow_to(flow, start, _TIME)
+        back = _flow_to(flow, after, -_TIME)
     except NoFlowError:
         return False
     for name, x, y in zip("pq", start, back, strict=True):
@@ -44,23 +44,23 @@ def holds(example: Sample) -> bool:
     with working_precision(_BITS):
         if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
             raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
-    if example.is_turn(_OF_POTENTIALS):
-        _potential_must_move(example)
+    if sample.is_turn(_OF_POTENTIALS):
+        _potential_must_move(sample)
     return True
 
 
-def _potential_must_move(example: Sample) -> None:
+def _potential_must_move(sample: Sample) -> None:
     """Holds the change of G over an instant against L, where there is a G."""
-    found = potential_of(example.proof, example.scheme) if example.polynomial else None
+    found = potential_of(sample.proof, sample.scheme) if sample.polynomial else None
     if found is None or not found.holds or found.element is None:
         return
     ring, potential = found.element
-    leading = example.proof.first.element
+    leading = sample.proof.first.element
     assert leading is not None  # noqa: S101 - it has a potential
-    field, _ = example.hamiltonian.field()
-    start = example.p, example.q
+    field, _ = sample.hamiltonian.field()
+    start = sample.p, sample.q
     try:
-        end = _followed(Flow(field, 2 * _DIGITS), start, _INSTANT)
+        end = _flow_to(Flow(field, 2 * _DIGITS), start, _INSTANT)
     except NoFlowError:
         return
     ends = [_value(ring, potential, point) for point in (start, end)]
@@ -74,7 +74,7 @@ def _potential_must_move(example: Sample) -> None:
         raise Violation(f"G grows by {shown(rate, 12)} a time, and L is {shown(wanted, 12)}")
 
 
-def _followed(flow: Flow, start: Point, time: Fraction) -> Point:
+def _flow_to(flow: Flow, start: Point, time: Fraction) -> Point:
     arithmetic = flow.arithmetic
     first = arithmetic.number(start[0]), arithmetic.number(start[1])
     p, q = flow.follow(first, time, _MOST_STEPS)

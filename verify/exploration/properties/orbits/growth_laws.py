@@ -7,7 +7,7 @@ its least term.
 from fractions import Fraction
 
 from verify.algebra.enclosure import enclose_over
-from verify.arithmetic.balls import Ball, rational_ball
+from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.exploration.ball_steps import BallState, ball_steps, sharp, unlike
@@ -24,17 +24,17 @@ _WITHIN = Fraction(
 _MOST_ORDER = 4
 
 
-def holds(example: Sample) -> bool:
-    if example.step_map.implicit or example.scheme.order > _MOST_ORDER or not example.ordinary:
+def holds(sample: Sample) -> bool:
+    if sample.step_map.implicit or sample.scheme.order > _MOST_ORDER or not sample.ordinary:
         return False
-    if not (example.polynomial or isinstance(example.scheme.every_h, TaylorSeries)):
+    if not (sample.polynomial or isinstance(sample.scheme.every_h, TaylorSeries)):
         return False  # ΔJ in closed form, which the law is made of, may be long
     try:
-        law = growth_law(example.hamiltonian, example.scheme.name)
+        law = growth_law(sample.hamiltonian, sample.scheme.name)
     except (NoLawError, InputError):  # ΔJ ≡ 0, or too large a closed form
         return False
     bits = _BITS_A_POWER * (law.power + 3) + _SPARE
-    states = ball_steps(example.step_map, example.p, example.q, _STEP, _STEPS, bits)
+    states = ball_steps(sample.step_map, sample.p, sample.q, _STEP, _STEPS, bits)
     if states is None:
         return False
     with working_precision(bits):

@@ -6,7 +6,7 @@ One example in many is looked at, as an orbit is followed for that until it clos
 from fractions import Fraction
 
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.exact import decimal
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
@@ -18,18 +18,18 @@ _DIGITS = 12
 _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN) or not example.polynomial or not example.ordinary:
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN) or not sample.polynomial or not sample.ordinary:
         return False
-    field, _ = example.hamiltonian.field()
+    field, _ = sample.hamiltonian.field()
     ring = field.ring
     mixed = field.derive(ring.variable("p") * ring.variable("q"))
-    start = example.p, example.q
+    start = sample.p, sample.q
     try:
-        found = average(example.hamiltonian, (ring, field.energy + mixed), start, _DIGITS)
+        found = average(sample.hamiltonian, (ring, field.energy + mixed), start, _DIGITS)
     except NoFlowError:  # the orbit is open
         return False
-    at_start = enclose(ring, field.energy, example.start, 200)
+    at_start = enclose(ring, field.energy, sample.start, 200)
     if at_start is None:
         return False
     wanted = middle_and_radius(at_start)[0]

@@ -18,12 +18,12 @@ _IN = 10  # one in so many examples
 _LONGEST = 400  # terms in a certificate that is checked here
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN) or not example.ordinary or example.step_map.implicit:
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN) or not sample.ordinary or sample.step_map.implicit:
         return False
-    proof = example.proof
+    proof = sample.proof
     try:
-        data = of_one(proof, potential_of(proof, example.scheme))
+        data = of_one(proof, potential_of(proof, sample.scheme))
     except InputError:  # such a map, or such functions, have no certificate
         return False
     if sum(len(c) for name in ("p_next", "q_next", "leading") for c in data[name]) > _LONGEST:

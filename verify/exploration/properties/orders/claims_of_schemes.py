@@ -8,10 +8,10 @@ from verify.exploration.sample import Sample
 from verify.verdict import Verdict
 
 
-def holds(example: Sample) -> bool:
-    if not example.ordinary:
+def holds(sample: Sample) -> bool:
+    if not sample.ordinary:
         return False
-    proof, scheme = example.proof, example.scheme
+    proof, scheme = sample.proof, sample.scheme
     if proof.verdict is Verdict.REFUTED:
         raise Violation(f"{scheme.name} is refuted: {proof.reason}")
     if proof.verdict is Verdict.UNDECIDED:

@@ -8,7 +8,7 @@ order is higher; where it is so at the initial value, it is not at one beside it
 from collections.abc import Mapping
 from fractions import Fraction
 
-from verify.arithmetic.balls import Ball, around, rational_ball
+from verify.arithmetic.arb import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import ball_steps
 from verify.exploration.property import Violation
@@ -22,18 +22,18 @@ _WITHIN = Fraction(1, 10)  # of a whole order
 _BESIDE = Fraction(3, 70), Fraction(1, 55)  # in p and q
 
 
-def holds(example: Sample) -> bool:
-    if not example.ordinary or example.step_map.implicit:
+def holds(sample: Sample) -> bool:
+    if not sample.ordinary or sample.step_map.implicit:
         return False
-    order = example.proof.convergence_order
+    order = sample.proof.convergence_order
     if order is None:
         return False
-    found = _orders(example, example.p, example.q, order)
+    found = _orders(sample, sample.p, sample.q, order)
     if found is None:
         return False
     _must_reach(found, order + 1)
     if _passes(found, order + 1):
-        found = _orders(example, example.p + _BESIDE[0], example.q + _BESIDE[1], order)
+        found = _orders(sample, sample.p + _BESIDE[0], sample.q + _BESIDE[1], order)
         if found is None:
             return False
         _must_reach(found, order + 1)
@@ -56,10 +56,10 @@ def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
     return all(ball is None or ball > most for ball in found.values())
 
 
-def _orders(example: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, Ball | None] | None:
+def _orders(sample: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, Ball | None] | None:
     """By which power of h the errors in p and q shrink, None for one that may be 0; None where
     they are not known."""
-    whole, half = (_error(example, (p, q), h, order) for h in (_STEP, _STEP / 2))
+    whole, half = (_error(sample, (p, q), h, order) for h in (_STEP, _STEP / 2))
     if whole is None or half is None:
         return None
     found: dict[str, Ball | None] = {}
@@ -73,14 +73,14 @@ def _orders(example: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, 
 
 
 def _error(
-    example: Sample, point: tuple[Fraction, Fraction], h: Fraction, order: int
+    sample: Sample, point: tuple[Fraction, Fraction], h: Fraction, order: int
 ) -> tuple[Ball, Ball] | None:
     """Step minus flow in p and q, as balls; None where one of them is not known."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE
-    states = ball_steps(example.step_map, *point, h, 1, bits)
+    states = ball_steps(sample.step_map, *point, h, 1, bits)
     if states is None:
         return None
-    field, _ = example.hamiltonian.field()
+    field, _ = sample.hamiltonian.field()
     flow = Flow(field, int(bits * _DIGITS_A_BIT))
     arithmetic = flow.arithmetic
     try:

@@ -19,18 +19,18 @@ def _proved(name: str) -> EveryProof:
     return prove_every(name)
 
 
-def holds(example: Sample) -> bool:
-    scheme = example.scheme
-    if scheme.every_h is None or scheme.order > _MOST_ORDER or not example.ordinary:
+def holds(sample: Sample) -> bool:
+    scheme = sample.scheme
+    if scheme.every_h is None or scheme.order > _MOST_ORDER or not sample.ordinary:
         return False
-    every, proof = _proved(scheme.name), example.proof
+    every, proof = _proved(scheme.name), sample.proof
     if every.verdict is not Verdict.PROVED:
         return False
     wrong = _contradiction(every, proof)
     if wrong:
         raise Violation(f"{wrong}, against what is proved for {every.quantifier}")
     # Where the leading coefficient for every H vanishes for this one, another one leads.
-    same = proof.order == every.order and example.is_turn(_IN) and example.polynomial
+    same = proof.order == every.order and sample.is_turn(_IN) and sample.polynomial
     if every.telescopes and same:
         found = potential_of(proof, scheme)
         if found.holds is False:

@@ -11,7 +11,7 @@ import flint
 from verify.algebra.enclosure import enclose
 from verify.algebra.generator import terms_of
 from verify.algebra.jets import Jets, Poly
-from verify.arithmetic.balls import Ball
+from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
 from verify.exploration.property import Violation
@@ -22,20 +22,20 @@ from verify.schemes.scheme import Scheme
 _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 
-def holds(example: Sample) -> bool:
-    scheme = example.scheme
-    if not _known_for_every_h(scheme) or scheme.order > _MOST_ORDER or not example.ordinary:
+def holds(sample: Sample) -> bool:
+    scheme = sample.scheme
+    if not _has_series_in_jets(scheme) or scheme.order > _MOST_ORDER or not sample.ordinary:
         return False
-    proof = example.proof
+    proof = sample.proof
     if proof.area_preserving is None:
         return False
     jets, coefficients = _of_every(scheme, scheme.order + 2)
-    derivatives = _derivatives(example, jets)
+    derivatives = _derivatives(sample, jets)
     if derivatives is None:
         return False
     for n, x in enumerate(coefficients, start=1):
         wanted = _value(x, derivatives)
-        found = _leading(example) if n == proof.order else flint.arb(0)
+        found = _leading(sample) if n == proof.order else flint.arb(0)
         if found is None or not (sharp(found) and sharp(wanted)):
             return False
         if not found.overlaps(wanted):
@@ -46,7 +46,7 @@ def holds(example: Sample) -> bool:
     return True
 
 
-def _known_for_every_h(scheme: Scheme) -> bool:
+def _has_series_in_jets(scheme: Scheme) -> bool:
     """Whether the scheme is a pair of series in the jets, and not only conditions on numbers."""
     return isinstance(scheme.every_h, TaylorSeries | RungeKutta | StageEquations)
 
@@ -60,22 +60,22 @@ def _of_every(scheme: Scheme, most: int) -> tuple[Jets, tuple[Poly, ...]]:
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
 
 
-def _leading(example: Sample) -> Ball | None:
+def _leading(sample: Sample) -> Ball | None:
     """The leading coefficient of this H's own ΔJ, at the initial value."""
-    element = example.proof.first.element
+    element = sample.proof.first.element
     assert element is not None  # noqa: S101 - ΔJ has an order
-    return enclose(*element, example.start, BITS)
+    return enclose(*element, sample.start, BITS)
 
 
-def _derivatives(example: Sample, jets: Jets) -> dict[tuple[int, int], Ball] | None:
+def _derivatives(sample: Sample, jets: Jets) -> dict[tuple[int, int], Ball] | None:
     """H_ij at the initial value; None where one of them is not defined there."""
-    field, _ = example.hamiltonian.field()
+    field, _ = sample.hamiltonian.field()
     ring, found = field.ring, {(1, 0): field.h_p, (0, 1): field.h_q}
     for i, j in sorted(jets.indices, key=sum):
         if (i, j) not in found:
             lower, name = ((i, j - 1), "q") if j else ((i - 1, 0), "p")
             found[i, j] = ring.diff(found[lower], name)
-    values = {ij: enclose(ring, found[ij], example.start, BITS) for ij in jets.indices}
+    values = {ij: enclose(ring, found[ij], sample.start, BITS) for ij in jets.indices}
     return None if None in values.values() else values
 
 

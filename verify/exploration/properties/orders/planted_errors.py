@@ -11,18 +11,18 @@ from verify.verdict import Verdict
 _IN = 2  # one in so many examples
 
 
-def holds(example: Sample) -> bool:
-    order, parts = example.scheme.order, example.step_map.substeps
+def holds(sample: Sample) -> bool:
+    order, parts = sample.scheme.order, sample.step_map.substeps
     if (
-        not example.is_turn(_IN)
-        or not example.ordinary
+        not sample.is_turn(_IN)
+        or not sample.ordinary
         or any(part.implicit or part.staged for part in parts)
     ):
         return False
-    if example.proof.verdict is not Verdict.PROVED:
+    if sample.proof.verdict is not Verdict.PROVED:
         return False
     try:
-        found = prove(_planted(example, order), example.scheme)
+        found = prove(_planted(sample, order), sample.scheme)
     except InputError:  # its closed form is too large to be looked at
         return False
     if found.verdict is not Verdict.REFUTED:
@@ -33,9 +33,9 @@ def holds(example: Sample) -> bool:
     return True
 
 
-def _planted(example: Sample, power: int) -> StepMap:
+def _planted(sample: Sample, power: int) -> StepMap:
     """The map with q·h^power added to p' in its last part."""
-    *before, last = example.step_map.substeps
+    *before, last = sample.step_map.substeps
     ring = last.ring
     wrong = last.p_next + ring.variable("q") * ring.variable("h") ** power
-    return StepMap(example.hamiltonian, (*before, Substep(last.field, wrong, last.q_next)))
+    return StepMap(sample.hamiltonian, (*before, Substep(last.field, wrong, last.q_next)))

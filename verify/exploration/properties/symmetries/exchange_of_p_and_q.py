@@ -12,7 +12,7 @@ _IN = 2  # one in so many examples
 _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN) or not knows_no_coordinates(example):
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN) or not knows_no_coordinates(sample):
         return False
-    return same_step(example, _EXCHANGED, Fraction(-1), Fraction(1))
+    return same_step(sample, _EXCHANGED, Fraction(-1), Fraction(1))

@@ -13,8 +13,8 @@ _SCALED = (Fraction(3, 2), Fraction(0)), (Fraction(0), Fraction(2, 3))
 _MIXED = (Fraction(2), Fraction(1, 3)), (Fraction(3, 2), Fraction(3, 4))
 
 
-def holds(example: Sample) -> bool:
-    if not example.is_turn(_IN, _AFTER):
+def holds(sample: Sample) -> bool:
+    if not sample.is_turn(_IN, _AFTER):
         return False
-    matrix = _MIXED if knows_no_coordinates(example) else _SCALED
-    return same_step(example, matrix, Fraction(1), Fraction(1))
+    matrix = _MIXED if knows_no_coordinates(sample) else _SCALED
+    return same_step(sample, matrix, Fraction(1), Fraction(1))

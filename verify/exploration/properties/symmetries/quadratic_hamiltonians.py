@@ -13,7 +13,7 @@ import sympy
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.formula import symbol
-from verify.arithmetic.balls import middle_and_radius, rational_ball
+from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
@@ -25,21 +25,21 @@ from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 _UNIT = 100  # coefficients are whole multiples of 1/100
 
 
-def holds(example: Sample) -> bool:
-    generic = example.scheme.every_h
+def holds(sample: Sample) -> bool:
+    generic = sample.scheme.every_h
     if not isinstance(generic, TaylorSeries | RungeKutta):
         return False
-    hessian = _hessian(example)
+    hessian = _hessian(sample)
     if hessian is None:
         return False
     h_pp, h_pq, h_qq = hessian
-    square = -(example.step_size**2) * (h_pp * h_qq - h_pq**2)
+    square = -(sample.step_size**2) * (h_pp * h_qq - h_pq**2)
     wanted = _product(_stability_function(generic), square)
     p, q = symbol("p"), symbol("q")
     a, b, c = (sympy.Rational(x.numerator, x.denominator) for x in hessian)
-    step_map = example.scheme.step_map(Hamiltonian(a * p**2 / 2 + b * p * q + c * q**2 / 2))
+    step_map = sample.scheme.step_map(Hamiltonian(a * p**2 / 2 + b * p * q + c * q**2 / 2))
     whole = step_map.whole
-    found = enclose(whole.ring, whole.delta_j, {"h": example.step_size}, BITS)
+    found = enclose(whole.ring, whole.delta_j, {"h": sample.step_size}, BITS)
     # det J − 1 against ΔJ, and not det J: of a small ΔJ that has lost most digits.
     with working_precision(BITS):
         true = rational_ball(wanted - 1)
@@ -50,10 +50,10 @@ def holds(example: Sample) -> bool:
     return True
 
 
-def _hessian(example: Sample) -> tuple[Fraction, Fraction, Fraction] | None:
+def _hessian(sample: Sample) -> tuple[Fraction, Fraction, Fraction] | None:
     """H_pp, H_pq, H_qq at the initial value, rounded; None where they are not ordinary numbers."""
-    field, _ = example.hamiltonian.field()
-    ring, point = field.ring, {"p": example.p, "q": example.q}
+    field, _ = sample.hamiltonian.field()
+    ring, point = field.ring, {"p": sample.p, "q": sample.q}
     found = []
     for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
         value = enclose(ring, ring.diff(x, name), point, 128)

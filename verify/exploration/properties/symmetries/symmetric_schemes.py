@@ -1,6 +1,6 @@
 """The step of −h undoes the step of h, for a scheme that claims to be symmetric."""
 
-from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps, stepped, unlike
 from verify.exploration.property import Violation
@@ -11,17 +11,17 @@ from verify.verdict import Verdict
 _IN = 3  # one in so many examples is looked at by series, too
 
 
-def holds(example: Sample) -> bool:
-    if not example.scheme.symmetric:
+def holds(sample: Sample) -> bool:
+    if not sample.scheme.symmetric:
         return False
-    if example.is_turn(_IN) and example.ordinary and not example.step_map.implicit:
-        series = by_series(example.step_map, example.scheme.order + 1)
+    if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
+        series = by_series(sample.step_map, sample.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")
-    states = ball_steps(example.step_map, example.p, example.q, example.step_size, 1)
+    states = ball_steps(sample.step_map, sample.p, sample.q, sample.step_size, 1)
     if states is None:
         return False
-    back = _back(example, states[-1])
+    back = _back(sample, states[-1])
     if back is None or not back.sharp:
         return False
     for name, ball, start in (("p", back.p, states[0].p), ("q", back.q, states[0].q)):
@@ -30,6 +30,6 @@ def holds(example: Sample) -> bool:
     return True
 
 
-def _back(example: Sample, state: BallState) -> BallState | None:
+def _back(sample: Sample, state: BallState) -> BallState | None:
     with working_precision(BITS):
-        return stepped(example.step_map, state, rational_ball(-example.step_size))
+        return stepped(sample.step_map, state, rational_ball(-sample.step_size))

@@ -13,5 +13,5 @@ _IDENTITY = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))
 _FACTOR = Fraction(-2, 3)
 
 
-def holds(example: Sample) -> bool:
-    return example.is_turn(_IN) and same_step(example, _IDENTITY, _FACTOR, 1 / _FACTOR)
+def holds(sample: Sample) -> bool:
+    return sample.is_turn(_IN) and same_step(sample, _IDENTITY, _FACTOR, 1 / _FACTOR)

@@ -2,8 +2,8 @@
 
 from fractions import Fraction
 
+from verify.hamiltonians.named_system import System
 from verify.hamiltonians.potential_motion import in_potential
-from verify.hamiltonians.system import System
 
 SYSTEM = System(
     name="double-well",

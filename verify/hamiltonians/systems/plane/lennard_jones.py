@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from verify.hamiltonians.motion import Values
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 
 
 def _goes(values: Values, p: Fraction, q: Fraction) -> str | None:

@@ -3,7 +3,7 @@
 Its time is an elliptic integral of the second kind of q, which has no inverse by named functions.
 """
 
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 
 SYSTEM = System(
     name="parabola",

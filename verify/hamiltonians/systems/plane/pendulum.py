@@ -15,7 +15,7 @@ import flint
 
 from verify.arithmetic.flint_precision import sign_of
 from verify.hamiltonians.motion import Context, Motion, Number, State, Values, at_rest, number
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 from verify.hamiltonians.weierstrass import jacobi
 
 

@@ -8,8 +8,8 @@ g₃ = E/6 − E³/27, so that Δ = (E² − 4)/4 with E − 2 = p²/2 + 4 sinh�
 from fractions import Fraction
 
 from verify.hamiltonians.motion import Context, Motion, Number, State, Values, at_rest, number
+from verify.hamiltonians.named_system import System
 from verify.hamiltonians.potential_motion import biermann
-from verify.hamiltonians.system import System
 from verify.hamiltonians.weierstrass import Weierstrass
 
 

@@ -1,6 +1,6 @@
 """The Toda oscillator, V = e^q − q − 1: stiff to the right and soft to the left; no closed form."""
 
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 
 SYSTEM = System(
     name="toda-oscillator",

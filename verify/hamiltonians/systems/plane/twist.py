@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from verify.hamiltonians.motion import Context, Motion, Number, State, Values, at_rest, number
-from verify.hamiltonians.system import System
+from verify.hamiltonians.named_system import System
 
 
 def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:

@@ -3,7 +3,7 @@ themselves.
 
 A file defines `TITLE`, what people call it; `LIBRARY`, the package that it needs and imports only
 where it is used, or None where it needs none; `LEFT_OUT`, what of it cannot be driven as a one-step
-map with one degree of freedom, each with the reason; and `subjects()`, which yields what is
+map with one degree of freedom, each with the reason; and `integrators()`, which yields what is
 verified (see `verify.integrators.others.integrator`). Adding a library is adding one file.
 """
 

@@ -26,26 +26,26 @@ _POINTS: tuple[Point, ...] = ((Fraction(1, 3), Fraction(3, 5)),)
 _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
 
 
-def subjects() -> Iterator[ReleasedIntegrator]:
+def integrators() -> Iterator[ReleasedIntegrator]:
     for name, order in (("leapfrog_c", 2), ("symplec4_c", 4), ("symplec6_c", 6)):
-        yield _subject(name, order, True)
+        yield _integrator(name, order, True)
     for name, order in (("rk4_c", 4), ("rk6_c", 6)):
-        yield _subject(name, order, None)
+        yield _integrator(name, order, None)
 
 
-def _subject(name: str, order: int, symplectic: bool | None) -> ReleasedIntegrator:
+def _integrator(name: str, order: int, symplectic: bool | None) -> ReleasedIntegrator:
     return ReleasedIntegrator(
         name,
         "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step",
         _SOURCE,
-        FloatStep(_HAMILTONIAN, lambda: _made(name), *((_POINTS, FINE) if order > 4 else ())),
+        FloatStep(_HAMILTONIAN, lambda: _step(name), *((_POINTS, FINE) if order > 4 else ())),
         order,
         symplectic,
         _script(name),
     )
 
 
-def _made(name: str) -> Map:
+def _step(name: str) -> Map:
     import numpy as np
     from galpy.orbit import Orbit
     from galpy.potential import KGPotential

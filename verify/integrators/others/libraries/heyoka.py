@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.algebra.enclosure import enclose
-from verify.arithmetic.balls import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.others.integrator import Compared, FloatStep, Map, ReleasedIntegrator
 from verify.verdict import Verdict
@@ -35,13 +35,13 @@ _SURE = 100  # units: more is no rounding
 _ALLOWED = 2  # units: one rounding of z', and a few dozen in the increment, each smaller by h
 
 
-def subjects() -> Iterator[ReleasedIntegrator]:
+def integrators() -> Iterator[ReleasedIntegrator]:
     for eta in _ORDERS:
         yield ReleasedIntegrator(
             f"Taylor, order {eta}",
             _DRIVEN,
             _SOURCE,
-            FloatStep(_SLOW, lambda eta=eta: _made(eta)),  # type: ignore[misc]
+            FloatStep(_SLOW, lambda eta=eta: _step(eta)),  # type: ignore[misc]
             eta,
             reproduction=_script(eta),
         )
@@ -71,7 +71,7 @@ def _integrator(formula: str, eta: int, variational: bool) -> Any:
     return found
 
 
-def _made(eta: int) -> Map:
+def _step(eta: int) -> Map:
     taylor = _integrator(_SLOW, eta, variational=False)
 
     def step(p: float, q: float, h: float) -> tuple[float, float]:

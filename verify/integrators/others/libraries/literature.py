@@ -24,7 +24,7 @@ _KINDS = {
 }
 
 
-def subjects() -> Iterator[ReleasedIntegrator]:
+def integrators() -> Iterator[ReleasedIntegrator]:
     text = (
         files("verify.integrators.others.libraries")
         .joinpath("literature.toml")

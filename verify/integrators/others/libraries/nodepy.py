@@ -37,14 +37,14 @@ _LOOSE = 1e-12  # above the rounding of a dozen floats, far below a wrong method
 _STAGES_ORDER = re.compile(r"^[A-Za-z]+(\d+)(\d)$")
 
 
-def subjects() -> Iterator[ReleasedIntegrator]:
+def integrators() -> Iterator[ReleasedIntegrator]:
     methods = _loaded()
     for key, method in methods.items():
         order, embedded = claimed(key, method.name)
         yield ReleasedIntegrator(
             _titled(key, method.name),
             f"the exact coefficients A and b of rk.loadRKM('{key}')",
-            _said(key, method.name),
+            _claim_source(key, method.name),
             tableau_of(method.A, method.b),
             order,
             reproduction=_script(key, "b"),
@@ -62,7 +62,9 @@ def subjects() -> Iterator[ReleasedIntegrator]:
         "order()",
         "what it returns for each of these methods, by default",
         "its documentation: conditions are checked to within its tolerance, by default 1e-14",
-        Compared("order() returns the order of each method that loadRKM loads", _own_orders),
+        Compared(
+            "order() returns the order of each method that loadRKM loads", _check_order_method
+        ),
         reproduction=_ORDER_SCRIPT,
     )
 
@@ -82,7 +84,7 @@ def _titled(key: str, name: str) -> str:
     return key if name in key else f"{key} ({name})"
 
 
-def _said(key: str, name: str) -> str:
+def _claim_source(key: str, name: str) -> str:
     if _PAIR.search(name):
         return f"its name, {name}: the order of b, then that of bhat"
     if key in _ORDERS:
@@ -122,26 +124,26 @@ def _number(x: Any) -> tuple[sympy.Expr, bool]:
     return sympy.Rational(numerator, denominator), denominator > 2**10
 
 
-def _own_orders() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
+def _check_order_method() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
     rows = [("method", "order() returns", "proved or measured")]
     wrong, coarse = [], []
     methods = _loaded()
     for key, method in methods.items():
-        own = _own_order(method)
+        own = _order_by_nodepy(method)
         table = tableau_of(method.A, method.b)
         found = order_of(table.tableau, own + 1, table.rounded).order
         rows.append((key, str(own), str(found)))
         if own == found:
             continue
         told = f"{key}: {own}, and it is {found}"
-        if table.rounded and _own_order(method, tol=_LOOSE) == found:
+        if table.rounded and _order_by_nodepy(method, tol=_LOOSE) == found:
             coarse.append(f"{told}, which order(tol={_LOOSE}) returns")
         else:
             wrong.append(told)
-    return _of_own_orders(len(methods), wrong, coarse, tuple(rows))
+    return _order_method(len(methods), wrong, coarse, tuple(rows))
 
 
-def _of_own_orders(
+def _order_method(
     count: int, wrong: Sequence[str], coarse: Sequence[str], rows: tuple[tuple[str, ...], ...]
 ) -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
     """`coarse`: where its floats' rounding exceeds the default tolerance, and a larger one does."""
@@ -154,7 +156,7 @@ def _of_own_orders(
     return Verdict.PROVED, f"it is right for all {count} methods", rows
 
 
-def _own_order(method: Any, **options: float) -> int:
+def _order_by_nodepy(method: Any, **options: float) -> int:
     with contextlib.redirect_stdout(io.StringIO()):
         return int(method.order(**options))
 

@@ -57,22 +57,22 @@ _FORCED = _Problem(
 )  # fmt: skip
 
 
-def subjects() -> Iterator[ReleasedIntegrator]:
+def integrators() -> Iterator[ReleasedIntegrator]:
     for order in (2, 4, 6, 8):
-        yield _subject(_SOFT, "leapfrog", f"LEAPFROG, order {order}", order, f"order = {order}")
+        yield _integrator(_SOFT, "leapfrog", f"LEAPFROG, order {order}", order, f"order = {order}")
     for order in (2, 4, 6, 8, 10):
-        yield _subject(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
+        yield _integrator(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
     for name, order in (("LF", 2), ("LF4", 4), ("LF6", 6), ("LF8", 8), ("PMLF4", 4), ("PMLF6", 6)):
-        yield _subject(_FREE, "eos", f"EOS, phi1 = {name}", order, f"phi1 = '{name}'")
-    yield _subject(_FORCED, "whfast", "WHFAST", 2)
+        yield _integrator(_FREE, "eos", f"EOS, phi1 = {name}", order, f"phi1 = '{name}'")
+    yield _integrator(_FORCED, "whfast", "WHFAST", 2)
     for name in ("1", "2", "3", "4"):
-        yield _subject(_FORCED, "saba", f"SABA{name}", 2, f"type = '{name}'")
+        yield _integrator(_FORCED, "saba", f"SABA{name}", 2, f"type = '{name}'")
     for name in ("10_4", "8_6_4", "10_6_4"):
         title = f"SABA({name.replace('_', ',')})"
-        yield _subject(_FORCED, "saba", title, 4, f"type = '{name}'")
+        yield _integrator(_FORCED, "saba", title, 4, f"type = '{name}'")
 
 
-def _subject(
+def _integrator(
     problem: _Problem, integrator: str, name: str, order: int, *settings: str
 ) -> ReleasedIntegrator:
     points: tuple[Point, ...] = () if problem.softening else _AWAY
@@ -86,7 +86,7 @@ def _subject(
         f"one step of dt = h: {problem.said}",
         _SOURCE,
         FloatStep(
-            problem.hamiltonian, lambda: _made(problem, integrator, settings), points, ladder
+            problem.hamiltonian, lambda: _step(problem, integrator, settings), points, ladder
         ),
         order,
         True,
@@ -94,7 +94,7 @@ def _subject(
     )
 
 
-def _made(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
+def _step(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
     import rebound
 
     def step(p: float, q: float, h: float) -> tuple[float, float]:

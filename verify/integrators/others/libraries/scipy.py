@@ -38,7 +38,7 @@ _SOURCE = "the documentation of scipy.integrate.{}"
 _LOOSE = "a single step of scipy.integrate.{}, first_step = h, tolerances that accept any step"
 
 
-def subjects() -> Iterator[ReleasedIntegrator]:
+def integrators() -> Iterator[ReleasedIntegrator]:
     for name, order in (("RK23", 3), ("RK45", 5)):
         yield ReleasedIntegrator(
             f"{name}, as a step",

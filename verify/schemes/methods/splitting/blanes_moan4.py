@@ -24,7 +24,7 @@ PRINTED = {
 }
 
 
-def _solved(a: tuple[Rational, ...]) -> tuple[Expr, Expr]:
+def _kicks(a: tuple[Rational, ...]) -> tuple[Expr, Expr]:
     """b₁ and b₂ for these a₁, a₂, a₃."""
     a1, a2, a3 = a
     a4 = 1 - 2 * (a1 + a2 + a3)
@@ -40,7 +40,7 @@ def _solved(a: tuple[Rational, ...]) -> tuple[Expr, Expr]:
 
 
 _A = tuple(map(Rational, PRINTED["a"]))
-_B = _solved(_A)
+_B = _kicks(_A)
 _HALF = (
     _A[0], _B[0], _A[1], _B[1], _A[2], S.Half - _B[0] - _B[1], 1 - 2 * sum(_A, S.Zero),
 )  # fmt: skip

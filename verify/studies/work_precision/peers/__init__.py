@@ -2,8 +2,8 @@
 themselves.
 
 A file defines `NAME`, `LIBRARY`, the package that it needs and imports only where it is used, and
-`make(problem)`, which returns what solves the problem (see `verify.studies.work_precision.peer`).
-Adding a peer is adding one file.
+`make(problem)`, which returns what solves the problem (see
+`verify.studies.work_precision.peer_interface`). Adding a peer is adding one file.
 """
 
 from functools import cache

@@ -9,7 +9,12 @@ from fractions import Fraction
 
 from verify.arithmetic.systems import float64
 from verify.flows.extrapolation import functions_at
-from verify.studies.work_precision.peer import Answer, InitialValueProblem, PeerError, Solver
+from verify.studies.work_precision.peer_interface import (
+    Answer,
+    InitialValueProblem,
+    PeerError,
+    Solver,
+)
 
 NAME = "DOP853"
 LIBRARY = "scipy"

@@ -12,7 +12,12 @@ from typing import Any
 
 import sympy
 
-from verify.studies.work_precision.peer import Answer, InitialValueProblem, PeerError, Solver
+from verify.studies.work_precision.peer_interface import (
+    Answer,
+    InitialValueProblem,
+    PeerError,
+    Solver,
+)
 
 NAME = "Taylor (heyoka)"
 LIBRARY = "heyoka"

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import flint
 
-from verify.arithmetic.balls import in_reach, middle_and_radius, rational_ball
+from verify.arithmetic.arb import in_reach, middle_and_radius, rational_ball
 from verify.reference.compare.setting import Bounded, Setting, number_of
 
 _NEAR = Fraction(1, 10**9)

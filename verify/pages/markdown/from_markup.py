@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from markupsafe import escape
 
 from verify.pages.markdown.markup import Node, tree
-from verify.pages.markdown.tex import tex
+from verify.pages.markdown.mathml_to_tex import tex
 from verify.pages.text.typography import prose
 
 _MARKS = re.compile(r"[\\`*_\[\]|~#]")

@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
-from verify.algebra.generators import embed
-from verify.arithmetic.balls import rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.plot import Plot, computed, few
+from verify.pages.figures.captioned_plot import Plot, computed, few
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.text.typography import is_decimal, start, superscript, whole
 from verify.scenes.results.proof import ProofResult
