@@ -131,7 +131,7 @@ def _of_scheme(sample: Sample, name: str) -> Sample | None:
 
 
 def _verdict_on(claim: Claim, sample: Sample) -> Any:
-    """The claim's result for the example, a `verify.scenes.results.core.ClaimResult`."""
+    """The claim's result for the example, a `verify.scenes.results.claim.ClaimResult`."""
     claim = claim.model_copy(update={"scene": _NAME} | _without_every(claim, sample))
     scenes = {_NAME: _scene(claim, sample)}
     plan = Plan()

@@ -2,8 +2,8 @@
 
 The true values: exact rationals for a few steps of a polynomial H; balls for windows, our own ones
 and those of `verify.arithmetic.systems.ball`; runs with 64 more bits for 10⁵ to 10⁶ steps; and
-values that were computed elsewhere. Random orbits are in `tests/property/test_certificate.py`, and
-lies in `test_certificate_controls.py`.
+values that were computed elsewhere. Random orbits are in
+`tests/property/runs/test_a_posteriori.py`, and lies in `test_a_posteriori_controls.py`.
 """
 
 from dataclasses import replace

@@ -10,8 +10,8 @@ not, for any orbit: errors of the state that are made at every step grow at leas
 bound takes the greatest for all of them, which is twice their mean; there the planted lies are
 larger. Two lies cannot show in any orbit. In floating point a product's rounding hides behind those
 of the sums, since it is like a change in the last bit of a factor, which was rounded when it was
-stored; `tests/property/test_rounding.py` sees it operation by operation. And the rounding of the
-tangent map, ρ, enters by e^Q with Q about 10⁻¹²; `test_certificate_edges.py` counts it.
+stored; `tests/property/kernels/test_rounding.py` sees it operation by operation. And the rounding
+of the tangent map, ρ, enters by e^Q with Q about 10⁻¹²; `test_a_posteriori_edges.py` counts it.
 """
 
 from collections.abc import Callable, Iterator

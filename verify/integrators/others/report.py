@@ -23,10 +23,10 @@ TITLE = "The integrators of others, verified"
 _OnLibrary = Callable[[str], None]
 
 
-def make_integrators_report(command: str, told: _OnLibrary | None = None) -> Report:
+def make_integrators_report(command: str, on_library: _OnLibrary | None = None) -> Report:
     """The report of all libraries that are installed, and of the printed tables.
 
-    `told` is called with what each library is called before it is looked at.
+    `on_library` is called with what each library is called before it is looked at.
     """
     begun = time.perf_counter()
     claims: list[ClaimResult] = []
@@ -40,8 +40,8 @@ def make_integrators_report(command: str, told: _OnLibrary | None = None) -> Rep
             missing.append(module.TITLE)
             left_out.append((module.TITLE, "is not installed: pip install 'areaproof[peers]'"))
             continue
-        if told is not None:
-            told(module.TITLE)
+        if on_library is not None:
+            on_library(module.TITLE)
         if module.LIBRARY is not None:
             found[module.TITLE] = version
         section = f"{module.TITLE} {version}".strip()
@@ -130,14 +130,14 @@ def _preface(
         lines.append(f"Left out, all or in part, as they fail here: {', '.join(broken)}.")
     wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
     sections = dict.fromkeys(c.section for c in wrong)
-    told = []
+    unlike_claims = []
     for section in sections:
         own = [c for c in wrong if c.section == section]
         digits = sum(c.kind == "digits" for c in own)
         names = [c.source for c in own if c.kind != "digits"]
         if digits:
             names.append(f"the last digits of {digits} tables")
-        told.append(f"{section}: {', '.join(names)}")
-    if told:
-        lines.append(f"Not as claimed: {'; '.join(told)}.")
+        unlike_claims.append(f"{section}: {', '.join(names)}")
+    if unlike_claims:
+        lines.append(f"Not as claimed: {'; '.join(unlike_claims)}.")
     return lines
