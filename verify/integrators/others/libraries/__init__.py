@@ -18,19 +18,14 @@ _FILES = Catalogue(__name__, __path__)
 
 
 @cache
-def _modules() -> dict[str, Any]:
-    return {file: _FILES.module(file) for file in _FILES.names}
-
-
 def names() -> tuple[str, ...]:
     """The files' names; those that need no library last."""
-    modules = _modules()
-    return tuple(sorted(modules, key=lambda name: (modules[name].LIBRARY is None, name)))
+    return tuple(sorted(_FILES.names, key=lambda name: (get(name).LIBRARY is None, name)))
 
 
 def get(name: str) -> Any:
     """The module of that name."""
-    return _modules()[name]
+    return _FILES.module(name)
 
 
 def installed(name: str) -> str | None:
