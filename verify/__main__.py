@@ -1,13 +1,18 @@
-"""`python -m verify` is the command `verify`."""
+"""`python -m verify` is the command `verify`.
 
+Python itself puts the current folder first on the path, and has imported `verify` and what its own
+`-m` needs by the time that this is read; the command `verify` never looks there.
+"""
+
+import os
 import sys
-from pathlib import Path
 
-# Python puts the current folder first on the path; where verify itself does not come from there,
-# nothing else shall.
-if Path(sys.path[0]).resolve() != Path(__file__).resolve().parents[1]:
-    del sys.path[0]
+if __name__ == "__main__":
+    # Where verify itself does not come from that folder, nothing else shall.
+    here = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))  # noqa: PTH120
+    if not sys.flags.safe_path and os.path.realpath(sys.path[0]) != here:
+        del sys.path[0]
 
-from verify.commands.main import main
+    from verify.commands.main import main
 
-main()
+    main()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 _INSTALLED = "data"
 _FOLDERS = ("reports", "reference")
+_CHECKOUT = "pyproject.toml"  # beside the package; else a folder of that name is somebody else's
 
 
 def content(*names: str) -> Path:
@@ -20,8 +21,9 @@ def content(*names: str) -> Path:
 def shipped_files(package: Path | None = None) -> dict[str, Path]:
     """Every file of the package and of the content, of whatever kind, by its name.
 
-    A wheel's names are those of the checkout that it was made from. Left out is only what Python
-    writes itself. `package`: another one's folder.
+    A wheel's names are those of the checkout that it was made from. Left out is what Python, an
+    editor or the system writes there: bytecode, hidden files, backups. `package`: another one's
+    folder.
     """
     package = package or _package()
     root = _root(package)
@@ -31,13 +33,26 @@ def shipped_files(package: Path | None = None) -> dict[str, Path]:
     return shipped
 
 
+def is_shipped(path: Path) -> bool:
+    """Whether the path lies in the package or in the content, so that to write there is to change
+    what is shipped.
+    """
+    root, place = _root(_package()), path.resolve()
+    folders = (_package(), *(root / name for name in _FOLDERS))
+    return any(place.is_relative_to(folder.resolve()) for folder in folders)
+
+
 def _package() -> Path:
     return Path(str(files("verify")))
 
 
 def _root(package: Path) -> Path:
-    installed = package / _INSTALLED
-    return installed if installed.is_dir() else package.parent
+    """The folder with both folders of the content; RuntimeError where neither place has them."""
+    for root in (package / _INSTALLED, package.parent):
+        mine = root != package.parent or (root / _CHECKOUT).is_file()
+        if mine and all((root / name).is_dir() for name in _FOLDERS):
+            return root
+    raise RuntimeError(f"{package}: neither a checkout nor whole: no {' and no '.join(_FOLDERS)}")
 
 
 def _is_content(name: str) -> bool:
@@ -46,5 +61,7 @@ def _is_content(name: str) -> bool:
 
 def _below(folder: Path) -> Iterator[tuple[str, Path]]:
     for path in folder.rglob("*"):
-        if path.is_file() and "__pycache__" not in path.parts:
-            yield path.relative_to(folder).as_posix(), path
+        name = path.relative_to(folder)
+        passing = any(part.startswith((".", "__pycache__")) for part in name.parts)
+        if path.is_file() and not passing and not name.name.endswith("~"):
+            yield name.as_posix(), path

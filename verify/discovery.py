@@ -13,8 +13,8 @@ from typing import Any
 class Catalogue:
     """The files of a package and of the folders in it, whatever these are called.
 
-    `package` is its dotted name, `path` its `__path__`. No two files have the same name. A file is
-    called by its name with dashes: `double_well.py` is `double-well`.
+    `package` is its dotted name, `path` its `__path__`. No two files have the same name
+    (RuntimeError). A file is called by its name with dashes: `double_well.py` is `double-well`.
     """
 
     package: str
@@ -22,7 +22,13 @@ class Catalogue:
 
     @cached_property
     def _modules(self) -> dict[str, str]:
-        return dict(sorted(_files(self.package, self.path)))
+        found = sorted(
+            _files(self.package, self.path)
+        )  # by file name: what a seed draws hangs on it
+        modules = {file.replace("_", "-"): dotted for file, dotted in found}
+        if len(modules) < len(found):
+            raise RuntimeError(f"{self.package}: two files have one name among {[*modules]}")
+        return modules
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -47,4 +53,4 @@ def _files(package: str, path: Iterable[str]) -> Iterator[tuple[str, str]]:
         if module.ispkg:
             yield from _files(dotted, [str(PurePath(p, module.name)) for p in path])
         else:
-            yield module.name.replace("_", "-"), dotted
+            yield module.name, dotted

@@ -9,6 +9,8 @@ import pytest
 from verify import arithmetic, schemes
 from verify.discovery import Catalogue
 from verify.exploration import properties
+from verify.exploration.sample_space import SampleSpace
+from verify.exploration.scenes import sample_scene
 from verify.hamiltonians import systems
 from verify.integrators.others import libraries
 from verify.scenes.shapes import named
@@ -37,6 +39,19 @@ def test_what_is_asked_for_is_imported_and_no_more(catalogue: Catalogue) -> None
     assert "kinds_of_things.dog" not in sys.modules
     with pytest.raises(KeyError):
         catalogue.module("mouse")
+
+
+def test_two_files_of_one_name_are_an_error(catalogue: Catalogue) -> None:
+    Path(*catalogue.path, "wild", "dog.py").write_text("NAME = 'fox'\n")
+    with pytest.raises(RuntimeError, match="two files have one name"):
+        _ = catalogue.names
+
+
+def test_the_order_of_schemes_is_that_of_their_files() -> None:
+    # Number k of seed S is the same scene everywhere and always: what is drawn hangs on the order.
+    composed = [name for name in schemes.names() if name.startswith("mclachlan")]
+    assert composed == ["mclachlan4", "mclachlan4-s4", "mclachlan-atela2"]
+    assert sample_scene(SampleSpace(), 7, 10).schemes == ("mclachlan4-s4",)
 
 
 @pytest.mark.parametrize("kind", [arithmetic, libraries, named, properties, schemes, systems])

@@ -88,7 +88,3 @@ def _terminated(*_: object) -> None:
 def _fail(message: str) -> None:
     click.echo(f"verify: {' '.join(message.split())}", err=True)
     sys.exit(BAD_INPUT)
-
-
-if __name__ == "__main__":
-    main()

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from verify.content import is_shipped
+from verify.errors import InputError
 from verify.execution.executors import (
     ANYWHERE,
     THIS_PROCESS,
@@ -31,9 +33,17 @@ _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs m
 
 
 class Store:
-    """Finished results in a folder, one JSON file each; None keeps them in memory only."""
+    """Finished results in a folder, one JSON file each; None keeps them in memory only.
+
+    InputError where the folder lies in what is shipped, whose files make the results' names.
+    """
 
     def __init__(self, folder: Path | None) -> None:
+        if folder is not None and is_shipped(folder):
+            problem = (
+                "lies in what verify ships, which results depend on; allowed: a folder elsewhere"
+            )
+            raise InputError("folder", str(folder), problem)
         self.folder = folder
         self.taken = 0  # results that were found here
 
@@ -96,8 +106,7 @@ def execute(
         return results
     together = {name: task for name, task in waiting.items() if not task.alone}
     alone = {name: task for name, task in waiting.items() if task.alone}
-    modules = {type(task).__module__ for task in together.values()}
-    with open_place(_enough(together, where), sorted(modules)) as place:
+    with open_place(_enough(together, where), _modules(together)) as place:
         take(place, together)
         if not place.local:
             take(place, alone, one_by_one=True)
@@ -110,6 +119,12 @@ def execute(
 def compute_task(task: Task, keeper: Keeper = NOTHING) -> Frozen:
     """Do one task, in whatever process."""
     return task.compute(keeper)
+
+
+def _modules(tasks: Mapping[str, Task]) -> list[str]:
+    """What workers import before their first call, so that it is done once for all of them."""
+    kinds = {type(task) for task in tasks.values()}
+    return sorted({name for kind in kinds for name in (kind.__module__, *kind.imports)})
 
 
 def _enough(tasks: Mapping[str, Task], where: Placement) -> Placement:

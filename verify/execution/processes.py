@@ -101,17 +101,35 @@ def safe_path() -> Iterator[None]:
 
     Python puts it first on the path of `python -c`, which is how `multiprocessing` starts the fork
     server, the resource tracker and spawned workers: a `random.py` that lies there would be run.
-    Once a worker is there, its path is this process's own.
+    Once a worker is there, its path is this process's own. Of several threads that start some, the
+    first sets what the last restores. Where Python was told to ignore the environment (`-E`), so
+    are they, and this does nothing.
     """
-    before = os.environ.get(_SAFE_PATH)
-    os.environ[_SAFE_PATH] = "1"
+    with _SAFE.lock:
+        if not _SAFE.users:
+            _SAFE.before = os.environ.get(_SAFE_PATH)
+        _SAFE.users += 1
+        os.environ[_SAFE_PATH] = "1"
     try:
         yield
     finally:
-        if before is None:
-            os.environ.pop(_SAFE_PATH, None)
-        else:
-            os.environ[_SAFE_PATH] = before
+        with _SAFE.lock:
+            _SAFE.users -= 1
+            if not _SAFE.users:
+                del os.environ[_SAFE_PATH]
+                if _SAFE.before is not None:
+                    os.environ[_SAFE_PATH] = _SAFE.before
+
+
+class _Safe:
+    """What the environment said before, while anyone needs a safe path."""
+
+    def __init__(self) -> None:
+        self.lock, self.users = threading.Lock(), 0
+        self.before: str | None = None
+
+
+_SAFE = _Safe()
 
 
 @contextmanager

@@ -22,10 +22,12 @@ class Task(Frozen):
     """What is to be computed; two tasks of equal content are one.
 
     `alone`: it measures run times, so that nothing else may run beside it. `result`: the model of
-    what `compute` returns.
+    what `compute` returns. `imports`: the modules that `compute` imports, which workers then have
+    from the start.
     """
 
     alone: ClassVar[bool] = False
+    imports: ClassVar[tuple[str, ...]] = ()
     result: ClassVar[type[Frozen]]
     kind: str
 

@@ -28,6 +28,7 @@ class ExploreTask(_OnProperties):
     """Hold properties against `count` scenes: those of this seed from number `first` on."""
 
     result = ExploreResult
+    imports = ("verify.exploration.property_checks",)
     kind: Literal["explore"] = "explore"
     first: int
     count: int
@@ -48,6 +49,7 @@ class ShrinkTask(_OnProperties):
     """Shrink one sampled scene for which a property (the only one here) does not hold."""
 
     result = ShrunkResult
+    imports = ("verify.exploration.property_checks",)
     kind: Literal["shrink"] = "shrink"
     example: int
 
@@ -62,6 +64,7 @@ class HuntTask(_OnSamples):
     """Search one island for scenes that make a measure as large as can be."""
 
     result = HuntResult
+    imports = ("verify.exploration.island_search",)
     kind: Literal["hunt"] = "hunt"
     measure: str
     island: int

@@ -164,6 +164,13 @@ def test_an_interruption_keeps_what_was_finished(
     assert not {str(plan.tasks[n]) for n in finished} & set(map(str, seen))
 
 
+@pytest.mark.parametrize("folder", ["reports/mine/kept", "reference/kept", "verify"])
+def test_nothing_is_kept_in_what_results_depend_on(folder: str) -> None:
+    with pytest.raises(InputError, match="allowed: a folder elsewhere"):
+        Store(ROOT / folder)
+    assert not (ROOT / "reports" / "mine").exists()
+
+
 # -- the source is part of a result's name --------------------------------------------------------
 
 
@@ -173,6 +180,7 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     root = tmp_path / "copy"
     for folder in ("verify", "reports", "reference"):
         shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", root)
     monkeypatch.setattr(shipped, "_package", lambda: root / "verify")
     fingerprint.cache_clear()
     yield root

@@ -32,12 +32,14 @@ from verify.execution import processes
 from verify.execution.executors import FunctionCall, Placement, open_place, results_of
 from tests.helpers.worker_functions import square
 if {method!r} == "spawn":
-    processes._forked_beside_this = lambda _: multiprocessing.get_context("spawn")
+    assert processes._fork_server
+    processes._fork_server = lambda _: multiprocessing.get_context("spawn")
 if {unsafe}:
     processes.safe_path = contextlib.nullcontext
 if __name__ == "__main__":
     with open_place(Placement(2)) as place:
         calls = [FunctionCall(str(k), square, (k,)) for k in range(4)]
+        assert place._context.get_start_method() == {method!r}
         assert len(list(results_of(place, calls))) == 4
 """
 
@@ -98,6 +100,17 @@ def test_the_environment_is_afterwards_as_it_was(monkeypatch: pytest.MonkeyPatch
         with safe_path():
             assert os.environ["PYTHONSAFEPATH"] == "1"
         assert os.environ.get("PYTHONSAFEPATH") == value
+
+
+def test_of_two_threads_the_last_restores_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+    first, second = safe_path(), safe_path()
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert os.environ["PYTHONSAFEPATH"] == "1"
+    second.__exit__(None, None, None)
+    assert "PYTHONSAFEPATH" not in os.environ
 
 
 def report(folder: Path, *where: str) -> subprocess.CompletedProcess[str]:

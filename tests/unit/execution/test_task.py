@@ -3,6 +3,7 @@
 import inspect
 import pickle
 import pkgutil
+import re
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -47,6 +48,13 @@ def test_each_says_what_it_gives_and_performs_itself(kind: type[Task]) -> None:
     returned = inspect.signature(kind.compute).return_annotation
     assert returned in (kind.result, kind.result.__name__)
     assert list(inspect.signature(kind.compute).parameters) == ["self", "keeper"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_it_imports_when_it_computes_is_what_it_says(kind: type[Task]) -> None:
+    source = inspect.getsource(kind.compute)
+    inside = set(re.findall(r"^ +from (verify\S+) import", source, re.MULTILINE))
+    assert inside == set(kind.imports) or (kind.alone and not kind.imports)
 
 
 def run(**changes: Any) -> RunTask:

@@ -91,7 +91,7 @@ def check(
     calls = [FunctionCall(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, Findings] = {}
     few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
-    with open_place(THIS_PROCESS if few else where) as place:
+    with open_place(THIS_PROCESS if few else where, [recomputed.__module__]) as place:
         for name, part in results_of(place, calls):
             parts[name] = part
             if done:

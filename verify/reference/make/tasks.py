@@ -16,6 +16,7 @@ class OrbitTask(InitialValueTask):
     """State, ΔJ, MSE and Λ after each of these numbers of steps, correctly rounded."""
 
     result = OrbitResult
+    imports = ("verify.reference.make.orbit_points",)
     kind: Literal["orbit"] = "orbit"
     step_size: StepSize
     steps: tuple[int, ...]
@@ -37,6 +38,7 @@ class SolutionTask(HamiltonianTask):
     """The exact flow at the times N·h for each of these N, correctly rounded."""
 
     result = SolutionResult
+    imports = ("verify.reference.make.orbit_points",)
     kind: Literal["solution"] = "solution"
     q: Number
     p: Number

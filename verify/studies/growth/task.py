@@ -11,6 +11,7 @@ class GrowthTask(InitialValueTask):
     """The growth law of Λ on one orbit, with the time average in it."""
 
     result = AverageResult
+    imports = ("verify.studies.growth.prediction",)
     kind: Literal["growth"] = "growth"
     digits: int
 

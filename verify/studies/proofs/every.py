@@ -11,6 +11,7 @@ class EveryTask(Task):
     """What is proved of a scheme for every H."""
 
     result = EveryResult
+    imports = ("verify.proof.every",)
     kind: Literal["every"] = "every"
     scheme: str
 

@@ -15,6 +15,7 @@ class FlowTask(HamiltonianTask):
     """Carry a shape by `steps` steps of a map: a scheme's, or the exact flow's."""
 
     result = FlowImage
+    imports = ("verify.studies.regions.carry",)
     kind: Literal["flow"] = "flow"
     map: str
     shape: PlacedShape
@@ -34,7 +35,7 @@ class FlowTask(HamiltonianTask):
         return carry(
             self.exact_hamiltonian(),
             self.map,
-            self.shape.made(),
+            self.shape.to_shape(),
             step_size=self.step_size,
             steps=self.steps,
             digits=self.digits,

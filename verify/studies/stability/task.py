@@ -19,6 +19,7 @@ class StabilityTask(InitialValueTask):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     result = StabilityResult
+    imports = ("verify.studies.stability.results", "verify.studies.stability.trail")
     kind: Literal["stability"] = "stability"
     step_size: StepSize
     steps: int
@@ -39,6 +40,7 @@ class LargestStepTask(InitialValueTask):
     """The largest step size with bounded motion until `time`."""
 
     result = LargestStepResult
+    imports = ("verify.studies.stability.results",)
     kind: Literal["largest_step"] = "largest_step"
     time: Number
 
@@ -57,6 +59,7 @@ class StabilityMapTask(InitialValueTask):
     """Verdicts over a parameter's values and step sizes."""
 
     result = StabilityMapResult
+    imports = ("verify.studies.stability.results",)
     kind: Literal["stability_map"] = "stability_map"
     parameter: str
     values: tuple[Number, ...]
