@@ -1,4 +1,4 @@
-"""`verify reference compare`: the README's programs, what is printed, JSON's keys, statuses."""
+"""`verify reference compare`: the example programs, what is printed, JSON's keys, statuses."""
 
 import re
 import shutil
@@ -13,12 +13,44 @@ from tests.paths import ROOT
 
 README = ROOT / "reference" / "README.md"
 GIVEN = ["--scene", "duffing", "--scheme", "lie2", "--step-size", "0.001", "--q", "1.5", "--p", "0"]
+EXAMPLES = ROOT / "reference" / "examples"
+LANGUAGES = {".c": "c", ".py": "python", ".jl": "julia"}
 
 
-def program(language: str) -> str:
-    found = re.search(rf"```{language}\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
-    assert found
-    return found[1]
+def examples() -> dict[str, str]:
+    return {path.name: path.read_text(encoding="utf-8") for path in EXAMPLES.glob("*.*")}
+
+
+def quoted(page: str) -> list[tuple[str, str]]:
+    """(language, text) of each program on a page."""
+    languages = "|".join(LANGUAGES.values())
+    return re.findall(rf"^```({languages})\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+
+
+def quotes(page: str, programs: dict[str, str]) -> bool:
+    """Whether a page has these programs, each once, word for word, and no others."""
+    wanted = [(LANGUAGES[Path(name).suffix], text) for name, text in programs.items()]
+    return sorted(quoted(page)) == sorted(wanted)
+
+
+def test_the_readme_quotes_the_example_programs_word_for_word() -> None:
+    page, programs = README.read_text(encoding="utf-8"), examples()
+    assert {Path(name).suffix for name in programs} == set(LANGUAGES)
+    assert quotes(page, programs)
+    assert all(f"reference/examples/{name}" in page for name in programs), "says where they lie"
+
+
+@pytest.mark.parametrize("name", sorted(examples()))
+def test_a_quotation_that_is_not_word_for_word_is_seen(name: str) -> None:
+    page, programs = README.read_text(encoding="utf-8"), examples()
+    text = programs.pop(name)
+    assert not quotes(page, programs), "a program that is in no file"
+    for changed in (text.replace("3", "2", 1), text + "\n", text.replace("\n", " \n", 1)):
+        assert changed != text
+        assert not quotes(page, programs | {name: changed})
+        assert not quotes(page.replace(text, changed), programs | {name: text})
+    assert not quotes(page.replace(text, ""), programs | {name: text})
+    assert quotes(page, programs | {name: text})
 
 
 def by_c(folder: Path, source: str) -> str:
@@ -36,26 +68,26 @@ def by_python(folder: Path, source: str) -> str:
     return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
-@pytest.mark.parametrize(("language", "run"), [("c", by_c), ("python", by_python)])
-def test_the_readmes_program_differs_by_rounding(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, language: str, run: object
+@pytest.mark.parametrize(("name", "run"), [("lie2.c", by_c), ("lie2.py", by_python)])
+def test_an_example_program_differs_by_rounding(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, name: str, run: object
 ) -> None:
     table = tmp_path / "mine.csv"
     assert callable(run)
-    table.write_text(run(tmp_path, program(language)))
+    table.write_text(run(tmp_path, examples()[name]))
     status, out, _ = here(capsys, "reference", "compare", str(table), *GIVEN)
     assert status == 0
     assert out.startswith("6 rows of 1 run compared; 5,001 rows read\n")
     assert "DIFFERS" not in out
     assert "float64 rounding explains" in out
-    assert ("determinant" in out) == (language == "python")
+    assert ("determinant" in out) == (name == "lie2.py")
 
 
 def test_a_mistake_is_told_to_people_and_to_programs(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     table = tmp_path / "mine.csv"
-    table.write_text(by_python(tmp_path, program("python").replace("{n}", "n")))
+    table.write_text(by_python(tmp_path, examples()["lie2.py"]))
     lines = table.read_text().splitlines()
     swapped = [",".join([x[0], x[2], x[1]]) for x in (line.split(",") for line in lines)]
     table.write_text("\n".join(["step,p,q", *swapped[1:]]))

@@ -1,11 +1,14 @@
-"""Coefficient tables of splitting methods, as they are printed; `literature.toml` has the data."""
+"""Coefficient tables of splitting methods, as they are printed.
+
+The data are in `reports/audits/literature.toml`.
+"""
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from importlib.resources import files
 from itertools import cycle, islice
 from typing import Any
 
+from verify.content import content
 from verify.integrators.others.integrator import ReleasedIntegrator
 from verify.integrators.others.printed_table import PrintedTable
 
@@ -25,11 +28,7 @@ _KINDS = {
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    text = (
-        files("verify.integrators.others.libraries")
-        .joinpath("literature.toml")
-        .read_text(encoding="utf-8")
-    )
+    text = content("reports", "audits", "literature.toml").read_text(encoding="utf-8")
     for entry in tomllib.loads(text)["table"]:
         yield ReleasedIntegrator(
             entry["name"],
