@@ -1,10 +1,11 @@
 """Imports go downwards only, and light commands stay light: read from the source."""
 
 import ast
+import re
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
 from pathlib import Path
 
@@ -24,6 +25,19 @@ def name_of(path: Path) -> str:
 NAMES = {name_of(path): path for path in MODULES}
 
 
+ONLY_FOR_TYPES = ("TYPE_CHECKING", "typing.TYPE_CHECKING")
+
+
+def may_run(node: ast.If) -> list[ast.stmt]:
+    """The statements of an `if` that may run on import."""
+    test = ast.unparse(node.test)
+    if test in ONLY_FOR_TYPES:
+        return node.orelse
+    if test.removeprefix("not ") in ONLY_FOR_TYPES:
+        return node.body
+    return [*node.body, *node.orelse]
+
+
 def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
     """Statements that run on import: not in functions, nor under `if TYPE_CHECKING`."""
     waiting: list[ast.AST] = [tree]
@@ -31,8 +45,8 @@ def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
         node = waiting.pop()
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
             continue
-        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
-            waiting += node.orelse
+        if isinstance(node, ast.If):
+            waiting += may_run(node)
             continue
         if isinstance(node, ast.stmt):
             yield node
@@ -51,9 +65,10 @@ def imported(path: Path, everywhere: bool = False) -> frozenset[str]:
             assert node.level == 0, f"{path}: a relative import"
             assert node.module is not None
             inner = {f"{node.module}.{alias.name}" for alias in node.names}
-            modules = inner & set(NAMES)
-            # `from verify import x` imports the module x where there is one, else the package.
-            found |= modules or {node.module}
+            # `from verify import x` imports the module x where there is one, else the package's x.
+            found |= inner & set(NAMES)
+            if not inner <= set(NAMES):
+                found.add(node.module)
     return frozenset(found)
 
 
@@ -88,16 +103,89 @@ def edges_of(paths: Mapping[str, Path]) -> dict[str, set[str]]:
 
 
 def edges_of_file(path: Path) -> set[str]:
-    return {*imported(path, everywhere=True), *named(path)} & set(NAMES)
+    names = {*imported(path, everywhere=True), *texts(path)}
+    edges = {deepest(name) for name in names if name.startswith("verify.")}
+    # By itself the text "verify" is the command's name, but where modules are imported by name.
+    code = bool(by_name(path)) or "verify" in imported(path, everywhere=True)
+    return edges | (names & {"verify"} if code else set())
+
+
+def deepest(text: str) -> str:
+    """The deepest module or package that stands at the beginning of a text."""
+    parts = re.split(r"[^\w.]", text)[0].split(".")
+    names = (".".join(parts[:k]) for k in range(len(parts), 0, -1))
+    return next(name for name in names if name in NAMES)
 
 
 @cache
-def named(path: Path) -> frozenset[str]:
-    """Modules of ours whose dotted names stand in a file as texts, which import_module takes."""
+def texts(path: Path) -> frozenset[str]:
+    """The texts in a file, and the pieces of those put together; but no docstrings."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    texts = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant)}
-    modules = set(NAMES) - {"verify"}  # whose data are found by this name
-    return frozenset(t for t in texts if isinstance(t, str) and t in modules)
+    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    nodes = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in told]
+    return frozenset(node.value for node in nodes if isinstance(node.value, str))
+
+
+IMPORTERS = {"import_module", "__import__", "resolve_name", "walk_packages", "run_module",
+             "run_path", "spec_from_file_location", "exec_module", "load_module"}  # fmt: skip
+
+
+def importer(node: ast.AST) -> str | None:
+    """By which a node imports what stands in a text, or takes it where it is imported."""
+    match node:
+        case ast.Name(id=("exec" | "eval") as name):
+            return name
+        case (
+            ast.Attribute(attr="modules" as name) | ast.alias(name=("modules" | "builtins") as name)
+        ):
+            return name
+        case (
+            ast.Name(id=name)
+            | ast.Attribute(attr=name)
+            | ast.alias(name=name)
+            | ast.Constant(value=str(name))
+        ) if name in IMPORTERS:
+            return name
+    return None
+
+
+@cache
+def by_name(path: Path) -> frozenset[str]:
+    """What a file uses to import by name."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return frozenset(name for node in ast.walk(tree) if (name := importer(node)))
+
+
+def relative(path: Path) -> list[str]:
+    """Calls of import_module with a package, to which the name is then relative."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    return [
+        ast.unparse(call)
+        for call in calls
+        if importer(call.func) == "import_module" and (len(call.args) != 1 or call.keywords)
+    ]
+
+
+# Where a name that no import statement has is imported, or run, or looked up, and why.
+BY_NAME = {
+    "verify": {"import_module"},  # public names, when they are used
+    "verify.discovery": {"import_module"},  # files of a package, by their names
+    "verify.from_type": {"modules"},  # hypothesis, where it is imported
+    "verify.integrators.faults": {"modules"},  # numpy, where it is imported
+    "verify.integrators.loading": {"import_module", "modules", "spec_from_file_location",
+                                   "exec_module"},  # the user's code
+    "verify.integrators.others.report": {"import_module"},  # a library that may be broken
+    "verify.arithmetic.number_system": {"exec"},  # kernels
+    "verify.arithmetic.systems.float64": {"exec"},  # kernels
+}  # fmt: skip
+
+
+def whole_package(path: Path) -> set[str]:
+    """What a file imports so that all of `verify` can be reached by attributes from there."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    return {name for name in names if name.partition(".")[0] == "verify"}
 
 
 def upward(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
@@ -141,7 +229,8 @@ EDGES = edges_of(NAMES)
 
 def test_every_folder_is_a_room_and_every_room_has_its_floor() -> None:
     assert {rooms_of(name) for name in NAMES} == {*ROOF, *ROOMS, *GROUND}
-    assert len(ROOMS) == 18
+    python = {path.relative_to(VERIFY).parts for path in MODULES}
+    assert sorted(ROOMS) == sorted({parts[0] for parts in python if len(parts) > 1})
 
 
 def test_imports_go_downwards_only() -> None:
@@ -158,6 +247,18 @@ def test_imports_go_downwards_only() -> None:
         "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from verify.runs.run import run",
         "from importlib import import_module\nimport_module('verify.claims.judge')",
         "from verify import testing",
+        "from verify import errors, run",
+        "from verify import *",
+        "from verify.__init__ import run",
+        "import verify\ndef f():\n    return verify.run",
+        "import_module(f'verify.pages.{name}')",
+        "import_module('verify.pages.' + name)",
+        "import_module('verify.' + name)",
+        "import_module('.pages.page', 'verify')",
+        "import_module('verify').run",
+        "resolve_name('verify.pages.page:make')",
+        "sys.modules['verify'].run",
+        "HOMES = {'page': 'verify.pages.page'}",
     ],
 )
 def test_a_planted_upward_import_is_seen(line: str, tmp_path: Path) -> None:
@@ -167,9 +268,81 @@ def test_a_planted_upward_import_is_seen(line: str, tmp_path: Path) -> None:
     assert {a for a, _ in upward(planted)} == {"verify.algebra.ring"}
 
 
+def test_what_a_docstring_or_a_message_says_is_no_import(tmp_path: Path) -> None:
+    path = tmp_path / "ring.py"
+    path.write_text('"""verify.pages makes pages."""\nNAME = "verify"\nSAID = "see verify.pages"')
+    assert not edges_of_file(path)
+
+
+def test_nothing_imports_the_whole_package() -> None:
+    """Of which every module could then be taken as an attribute, unseen by the other tests."""
+    assert not {name: found for name, path in NAMES.items() if (found := whole_package(path))}
+
+
+@pytest.mark.parametrize(
+    "line", ["import verify", "import sys, verify.errors", "import verify as v"]
+)
+def test_a_planted_import_of_the_whole_package_is_seen(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "ring.py"
+    path.write_text(f"def f():\n    {line}")
+    assert whole_package(path)
+
+
+def test_modules_are_imported_by_name_only_where_that_is_needed() -> None:
+    assert {name: found for name, path in NAMES.items() if (found := by_name(path))} == BY_NAME
+    assert not {name: found for name, path in NAMES.items() if (found := relative(path))}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from importlib import import_module as get",
+        "importlib.import_module(name)",
+        "getattr(importlib, 'import_module')(name)",
+        "__import__(name)",
+        "pkgutil.resolve_name(name)",
+        "sys.modules[name]",
+        "from sys import modules",
+        "import builtins",
+        "exec(text)",
+    ],
+)
+def test_a_planted_import_by_name_is_seen(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "ring.py"
+    path.write_text(line)
+    assert by_name(path)
+
+
+def test_a_planted_relative_import_by_name_is_seen(tmp_path: Path) -> None:
+    path = tmp_path / "ring.py"
+    path.write_text("import_module(name)\nimport_module('..pages', __package__)")
+    assert relative(path) == ["import_module('..pages', __package__)"]
+
+
+@pytest.mark.parametrize(
+    ("test", "run"),
+    [
+        ("TYPE_CHECKING", {"two"}),
+        ("typing.TYPE_CHECKING", {"two"}),
+        ("not TYPE_CHECKING", {"one"}),
+        ("name or TYPE_CHECKING", {"one", "two"}),
+    ],
+)
+def test_what_is_not_only_for_types_is_run_on_import(
+    test: str, run: set[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "ring.py"
+    path.write_text(f"if {test}:\n    import one\nelse:\n    import two")
+    assert imported(path) == run
+
+
 def test_there_are_no_circles_of_modules_nor_of_folders() -> None:
     assert not circles(EDGES)
     assert not circles(folders(EDGES))
+    assert {Path(folder).parts[0] for folder in folders(EDGES)} == set(ROOMS), "they were read"
+    ring = EDGES["verify.algebra.ring"] | {"verify.proof.order"}
+    found = circles(folders(EDGES | {"verify.algebra.ring": ring}))
+    assert any({"algebra", "proof"} <= circle for circle in found)
     planted = EDGES | {"verify.algebra.generator": {"verify.algebra.ring"}}
     assert any("verify.algebra.generator" in circle for circle in circles(planted))
 
@@ -182,8 +355,41 @@ def test_a_folder_can_be_taken_in_at_a_glance() -> None:
     assert max(counts.values()) <= MOST_FILES, counts.most_common(3)
 
 
-def test_content_holds_no_python() -> None:
-    assert not [p for name in ("reports", "reference") for p in (ROOT / name).rglob("*.py")]
+CONTENT = ("reports", "reference")
+EXAMPLES = ROOT / "reference" / "examples"  # whole programs for users, of no use to us
+
+
+def stray(paths: Iterable[Path]) -> list[Path]:
+    """The Python files among the content that are no example programs."""
+    return [path for path in paths if path.suffix == ".py" and path.parent != EXAMPLES]
+
+
+def from_content(names: Set[str]) -> set[str]:
+    """The modules among those imported that lie in the content: in a checkout, and in a wheel."""
+    folders = (*CONTENT, "verify.data")
+    return {name for name in names if f"{name}.".startswith(tuple(f"{x}." for x in folders))}
+
+
+def test_content_holds_no_python_but_example_programs_which_nothing_imports() -> None:
+    paths = [path for name in CONTENT for path in (ROOT / name).rglob("*")]
+    assert not stray(paths)
+    assert any(path.suffix == ".py" for path in paths), "there is an example"
+    for name, path in NAMES.items():
+        assert not from_content(imported(path, everywhere=True)), name
+    for path in EXAMPLES.glob("*.py"):
+        assert "verify" not in roots(imported(path, everywhere=True)), "it stands for other code"
+
+
+def test_stray_python_and_an_imported_example_are_seen(tmp_path: Path) -> None:
+    for folder in (ROOT / "reports" / "paper", ROOT / "reference", EXAMPLES / "more"):
+        assert stray([folder / "new.py", EXAMPLES / "new.py"]) == [folder / "new.py"]
+    lines = ["from reference.examples import lie2", "import verify.data.reference.examples.lie2",
+             "from verify.data import reference"]  # fmt: skip
+    for number, line in enumerate(lines):
+        path = tmp_path / f"{number}.py"  # what a file imports is read once
+        path.write_text(f"def f():\n    {line}\n")
+        assert from_content(imported(path, everywhere=True))
+    assert not from_content({"verify.reference.make.make", "verify.content"})
 
 
 def test_pages_compute_nothing_themselves() -> None:
@@ -208,16 +414,36 @@ SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", 
         "hypothesis"}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", LIGHT)
-def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
-    seen, waiting = set(), [name]
+def loaded_with(name: str, imports: Mapping[str, Set[str]]) -> set[str]:
+    """What is imported when a module is: what it imports and its packages, and so on."""
+    seen: set[str] = set()
+    waiting = [name]
     while waiting:
         module = waiting.pop()
-        if module not in seen and module in NAMES:
+        if module not in seen:
             seen.add(module)
-            names = imported(NAMES[module])
-            assert not roots(names) & SLOW, f"{name} imports {module}, which imports {names}"
-            waiting += names
+            waiting += {*imports.get(module, ()), module.rpartition(".")[0]} - {""}
+    return seen
+
+
+IMPORTS = {name: imported(path) for name, path in NAMES.items()}
+
+
+def test_what_is_to_be_light_is_there() -> None:
+    assert set(LIGHT) <= set(NAMES)
+
+
+@pytest.mark.parametrize("name", LIGHT)
+def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
+    found = loaded_with(name, IMPORTS)
+    assert not {m: IMPORTS[m] for m in found & set(IMPORTS) if roots(IMPORTS[m]) & SLOW}
+    assert not roots(found) & SLOW
+
+
+def test_what_a_package_and_what_is_imported_import_is_seen() -> None:
+    for module in ("verify", "verify.commands", "verify.from_type"):
+        planted = IMPORTS | {module: IMPORTS[module] | {"numpy.linalg"}}
+        assert "numpy" in loaded_with("verify.commands.main", planted), module
 
 
 def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
