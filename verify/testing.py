@@ -85,7 +85,7 @@ def _hamiltonian(
 
     if isinstance(given, Hamiltonian):
         return given.with_values({**dict(given.values), **parameters}) if parameters else given
-    if isinstance(given, str) and given in systems.all_systems():
+    if isinstance(given, str) and given in systems.names():
         return systems.get(given).hamiltonian(parameters)
     return Hamiltonian.parse(given, parameters)
 

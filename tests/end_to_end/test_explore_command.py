@@ -63,7 +63,7 @@ def test_an_interrupted_exploration_goes_on_to_the_same_bytes(
 def test_a_terminated_exploration_leaves_no_process_and_keeps_what_is_finished(
     tmp_path: Path,
 ) -> None:
-    """As a run's manager ends it: SIGTERM, to the one process that it knows."""
+    """As a job's manager ends it: SIGTERM, to the one process that it knows."""
     kept = tmp_path / "kept"
     asked = (*QUICK, "--examples", "100000", "--keep", str(kept), "--workers", "2")
     with started(*asked) as process:

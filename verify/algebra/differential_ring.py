@@ -118,10 +118,10 @@ class DifferentialRing:
             total += len(x.derivative(index)) * len(self._partial(index, name))
         return total
 
-    def used(self, *elements: Poly, solved: bool = True) -> list[Generator]:
+    def generators_in(self, *elements: Poly, inside_equations: bool = True) -> list[Generator]:
         """The generators that the elements depend on, arguments included, oldest first.
 
-        `solved`: those in the equations of unknowns, too.
+        `inside_equations`: those in the equations of unknowns, too.
         """
         seen: set[int] = set()
         stack = [index for x in elements for index in _occurring(x)]
@@ -129,7 +129,7 @@ class DifferentialRing:
             index = stack.pop()
             if index not in seen:
                 seen.add(index)
-                if solved or self._by_index[index].kind != "solved":
+                if inside_equations or self._by_index[index].kind != "solved":
                     stack += self._inside_of(index)
         return [g for g in self.generators if g.index in seen]
 

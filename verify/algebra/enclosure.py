@@ -49,7 +49,7 @@ def enclose_all(
     """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
     values: dict[int, Any] = {}
     powers: dict[tuple[int, int], Any] = {}
-    for g in ring.used(*elements):
+    for g in ring.generators_in(*elements):
         if g.kind == "variable":
             values[g.index] = box[g.name]
         elif g.kind == "pi":
@@ -156,7 +156,7 @@ class Enclosures:
 
     @cached_property
     def _generators(self) -> list[tuple[Generator, Terms]]:
-        used = self.ring.used(*self.elements)
+        used = self.ring.generators_in(*self.elements)
         return [(g, [] if g.argument is None else _terms(g.argument)) for g in used]
 
     @cached_property

@@ -43,5 +43,5 @@ def as_text(ring: DifferentialRing, x: Poly) -> str:
     """x as a formula: factored where it has few terms, else as it stands in the ring."""
     if len(x) <= _MOST_FACTORED:
         return to_text(as_product(ring, x))
-    names = {f"_{g.index}": f"({to_text(_of(ring, g))})" for g in ring.used(x)}
+    names = {f"_{g.index}": f"({to_text(_of(ring, g))})" for g in ring.generators_in(x)}
     return re.sub(r"\b_\d+\b", lambda name: names[name[0]], str(x)).replace("^", "**")

@@ -28,7 +28,7 @@ def decided(ring: DifferentialRing, x: Poly) -> Decision:
     """Of x in normal form."""
     if x == 0:
         return Decision(True)
-    names = [g.name for g in ring.used(x) if g.kind == "variable"]
+    names = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
     # A point usually tells at once; clearing denominators can be long work.
     found = _witness(ring, x, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
     if found is None and clear_inverses(ring, x) == 0:

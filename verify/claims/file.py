@@ -172,19 +172,19 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: "_Sc
         raise InputError("every", table["every"], f"a claim of kind {kind} speaks of one H; of "
                          f"every H may speak: {', '.join(_EVERY_KINDS)}")  # fmt: skip
     keys = _with_defaults(model, table, defaults)
-    subject = {key: keys.pop(key) for key in HAMILTONIAN_KEYS if key in keys}
+    hamiltonian_keys = {key: keys.pop(key) for key in HAMILTONIAN_KEYS if key in keys}
     on_runs = issubclass(model, ON_RUNS)
     runs = {key: keys[key] for key in RUN_KEYS if key in keys} if on_runs else {}
     for key in set(runs) - set(model.model_fields):
         del keys[key]
-    if "every" in subject:
-        keys["every"] = subject["every"]
+    if "every" in hamiltonian_keys:
+        keys["every"] = hamiltonian_keys["every"]
     claim: Claim = model.model_validate(keys)
     _is_new(file, claim)
-    if "every" in subject:
-        _check_every(claim, subject)
+    if "every" in hamiltonian_keys:
+        _check_every(claim, hamiltonian_keys)
     else:
-        name, scene = scene_for(claim, subject, runs, scenes.get)
+        name, scene = scene_for(claim, hamiltonian_keys, runs, scenes.get)
         _check_one(claim, scene)
         claim = claim.model_copy(update={"scene": name})
         file.scenes.setdefault(name, scene)
@@ -230,15 +230,17 @@ def _with_defaults(
     return {**{key: value for key, value in defaults.items() if key in taken}, **table}
 
 
-def _check_every(claim: Claim, subject: Mapping[str, Any]) -> None:
-    if others := [key for key in subject if key != "every"]:
-        raise InputError(others[0], subject[others[0]], "says which H, and `every` says every H")
-    generic = schemes.get(claim.scheme).every_h
-    if generic is None:
+def _check_every(claim: Claim, hamiltonian_keys: Mapping[str, Any]) -> None:
+    if others := [key for key in hamiltonian_keys if key != "every"]:
+        raise InputError(
+            others[0], hamiltonian_keys[others[0]], "says which H, and `every` says every H"
+        )
+    every_h = schemes.get(claim.scheme).every_h
+    if every_h is None:
         raise InputError("scheme", claim.scheme, "is given for one H, not for every H")
-    if generic.separable and subject["every"] != EVERY_SEPARABLE:
+    if every_h.separable and hamiltonian_keys["every"] != EVERY_SEPARABLE:
         problem = f"{claim.scheme} takes H = T(p) + V(q) only; say {EVERY_SEPARABLE!r}"
-        raise InputError("every", subject["every"], problem)
+        raise InputError("every", hamiltonian_keys["every"], problem)
     if isinstance(claim, DeltaJClaim):
         if claim.up_to is None:
             raise InputError("up_to", "", "is missing: of every H only the first term is known")

@@ -2,12 +2,7 @@
 
 from collections.abc import Sequence
 
-from verify.claims import area as area_claims
-from verify.claims import formulas as exact_claims
-from verify.claims import growth as growth_claims
-from verify.claims import measured as measured_claims
-from verify.claims import printed as printed_claims
-from verify.claims import regions as flow_claims
+from verify.claims import area, formulas, growth, measured, printed, regions
 from verify.claims.every_hamiltonian import check_every
 from verify.claims.findings import Checks, Findings, result
 from verify.claims.kinds import Claim, CriteriaClaim, TheoremClaim
@@ -50,10 +45,10 @@ def _check_theorem(claim: TheoremClaim, _: Findings) -> ClaimResult:
 _CHECKS: Checks = {
     TheoremClaim: _check_theorem,
     CriteriaClaim: _check_criteria,
-    **exact_claims.CHECKS,
-    **area_claims.CHECKS,
-    **measured_claims.CHECKS,
-    **printed_claims.CHECKS,
-    **growth_claims.CHECKS,
-    **flow_claims.CHECKS,
+    **formulas.CHECKS,
+    **area.CHECKS,
+    **measured.CHECKS,
+    **printed.CHECKS,
+    **growth.CHECKS,
+    **regions.CHECKS,
 }

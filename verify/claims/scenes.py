@@ -78,27 +78,27 @@ RUN_KEYS = tuple(RunKeys.model_fields)
 
 def scene_for(
     claim: Claim,
-    subject: Mapping[str, Any],
+    hamiltonian_keys: Mapping[str, Any],
     runs: Mapping[str, Any],
     named: Callable[[str], Scene],
 ) -> tuple[str, Scene]:
     """The scene that the claim speaks of and a name for it that no other claim's scene has.
 
-    `subject` and `runs`: the claim's keys for them; `named` finds a scene by its name. Raises
-    InputError, whose name is the key, and pydantic's ValidationError.
+    `hamiltonian_keys` and `runs`: the claim's keys of H and of its runs; `named` finds a scene by
+    its name. Raises InputError, whose name is the key, and pydantic's ValidationError.
     """
-    if len([name for name in HAMILTONIAN_SOURCES if name in subject]) != 1:
-        given = " and ".join(name for name in HAMILTONIAN_SOURCES if name in subject)
+    if len([name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys]) != 1:
+        given = " and ".join(name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys)
         raise InputError(given or "scene", "", f"give one of {', '.join(HAMILTONIAN_SOURCES)}")
-    if "scene" not in subject:
+    if "scene" not in hamiltonian_keys:
         if isinstance(claim, FlowClaim):
             raise InputError("scene", "", "is missing: a [[flow]] of a scene is spoken of")
-        own = ClaimedHamiltonian.model_validate(subject)
+        own = ClaimedHamiltonian.model_validate(hamiltonian_keys)
         scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
         return _with_grid(claim, own.system or "own", scene, None, runs)
-    if "parameters" in subject:
+    if "parameters" in hamiltonian_keys:
         raise InputError("parameters", "", "stand in the scene's own file")
-    name = subject["scene"]
+    name = hamiltonian_keys["scene"]
     found = named(name)
     if isinstance(claim, FlowClaim):
         _check_flows(claim, name, found)

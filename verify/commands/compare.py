@@ -154,6 +154,8 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 
 
 def _print(table: "Theirs", found: "Compared") -> None:
+    from verify.arithmetic.exact import short
+
     of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"
     click.echo(f"{of}; {_count(table.rows, 'row')} read")
     if table.other_steps:
@@ -167,7 +169,7 @@ def _print(table: "Theirs", found: "Compared") -> None:
     if table.ignored:
         click.echo(f"columns that mean nothing here: {', '.join(table.ignored)}")
     for name, (theirs, ours) in table.read_as.items():
-        click.echo(f"your {name} {_exact(theirs)} is taken for {_exact(ours)}")
+        click.echo(f"your {name} {short(theirs)} is taken for {short(ours)}")
     for column in found.columns:
         click.echo(_column(column))
     if found.separated is not None:
@@ -199,12 +201,6 @@ def _compact(text: str) -> str:
     if len(short) > _DIGITS_SHOWN:
         short = f"{short[: _DIGITS_SHOWN // 2]}…{short[-_DIGITS_SHOWN // 2 :]}"
     return f"{short}e{exponent}" if exponent.strip("+0") else short
-
-
-def _exact(x: Any) -> str:
-    from verify.arithmetic.exact import short
-
-    return short(x)
 
 
 def _column(x: "Column") -> str:

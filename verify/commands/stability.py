@@ -83,10 +83,8 @@ def _print(found: "StabilityFindings") -> None:
     for run in found.runs:
         click.echo(f"{run.verdict:{width}}  {run.id}")
         if run.kind not in _PLAIN:
-            progress_of = textwrap.fill(
-                run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN
-            )
-            click.echo(progress_of)
+            detail = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
+            click.echo(detail)
     for step in found.largest_steps:
         measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"
         linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"

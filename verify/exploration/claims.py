@@ -103,7 +103,7 @@ def claim_property(text: str) -> Property:
 
 
 def _holds(claim: Claim, sample: Sample) -> bool:
-    """Raises Violation where the claim is refuted for the example's H and run."""
+    """Raises Violation where the claim is refuted for the sample's H and run."""
     separable = getattr(claim, "every", None) == EVERY_SEPARABLE
     if separable and not sample.hamiltonian.field()[0].separable():
         return False
@@ -120,7 +120,7 @@ def _holds(claim: Claim, sample: Sample) -> bool:
 
 
 def _of_scheme(sample: Sample, name: str) -> Sample | None:
-    """The example with that scheme; None where the scheme does not take its H."""
+    """The sample with that scheme; None where the scheme does not take its H."""
     scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
     asked = replace(sample, scheme=get(name), scene=scene)
     try:
@@ -131,7 +131,7 @@ def _of_scheme(sample: Sample, name: str) -> Sample | None:
 
 
 def _verdict_on(claim: Claim, sample: Sample) -> Any:
-    """The claim's result for the example, a `verify.scenes.results.claim.ClaimResult`."""
+    """The claim's result for the sample, a `verify.scenes.results.claim.ClaimResult`."""
     claim = claim.model_copy(update={"scene": _NAME} | _without_every(claim, sample))
     scenes = {_NAME: _scene(claim, sample)}
     plan = Plan()
@@ -155,7 +155,7 @@ def _without_every(claim: Claim, sample: Sample) -> dict[str, Any]:
 
 
 def _scene(claim: Claim, sample: Sample) -> Scene:
-    """The example's scene, with the runs that the claim speaks of."""
+    """The sample's scene, with the runs that the claim speaks of."""
     scene = sample.scene
     if not isinstance(claim, ON_RUNS):
         return scene

@@ -25,7 +25,7 @@ _ROUNDOFF = Fraction(1, 2**53)
 
 @dataclass(frozen=True)
 class Measure:
-    """`value(example, digits)`: lg of it, or None; `sentence`: what it is."""
+    """`value(sample, digits)`: lg of it, or None; `sentence`: what it is."""
 
     name: str
     sentence: str
@@ -62,7 +62,7 @@ def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     exact = _stays(sample, digits)
     if exact is None:
         return None
-    found = _job(sample, frozenset()).run(number_systems.get("float64", 17))
+    found = _kernel_run(sample, frozenset()).run(number_systems.get("float64", 17))
     if found.done < sample.steps:
         return None
     points = ({"p": sample.p, "q": sample.q}, *exact.trail)
@@ -88,14 +88,14 @@ def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
 
 def _stays(sample: Sample, digits: int) -> Outcome | None:
     """The run with so many digits; None where it goes far."""
-    found = _job(sample, frozenset({"lambda_max"})).run(number_systems.get("mpfr", digits))
+    found = _kernel_run(sample, frozenset({"lambda_max"})).run(number_systems.get("mpfr", digits))
     if found.done < sample.steps:
         return None
     near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
     return found if near else None
 
 
-def _job(sample: Sample, observables: frozenset[str]) -> KernelRun:
+def _kernel_run(sample: Sample, observables: frozenset[str]) -> KernelRun:
     return KernelRun(*sample.kernel_inputs, observables, 0)
 
 

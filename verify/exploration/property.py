@@ -1,4 +1,4 @@
-"""What a property is: a sentence that always holds, and how one example is held against it."""
+"""What a property is: a sentence that always holds, and how one sample is held against it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,15 +7,15 @@ from verify.exploration.sample import Sample
 
 
 class Violation(Exception):  # noqa: N818 - it is a finding about the code, not a failure of it
-    """An example for which a property does not hold; the message is one line with the numbers."""
+    """A sample for which a property does not hold; the message is one line with the numbers."""
 
 
 @dataclass(frozen=True)
 class Property:
-    """`holds(example)`: True, or False where the sentence does not speak of the example.
+    """`holds(sample)`: True, or False where the sentence does not speak of the sample.
 
     It raises Violation where the sentence is wrong for it. Any other exception is an error of the
-    code under test, too. `scheme`: that of which it speaks, where this is not the example's.
+    code under test, too. `scheme`: that of which it speaks, where this is not the sample's.
     """
 
     name: str

@@ -46,7 +46,7 @@ def check_properties(
 
 
 def outcome(asked: Property, sample: Sample) -> tuple[bool, str]:
-    """Whether the property speaks of the example, and what is wrong; empty where nothing is."""
+    """Whether the property speaks of the sample, and what is wrong; empty where nothing is."""
     try:
         return asked.holds(sample), ""
     except Violation as violation:

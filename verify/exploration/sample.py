@@ -96,17 +96,17 @@ class Sample:
     def _kinds(self) -> set[str]:
         """Of what H's derivatives are made."""
         field = self.step_map.substeps[0].field
-        return {g.kind for g in field.ring.used(field.h_p, field.h_q)}
+        return {g.kind for g in field.ring.generators_in(field.h_p, field.h_q)}
 
     @property
     def turn(self) -> int:
-        """A number by which properties choose what they look at of an example."""
+        """A number by which properties choose what they look at of a sample."""
         return 7 * self.steps + abs(self.p.numerator) + self.q.denominator
 
     def is_turn(self, one_in: int, after: int = 0) -> bool:
-        """Whether a property that takes long looks at this example: at one in so many.
+        """Whether a property that takes long looks at this sample: at one in so many.
 
-        `after`: properties with different ones look at different examples.
+        `after`: properties with different ones look at different samples.
         """
         return self.turn % one_in == after
 

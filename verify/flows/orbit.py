@@ -118,7 +118,7 @@ class _OrbitSearch:
             )
             return self.found("rotates", summary, self.free)
         try:
-            return self.followed()
+            return self.integrated()
         except NoFlowError as error:
             return self.found("unknown", str(error))
 
@@ -131,7 +131,7 @@ class _OrbitSearch:
             raise NoFlowError("H or its derivatives are not defined there") from None
         self.rates.append((dp, dq, stiffness))
 
-    def followed(self) -> ExactOrbit:
+    def integrated(self) -> ExactOrbit:
         with self.arithmetic.context():
             z, time, step = self.z0, self.time - self.time, self.time / 16
         outwards, longest = 0, None

@@ -17,9 +17,8 @@ from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.closed_orbit import at_rest, closed_orbit
 from verify.flows.extrapolation import Flow, NoFlowError
+from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.known_flows import closed_form as known_motion
-from verify.hamiltonians.known_flows import named
 
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
 _MORE = 10  # and how many more the next one has
@@ -56,7 +55,7 @@ def exact_solution(
     reaches that time or where it could not be followed so far.
     """
     _check(hamiltonian, digits)
-    known = known_motion(hamiltonian, p, q)
+    known = known_flows.closed_form(hamiltonian, p, q)
     rest = known[0].rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
     if rest or time == 0:
         return Solution(p, q, Fraction(0), "the initial value itself")
@@ -87,7 +86,7 @@ def leaves_by_algebra(
     _check(hamiltonian, _TOLD)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
-    known = known_motion(hamiltonian, p, q)
+    known = known_flows.closed_form(hamiltonian, p, q)
     if known is not None:
         end = closed_form.blow_up(known[0], 1, _TOLD)
         if end is not None:
@@ -95,7 +94,7 @@ def leaves_by_algebra(
         return known[0].goes()
     if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
         return None
-    for match in named(hamiltonian):
+    for match in known_flows.named(hamiltonian):
         if match.system.goes is not None:
             return match.system.goes(match.values, p, q)
     return NOT_KNOWN

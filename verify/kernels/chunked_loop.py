@@ -8,7 +8,7 @@ from typing import Any
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import fraction_of, fraction_text
-from verify.kernels import tangent_map as tangent
+from verify.kernels import tangent_map
 from verify.kernels.kernel import Kernel
 from verify.kernels.run_inputs import RunInputs
 from verify.scenes.results.run import SeriesPoint
@@ -61,7 +61,7 @@ class ChunkedLoop:
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
-            state.append(tangent.number(value) if kind == "float" else number(value))
+            state.append(tangent_map.nearest_double(value) if kind == "float" else number(value))
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------
@@ -126,7 +126,7 @@ class ChunkedLoop:
             return
         self.trail.append(self._finals(raw))
         if "growth" in raw:
-            seen = {name: raw[name] for name in tangent.NAMES if name in raw}
+            seen = {name: raw[name] for name in tangent_map.NAMES if name in raw}
             self.tangents.append(seen | {"done": Fraction(self.done)})
         if self._seen:
             first = (len(self.trail) - 1) * self.section + 1

@@ -25,8 +25,7 @@ from typing import Any
 
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels import newton
-from verify.kernels import tangent_map as tangent
+from verify.kernels import newton, tangent_map
 from verify.kernels.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.lowering import Lowering
 from verify.schemes.step_map import StepMap
@@ -63,7 +62,7 @@ class Kernel:
     power: int
     lowering: Lowering
     outputs: Mapping[str, int]
-    tangent: tangent.Tangent | None
+    tangent: tangent_map.Tangent | None
     source: str
     names: Mapping[str, Any]
 
@@ -161,7 +160,9 @@ class Writer:
 
     def constants_of_tangent(self) -> dict[str, Any]:
         made = self.tangent
-        return made.lowering.named_constants(tangent.number, made.change) if made else {}
+        return (
+            made.lowering.named_constants(tangent_map.nearest_double, made.change) if made else {}
+        )
 
     # -- how it is written --------------------------------------------------------------------
 
@@ -194,10 +195,10 @@ class Writer:
                     self.keep_extreme(f"{name}_high", name, ">", first="k == 0 or "),
                 ]
         if self.tangent:
-            for name, start in tangent.CARRIED:
+            for name, start in tangent_map.CARRIED:
                 self.carry(name, start, "float")
             change = [self.tangent.lowering.name(index) for index in self.tangent.change]
-            lines += tangent.statements(change)
+            lines += tangent_map.statements(change)
         return lines + self.accumulate("p", value["dp"]) + self.accumulate("q", value["dq"])
 
     def product_of_factors(self) -> list[str]:

@@ -48,7 +48,7 @@ class Evaluator:
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
         """The index of x's value, or of its product with a static value (the index `factor`)."""
-        used = self.ring.used(x, solved=False)
+        used = self.ring.generators_in(x, inside_equations=False)
         for generator in used:
             self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
@@ -117,8 +117,10 @@ class Evaluator:
         unknown = system.unknowns
         for k, g in enumerate(unknown):
             own.set(g, inner.input(f"u{number}_{k}", static=False))
-        for g in ring.used(*system.updates, solved=False):
-            inside = () if g.argument is None else ring.used(g.argument, solved=False)
+        for g in ring.generators_in(*system.updates, inside_equations=False):
+            inside = (
+                () if g.argument is None else ring.generators_in(g.argument, inside_equations=False)
+            )
             if g not in unknown and not any(x in unknown for x in inside):
                 at = self.at(g)
                 given.add(at)

@@ -27,7 +27,7 @@ CARRIED: tuple[tuple[str, int | str], ...] = (
 )  # fmt: skip
 
 
-def number(value: Fraction) -> float:
+def nearest_double(value: Fraction) -> float:
     """The nearest float64; infinite beyond their range, where the run then ends."""
     try:
         return float(value)
@@ -48,7 +48,7 @@ class Tangent:
         a, b, c, d = step.jacobian
         entries = [a - 1, b, c, d - 1]
         own = Evaluator(self.program, step.ring, {}, pipelined=True)
-        for generator in step.ring.used(*entries):
+        for generator in step.ring.generators_in(*entries):
             at = evaluator.at(generator)
             self.needed.append(at)
             own.set(generator, self.program.input(f"approx(v{at})", static=self.main.static[at]))

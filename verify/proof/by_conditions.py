@@ -14,36 +14,36 @@ from verify.verdict import Verdict
 _MORE = 2  # orders beyond the claimed one that are looked at
 
 
-def prove_by_conditions(scheme: Scheme, generic: ByConditions) -> EveryProof:
+def prove_by_conditions(scheme: Scheme, every_h: ByConditions) -> EveryProof:
     """The order of the map and whether det J ≡ 1, for every H that the scheme takes.
 
     `conditions` of the result has those up to the claimed order, and those on area. REFUTED where
     one of the former fails, with the first that does; UNDECIDED where one is not decided, or where
     det J is not; `order` (of ΔJ) is always None.
     """
-    agreed, end = _agreed(generic, scheme.order)
-    asked = tuple(c for c in generic.order_conditions(scheme.order) if c.order)
-    area = generic.area_conditions()
+    agreed, end = _agreed(every_h, scheme.order)
+    asked = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
+    area = every_h.area_conditions()
     preserved = bool(area) and all(condition.holds for condition in area)
     verdict, reason = _verdict(scheme, asked, area)
     return EveryProof(
         scheme.name,
-        generic.separable,
+        every_h.separable,
         verdict,
         reason,
         order=None,
         area_preserving=True if preserved else None,
         convergence_order=agreed,
-        checked=(f"order {agreed}, {_count(generic, agreed)}", *end),
+        checked=(f"order {agreed}, {_count(every_h, agreed)}", *end),
         conditions=(*asked, *area),
     )
 
 
-def _agreed(generic: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
+def _agreed(every_h: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
     """The order of the map, as far as it is looked at, and what ends it."""
-    most = min(claimed + _MORE, generic.most_order)
+    most = min(claimed + _MORE, every_h.most_order)
     for order in range(1, most + 1):
-        here = [c for c in generic.order_conditions(order) if c.order == order]
+        here = [c for c in every_h.order_conditions(order) if c.order == order]
         wrong = first_wrong(here)
         if wrong is not None:
             word = "does not hold" if wrong.holds is False else "is not decided"
@@ -52,8 +52,8 @@ def _agreed(generic: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
     return most, ()
 
 
-def _count(generic: ByConditions, order: int) -> str:
-    count = len(generic.order_conditions(order)) if order else 0
+def _count(every_h: ByConditions, order: int) -> str:
+    count = len(every_h.order_conditions(order)) if order else 0
     return f"{count} condition{'' if count == 1 else 's'} on the coefficients"
 
 

@@ -61,12 +61,12 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
     return _of_series(scheme, scheme.every_h, separable)
 
 
-def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> EveryProof:
+def _of_conditions(scheme: Scheme, every_h: ByConditions, separable: bool) -> EveryProof:
     """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
-    if separable and isinstance(generic, TreeConditions):
-        generic = replace(generic, separable=True)
-    proof = prove_by_conditions(scheme, generic)
-    if separable and not generic.separable:
+    if separable and isinstance(every_h, TreeConditions):
+        every_h = replace(every_h, separable=True)
+    proof = prove_by_conditions(scheme, every_h)
+    if separable and not every_h.separable:
         proof = replace(proof, separable=True)
         if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
             reason = f"of every smooth H: {proof.reason}; of H = T(p) + V(q) alone nothing is said"
@@ -79,15 +79,15 @@ def _of_conditions(scheme: Scheme, generic: ByConditions, separable: bool) -> Ev
             lost = f"not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
             reason = f"of order {scheme.order}, but {lost}"
             return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
-    if proof.verdict is not Verdict.UNDECIDED or not isinstance(generic, BySeries):
+    if proof.verdict is not Verdict.UNDECIDED or not isinstance(every_h, BySeries):
         return proof
-    return replace(_of_series(scheme, generic, separable), conditions=proof.conditions)
+    return replace(_of_series(scheme, every_h, separable), conditions=proof.conditions)
 
 
-def _convergence(jets: Jets, generic: BySeries, most: int) -> int:
+def _convergence(jets: Jets, every_h: BySeries, most: int) -> int:
     """p', q' agree with the exact flow up to this power of h, looked at up to h^most."""
     agreed = -1
-    series = generic.taylor(jets, most)
+    series = every_h.taylor(jets, most)
     flows = jets.lie_derivatives("p", most), jets.lie_derivatives("q", most)
     for n in range(most + 1):
         if any(s[n] * math.factorial(n) != x[n] for s, x in zip(series, flows, strict=True)):
@@ -96,16 +96,16 @@ def _convergence(jets: Jets, generic: BySeries, most: int) -> int:
     return agreed
 
 
-def _of_stages(scheme: Scheme, generic: StageEquations, separable: bool) -> EveryProof:
+def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> EveryProof:
     most = scheme.order + 2
-    agreed = _convergence(Jets(most + 1, separable=separable), generic, most)
-    preserved = all(a == b and a != 0 for a, b in generic.determinants())
+    agreed = _convergence(Jets(most + 1, separable=separable), every_h, most)
+    preserved = all(a == b and a != 0 for a, b in every_h.determinants())
     verdict, reason = Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1, stage by stage"
     if agreed < scheme.order:
         verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
     elif not preserved:
-        return _of_series(scheme, generic, separable)
-    ratios = ", ".join(dict.fromkeys(str(a) for a, _ in generic.determinants()))
+        return _of_series(scheme, every_h, separable)
+    ratios = ", ".join(dict.fromkeys(str(a) for a, _ in every_h.determinants()))
     return EveryProof(
         scheme.name,
         separable,
@@ -118,16 +118,16 @@ def _of_stages(scheme: Scheme, generic: StageEquations, separable: bool) -> Ever
     )
 
 
-def _of_series(scheme: Scheme, generic: BySeries, separable: bool) -> EveryProof:
+def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof:
     most = scheme.order + 1
     while True:
         jets = Jets(most + 2, separable=separable)
-        coefficients = list(jets.delta_j(*generic.taylor(jets, most)))
+        coefficients = list(jets.delta_j(*every_h.taylor(jets, most)))
         order = next((n for n, x in enumerate(coefficients, 1) if x != 0), None)
         if order is not None or most == scheme.order + _MORE:
             break
         most += 1
-    agreed = _convergence(jets, generic, most)
+    agreed = _convergence(jets, every_h, most)
     if order is None:
         verdict = Verdict.UNDECIDED
         reason = f"the coefficients of ΔJ up to h^{most} vanish; whether all do is not decided"
@@ -136,7 +136,7 @@ def _of_series(scheme: Scheme, generic: BySeries, separable: bool) -> EveryProof
         return EveryProof(scheme.name, separable, verdict, reason, None, None, agreed)
     leading = coefficients[order - 1]
     verdict, reason = _verdict(scheme, order, agreed)
-    found, formula, checked = _telescoping(jets, generic, leading, order)
+    found, formula, checked = _telescoping(jets, every_h, leading, order)
     return EveryProof(
         scheme.name,
         separable,
@@ -177,12 +177,12 @@ def _missed(scheme: Scheme, agreed: int) -> str:
 
 
 def _telescoping(
-    jets: Jets, generic: BySeries, leading: Poly, order: int
+    jets: Jets, every_h: BySeries, leading: Poly, order: int
 ) -> tuple[Telescoping, str, tuple[str, ...]]:
     """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
-    if not isinstance(generic, TaylorSeries):
+    if not isinstance(every_h, TaylorSeries):
         return telescopes(jets, leading), "", ()
-    eta = generic.eta
+    eta = every_h.eta
     end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in ("p", "q")]
     divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
     formula = ""

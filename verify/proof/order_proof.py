@@ -21,8 +21,8 @@ class Proof:
     `witness`: a point (p, q, parameters) at which `leading` is not zero; `enclosure`: its value.
     `convergence_order`: p', q' agree with the exact flow up to h to this power; None where all
     coefficients looked at agree. `convergence_decided`: whether it is shown to agree no further.
-    `verdict` is REFUTED for a map that is not a scheme for H at all,
-    or misses the order its scheme claims; `reason` says what was found in one line.
+    `verdict` is REFUTED for a map that is not a scheme for H at all, or misses the order its
+    scheme claims; `reason` says what was found in one line.
     """
 
     verdict: Verdict

@@ -67,9 +67,9 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
         return Potential(
             False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"
         )
-    generic = scheme.every_h
-    if isinstance(generic, TaylorSeries) and generic.eta % 2 == 0:
-        found: Poly | None = potential_of_lie(field, generic.eta)
+    every_h = scheme.every_h
+    if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
+        found: Poly | None = potential_of_lie(field, every_h.eta)
         how = "by the formula for every H"
     else:
         found, how = _among_polynomials(field, leading), "by linear algebra over monomials"
@@ -130,7 +130,7 @@ def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
 def _among_polynomials(field: VectorField, leading: Poly) -> Poly | None:
     """A polynomial G with X·G = L in normal form, of the least degree that has one."""
     ring = field.ring
-    used = [g.index for g in ring.used(field.h_p, field.h_q, leading, ring.variable("p"))]
+    used = [g.index for g in ring.generators_in(field.h_p, field.h_q, leading, ring.variable("p"))]
     gens = [x for k, x in enumerate(ring.context.gens()) if k in used and x != ring.variable("h")]
     if ring.variable("q") not in gens:
         gens.append(ring.variable("q"))

@@ -40,12 +40,12 @@ class Symmetry:
 
 def prove_symmetry(scheme: Scheme) -> Symmetry:
     """By the scheme's coefficients; where they do not say that it is, by the series for one H."""
-    generic = scheme.every_h
-    conditions = generic.symmetry_conditions() if isinstance(generic, WithSymmetry) else ()
+    every_h = scheme.every_h
+    conditions = every_h.symmetry_conditions() if isinstance(every_h, WithSymmetry) else ()
     wrong = first_wrong(conditions)
     if conditions and wrong is None:
         return Symmetry(Verdict.PROVED, "its coefficients are a palindrome", None, conditions)
-    if isinstance(generic, StageEquations) and palindromic(generic):
+    if isinstance(every_h, StageEquations) and palindromic(every_h):
         return Symmetry(Verdict.PROVED, "its stages, in reverse, undo its step")
     try:
         step_map = scheme.step_map(Hamiltonian.parse(WITNESS))

@@ -54,7 +54,7 @@ class PlacedShape(Frozen):
             raise InputError("flow", "centre, scale", f"the shape reaches beyond ±{FARTHEST:g}")
         return self
 
-    def made(self) -> Shape:
+    def to_shape(self) -> Shape:
         """The shape where it is put."""
         return _placed(*self._key())
 

@@ -14,7 +14,9 @@ STATE = ("p", "q")
 
 def polynomial(ring: Ring, maps: Sequence[Map]) -> bool:
     """Whether p and q occur in no generator, so that the maps are polynomials in them."""
-    arguments = [g.argument for pair in maps for g in ring.used(*pair) if g.argument is not None]
+    arguments = [
+        g.argument for pair in maps for g in ring.generators_in(*pair) if g.argument is not None
+    ]
     return not any(ring.depends(a, name) for a in arguments for name in STATE)
 
 
@@ -31,7 +33,7 @@ def composed_polynomials(ring: Ring, maps: Sequence[Map], most: int) -> list[Pol
 
 def in_stages(ring: Ring, elements: Sequence[Poly]) -> bool:
     """Whether there are no other generators in the elements than names of stages."""
-    return all(g.kind in ("variable", "stage") for g in ring.used(*elements))
+    return all(g.kind in ("variable", "stage") for g in ring.generators_in(*elements))
 
 
 def unfolded(ring: Ring, elements: Sequence[Poly], most: int) -> list[Poly] | None:
@@ -39,7 +41,7 @@ def unfolded(ring: Ring, elements: Sequence[Poly], most: int) -> list[Poly] | No
 
     None where there are more than `most` terms on the way.
     """
-    used = ring.used(*elements)
+    used = ring.generators_in(*elements)
     images = {g.index: ring.variable(str(g.expression)) for g in used if g.kind == "variable"}
     for g in used:
         if g.kind == "stage":

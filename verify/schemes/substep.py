@@ -52,12 +52,12 @@ class Substep:
     @property
     def staged(self) -> bool:
         """Whether it is made from stages that have names; see `verify.schemes.stages`."""
-        return any(g.kind == "stage" for g in self.ring.used(self.p_next, self.q_next))
+        return any(g.kind == "stage" for g in self.ring.generators_in(self.p_next, self.q_next))
 
     @cached_property
     def implicit(self) -> bool:
         """Whether it is given by equations; see `verify.algebra.implicit_unknowns`."""
-        return any(g.kind == "solved" for g in self.ring.used(self.p_next, self.q_next))
+        return any(g.kind == "solved" for g in self.ring.generators_in(self.p_next, self.q_next))
 
     @cached_property
     def delta_j(self) -> Poly:
@@ -70,7 +70,7 @@ class Substep:
     @property
     def length(self) -> int:
         """How many terms there are in all its parts."""
-        used = self.ring.used(self.p_next, self.q_next)
+        used = self.ring.generators_in(self.p_next, self.q_next)
         arguments = [g.argument for g in used if g.argument is not None]
         return sum(map(len, [self.p_next, self.q_next, *arguments]))
 
@@ -175,5 +175,7 @@ class Substep:
 
 def h_inside(ring: Ring, *elements: Poly) -> bool:
     """Whether h occurs inside a generator, so that x is not a polynomial in h."""
-    arguments: Sequence[Poly] = [g.argument for g in ring.used(*elements) if g.argument is not None]
+    arguments: Sequence[Poly] = [
+        g.argument for g in ring.generators_in(*elements) if g.argument is not None
+    ]
     return any(ring.depends(a, "h") for a in arguments)

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from verify.errors import InputError
 from verify.strategies.terms import Drawer, Limits, Sum, monomial, power
-from verify.strategies.user_terms import KINDS, OWN, Shape, TermRequest
+from verify.strategies.user_terms import KINDS, TERMS_BY_KIND, Shape, TermRequest
 
 NAMES = ("a", "b")
 # How often a shape is drawn, the simplest first; whether H → ∞ in every direction (None: unknown).
@@ -26,7 +26,7 @@ _Tree = Sequence[Sequence[Sequence["Plan"]]]
 _Shapes = dict[str, tuple[int, bool | None]]
 _QUADRATIC: _Shapes = {"elliptic": (1, True), "hyperbolic": (1, False), "parabolic": (1, False)}
 _SHAPES: _Shapes = {"confining": (2, True), "open": (2, False), "free": (2, None)}
-_OWN_FIRST: _Shapes = {"open": (2, False)} | _SHAPES  # p**2/2 + cos(q) is the simplest
+_OPEN_FIRST: _Shapes = {"open": (2, False)} | _SHAPES  # p**2/2 + cos(q) is the simplest
 _CHOICES = 16  # as many as the simplest formula of any plan takes
 
 
@@ -72,7 +72,7 @@ def plans(
 
 
 def _shapes(kind: str) -> _Shapes:
-    return _QUADRATIC | _SHAPES if kind == "polynomial" else _OWN_FIRST
+    return _QUADRATIC | _SHAPES if kind == "polynomial" else _OPEN_FIRST
 
 
 def _tree(choices: Sequence[Plan]) -> _Tree:
@@ -271,7 +271,7 @@ def _free(d: Drawer, plan: Plan) -> Sum:
 def _add_term_of_kind(d: Drawer, made: Sum, plan: Plan, want: TermRequest) -> None:
     """The term of the plan's kind, and one or two where there is room."""
     for _ in range(1 + (len(made) + 1 < d.limits.terms and d.whole(0, 3) == 3)):
-        numerator, denominator, positive = OWN[plan.kind](d, want)
+        numerator, denominator, positive = TERMS_BY_KIND[plan.kind](d, want)
         made.add(d.positive() if positive else d.signed(), numerator, denominator)
 
 

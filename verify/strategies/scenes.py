@@ -11,12 +11,10 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Grid, Scene
 from verify.scenes.values import MAX_STEPS, InitialValue
 from verify.schemes.scheme import Scheme
+from verify.strategies import numbers
 from verify.strategies.arguments import strategy_or_none, whole
 from verify.strategies.formulas import Formula
 from verify.strategies.hamiltonians import formula_strategy, hamiltonian_from
-from verify.strategies.numbers import initial_values as drawn_values
-from verify.strategies.numbers import parameters
-from verify.strategies.numbers import step_sizes as drawn_steps
 from verify.strategies.schemes import choices, takers
 
 
@@ -48,8 +46,8 @@ def scenes(
     least, most = (whole("steps", value, 1, MAX_STEPS) for value in steps)
     if least > most:
         raise InputError("steps", steps, "the first is greater than the second")
-    values = drawn_values() if initial_values is None else initial_values
-    sizes = drawn_steps() if step_sizes is None else step_sizes
+    values = numbers.initial_values() if initial_values is None else initial_values
+    sizes = numbers.step_sizes() if step_sizes is None else step_sizes
     # One number needs no draw, nor may it hang on whether a loaded module has it as a constant.
     counts = st.just(least) if least == most else st.integers(least, most)
     grids = st.builds(_grid, counts, sizes, values)
@@ -105,7 +103,7 @@ def _of_hamiltonians(
     def drawn(draw: st.DrawFn) -> Scene:
         hamiltonian = draw(hamiltonians)
         if hamiltonian.symbols:
-            values = draw(parameters(hamiltonian.symbols))
+            values = draw(numbers.parameters(hamiltonian.symbols))
             hamiltonian = hamiltonian.with_values(dict(hamiltonian.values) | values)
         own = st.sampled_from(takers(found, hamiltonian)) if schemes is None else schemes
         return _fitting(hamiltonian, draw(own), draw(grids))

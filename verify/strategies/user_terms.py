@@ -90,9 +90,9 @@ def _either(d: Drawer) -> int:
     return -(index // 2 + 1) if index % 2 else index // 2 + 1
 
 
-OWN: dict[str, Callable[[Drawer, TermRequest], TermShape]] = {
+TERMS_BY_KIND: dict[str, Callable[[Drawer, TermRequest], TermShape]] = {
     "trigonometric": trigonometric,
     "exponential": exponential,
     "rational": rational,
 }
-KINDS = ("polynomial", *OWN)
+KINDS = ("polynomial", *TERMS_BY_KIND)

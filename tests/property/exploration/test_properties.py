@@ -1,6 +1,6 @@
 """The catalogue's properties over drawn scenes: the same that `verify explore` looks at.
 
-What each of them must catch is in tests/unit/test_properties.py.
+What each of them must catch is in tests/unit/exploration/properties/test_properties.py.
 """
 
 import pytest

@@ -30,14 +30,13 @@ from verify.scenes.values import CLOSED_FORM, REPORTED
 FIXED, LIKE, TRUE = fixed.at_bits(128 - FRACTION_OF), mpfr.at_bits(112), mpfr.at_bits(500)
 
 
-def check_job(kernel_run: KernelRun) -> Outcome:
+def check_kernel_run(kernel_run: KernelRun) -> Outcome:
     """The run in fixed: what finishes agrees with mpfr, within the bounds that are certified.
 
     Where there is no certificate it is about as near as mpfr is in as many bits.
     """
     found = kernel_run.run(FIXED, tangent=True)
-    of = kernel_run
-    where = f"{of.hamiltonian}, {of.parameters}, {of.scheme}, {of.start}, {of.steps} steps"
+    where = _described(kernel_run)
     if found.done < kernel_run.steps:
         assert found.reason, where
         return found
@@ -50,6 +49,10 @@ def check_job(kernel_run: KernelRun) -> Outcome:
         error = abs(found.values[name] - x)
         assert error <= bound, f"{where}: {name} is off by {float(error)} > {float(bound)}"
     return found
+
+
+def _described(x: KernelRun) -> str:
+    return f"{x.hamiltonian}, {x.parameters}, {x.scheme}, {x.start}, {x.steps} steps"
 
 
 def kernel_run_of(
@@ -92,7 +95,9 @@ def test_a_run_is_right_or_ends_and_says_so(
     observables: tuple[str, ...],
 ) -> None:  # fmt: skip
     given = {n: x for n, x in (("a", a), ("b", b)) if n in Hamiltonian.parse(text).symbols}
-    check_job(kernel_run_of(Hamiltonian.parse(text, given), "lie2", start, steps, observables))
+    check_kernel_run(
+        kernel_run_of(Hamiltonian.parse(text, given), "lie2", start, steps, observables)
+    )
 
 
 @drawn(20)
@@ -105,7 +110,7 @@ def test_a_run_of_any_hamiltonian_is_right_or_ends_and_says_so(
     text: str, scheme: str, start: dict[str, Fraction]
 ) -> None:
     try:
-        check_job(kernel_run_of(Hamiltonian.parse(text), scheme, start))
+        check_kernel_run(kernel_run_of(Hamiltonian.parse(text), scheme, start))
     except InputError:  # a scheme may be implicit for this H
         assume(False)
 
@@ -205,7 +210,9 @@ def test_a_function_that_has_no_value_before_the_loop_is_seen(
 # -- losses ---------------------------------------------------------------------------------------
 
 
-def job_of_case(case: tuple[Any, ...], scheme: str, observables: tuple[str, ...]) -> KernelRun:
+def kernel_run_of_case(
+    case: tuple[Any, ...], scheme: str, observables: tuple[str, ...]
+) -> KernelRun:
     text, parameters, *start, steps = case
     at = {n: Fraction(x) for n, x in zip("qph", start, strict=True)}
     return kernel_run_of(Hamiltonian.parse(text, parameters), scheme, at, steps, observables)
@@ -221,15 +228,15 @@ def kernel_runs() -> list[KernelRun]:
         (("p**2/2 - 1/q", {}, 1, -1, "0.01", 100), "lie2", ("lambda",)),
         (("p**2/2 + q**2/2", {}, 1, 0, "0.1", 3), SCHEMES["root"], ("lambda",)),
     ]
-    return [job_of_case(*task) for task in tasks]
+    return [kernel_run_of_case(*task) for task in tasks]
 
 
-def check_jobs() -> list[str]:
-    """Of the jobs those that the check finds wrong."""
+def wrong_kernel_runs() -> list[str]:
+    """Of the kernel runs those that the check finds wrong."""
     wrong = []
     for kernel_run in kernel_runs():
         try:
-            check_job(kernel_run)
+            check_kernel_run(kernel_run)
         except AssertionError as error:
             wrong.append(str(error))
     return wrong
@@ -240,9 +247,9 @@ def anew(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stepping, "kernel_for", kernel_for.__wrapped__)
 
 
-def test_without_a_loss_no_job_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_loss_no_kernel_run_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     anew(monkeypatch)
-    assert check_jobs() == []
+    assert wrong_kernel_runs() == []
 
 
 @pytest.mark.parametrize("unseen", ["p", "q", "plain"])
@@ -257,7 +264,7 @@ def test_a_loop_that_looks_away_from_one_number_is_caught(
         return " and ".join(x for x in looked_at if not x.startswith(f"inside({unseen},"))
 
     monkeypatch.setattr(Writer, "guard", less)
-    assert check_jobs()
+    assert wrong_kernel_runs()
 
 
 def test_a_function_without_a_value_that_does_not_say_so_is_caught(
@@ -266,10 +273,10 @@ def test_a_function_without_a_value_that_does_not_say_so_is_caught(
     anew(monkeypatch)
     monkeypatch.setattr(engine, "_compiled", engine._compiled.__wrapped__)
     monkeypatch.setattr(Translator, "_require", lambda self, condition: None)
-    assert check_jobs()
+    assert wrong_kernel_runs()
 
 
 def test_limits_beyond_the_format_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     anew(monkeypatch)
     monkeypatch.setattr(reach, "_TOP", Fraction(2**40))
-    assert check_jobs()
+    assert wrong_kernel_runs()

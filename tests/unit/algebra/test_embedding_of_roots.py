@@ -27,7 +27,7 @@ def test_a_root_of_a_number_of_any_size_is_that_root(number: str, degree: int, p
         assert abs(found / true * 2 - 1) > 0.5
     (same,) = embed([root**degree - base**power], ("p",))[1]
     assert same == 0
-    for g in ring.used(x):
+    for g in ring.generators_in(x):
         with working_precision(300):
             value = enclose(ring, g.argument, {}, 300) if g.kind == "root" else 1
             assert value < 2 ** max(degree + 1, 13)

@@ -122,7 +122,7 @@ def rank(program: Program, index: int, pipelined: bool) -> tuple[int, int]:
 def in_order(evaluator: Evaluator, x: Poly, order: tuple[int, ...], name: str) -> int:
     """The sum with p and q, or q and p, by Horner's or Estrin's rule."""
     ring, program = evaluator.ring, evaluator.program
-    used = ring.used(x)
+    used = ring.generators_in(x)
     at = {str(g.expression): (g.index, evaluator.at(g)) for g in used}
     present = [n for n in STATE if n in at]
     places = [at[n][0] for n in present]

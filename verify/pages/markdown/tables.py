@@ -114,7 +114,7 @@ def largest_steps(view: "StabilityView") -> Markdown:
 
 def stability_table(view: "StabilityView") -> Markdown:
     heads = ("case", "scheme", "h", "N", "verdict", "evidence")
-    rows = [(r.name, r.scheme, r.step_size, r.steps, r.verdict, r.detail) for r in view.cases]
+    rows = [(r.name, r.scheme, r.step_size, r.steps, r.verdict, r.detail) for r in view.runs]
     return table(heads, rows, "llrrll")
 
 

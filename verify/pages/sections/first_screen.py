@@ -86,23 +86,23 @@ def first_screen(
     scenes: Sequence[SceneView],
     gallery: "GalleryView | None" = None,
 ) -> FirstScreen:
-    told = _refutation(claims)
-    plot, place = (told.claim.plot if told else None), None
+    refutation = _refutation(claims)
+    plot, place = (refutation.claim.plot if refutation else None), None
     if plot is None:
         pictures = chain(_pictures(scenes), _pictures_of_the_worst(gallery))
         plot, place = next(pictures, (None, None))
     tiles = tuple(_tiles(report)) or tuple(_tiles_of_the_worst(gallery))
-    return FirstScreen(finding(report, told, gallery), tiles, told, plot, place)
+    return FirstScreen(finding(report, refutation, gallery), tiles, refutation, plot, place)
 
 
 # -- the finding in one sentence ------------------------------------------------------------------
 
 
 def finding(
-    report: Report, told: Refutation | None = None, gallery: "GalleryView | None" = None
+    report: Report, refutation: Refutation | None = None, gallery: "GalleryView | None" = None
 ) -> str:
     if report.claims:
-        return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(told)}."
+        return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(refutation)}."
     proofs, judged = _proofs(report), _stability_tiles(report)
     if not proofs and not judged:
         if gallery:
@@ -119,7 +119,7 @@ def _proofs(report: Report) -> list[ProofResult]:
 
 
 def _stability_tiles(report: Report) -> list[StabilityResult]:
-    return [case for scene in report.scenes for case in scene.stability]
+    return [run for scene in report.scenes for run in scene.stability]
 
 
 def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
@@ -133,12 +133,12 @@ def _finding_of_claims(verdicts: Sequence[Verdict]) -> str:
     return f"Of {len(verdicts)} claims, {listed([first, *(f'{n} {w}' for n, w in rest)])}"
 
 
-def _worst(told: Refutation | None) -> str:
+def _worst(refutation: Refutation | None) -> str:
     """How much of the refuted table is wrong, as its evidence begins."""
-    if told is None or not told.claim.is_table:
+    if refutation is None or not refutation.claim.is_table:
         return ""
-    share = told.claim.result.evidence.partition(":")[0]
-    return f"; in {told.claim.name}, {share}"
+    share = refutation.claim.result.evidence.partition(":")[0]
+    return f"; in {refutation.claim.name}, {share}"
 
 
 def _finding_of_proofs(proofs: Sequence[ProofResult]) -> str:
@@ -168,7 +168,7 @@ def _finding_of_proof(proof: ProofResult) -> str:
 
 
 def _finding_of_runs(judged: Sequence[StabilityResult]) -> str:
-    counted = Counter(case.kind for case in judged)
+    counted = Counter(run.kind for run in judged)
     return f"Of {whole(len(judged))} judged runs: {counts_of(counted)}."
 
 
@@ -201,7 +201,7 @@ def _tiles_of_runs(judged: Sequence[StabilityResult]) -> list[Tile]:
     from verify.pages.sections.stability_view import MEANINGS
 
     tiles = []
-    for kind, count in Counter(case.kind for case in judged).items():
+    for kind, count in Counter(run.kind for run in judged).items():
         sign, verdict = _RUN_SIGNS[kind]
         tiles.append(Tile(verdict, sign, whole(count), kind, MEANINGS[kind], count))
     return sorted(tiles, key=lambda tile: KINDS.index(tile.word))

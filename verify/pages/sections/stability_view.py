@@ -31,7 +31,7 @@ MEANINGS: dict[Kind, str] = {
 
 
 @dataclass(frozen=True)
-class CaseRow:
+class RunRow:
     name: str
     scheme: str
     step_size: str
@@ -54,31 +54,31 @@ class StabilityView:
 
     finding: tuple[str, ...]
     kinds: tuple[Kind, ...]
-    cases: tuple[CaseRow, ...]
+    runs: tuple[RunRow, ...]
     largest: tuple[LargestRow, ...]
     bound: str
     plots: tuple[Plot, ...]
 
 
 def stability_view(scene: SceneResult, anchor: str) -> StabilityView:
-    cases, steps, maps = scene.stability, scene.largest_steps, scene.stability_maps
-    seen = {case.kind for case in cases} | {kind for over in maps for kind in over.counted()}
+    runs, steps, maps = scene.stability, scene.largest_steps, scene.stability_maps
+    seen = {run.kind for run in runs} | {kind for over in maps for kind in over.counted()}
     return StabilityView(
-        finding=tuple(_finding(cases, steps)),
+        finding=tuple(_finding(runs, steps)),
         kinds=tuple(kind for kind in KINDS if kind in seen),
-        cases=tuple(map(_case, cases)),
+        runs=tuple(map(_run_row, runs)),
         largest=tuple(map(_largest, steps)),
         bound=_bound(steps),
         plots=tuple(_plots(maps, anchor)),
     )
 
 
-def _finding(cases: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:
-    if cases:
-        counted = Counter(case.kind for case in cases)
-        yield f"Of {whole(len(cases))} runs: {counts_of(counted)}."
+def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:
+    if runs:
+        counted = Counter(run.kind for run in runs)
+        yield f"Of {whole(len(runs))} runs: {counts_of(counted)}."
     drifting = sorted(
-        (case for case in cases if case.rate), key=lambda case: -abs(Fraction(case.rate or 0))
+        (run for run in runs if run.rate), key=lambda run: -abs(Fraction(run.rate or 0))
     )
     if drifting:
         worst = drifting[0]
@@ -102,21 +102,21 @@ def _finding(cases: Sequence[StabilityResult], steps: Sequence[LargestStepResult
         )
 
 
-def _case(case: StabilityResult) -> CaseRow:
-    return CaseRow(
-        name=_name(case),
-        scheme=case.scheme,
-        step_size=step(short(Fraction(case.step_size))),
-        steps=whole(case.steps),
-        verdict=case.verdict,
-        detail=case.detail,
+def _run_row(run: StabilityResult) -> RunRow:
+    return RunRow(
+        name=_name(run),
+        scheme=run.scheme,
+        step_size=step(short(Fraction(run.step_size))),
+        steps=whole(run.steps),
+        verdict=run.verdict,
+        detail=run.detail,
     )
 
 
-def _name(case: StabilityResult) -> str:
+def _name(run: StabilityResult) -> str:
     """What its id says beside the scene, the scheme and the step size: section, initial value."""
-    _, *parts = case.id.split("/")
-    own = (case.scheme, f"h={short(Fraction(case.step_size))}")
+    _, *parts = run.id.split("/")
+    own = (run.scheme, f"h={short(Fraction(run.step_size))}")
     return ", ".join(part for part in parts if part not in own)
 
 

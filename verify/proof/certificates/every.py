@@ -37,31 +37,31 @@ from verify.verdict import Verdict
 def of_every(proof: EveryProof) -> dict[str, Any]:
     """The certificate of a proof for every H; InputError where nothing is proved."""
     scheme = get(proof.scheme)
-    generic = scheme.every_h
-    if proof.verdict is not Verdict.PROVED or generic is None or proof.convergence_order is None:
+    every_h = scheme.every_h
+    if proof.verdict is not Verdict.PROVED or every_h is None or proof.convergence_order is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
     data: dict[str, Any] = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
     data["separable"] = proof.separable
-    stages = generic.stages if isinstance(generic, Splitting) else generic
+    stages = every_h.stages if isinstance(every_h, Splitting) else every_h
     if isinstance(stages, StageEquations) and proof.area_preserving:
         rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in stages.stages)
         return data | {"stages": [[text(x) for x in row] for row in rows]}
-    if proof.order is None or not isinstance(generic, BySeries):
+    if proof.order is None or not isinstance(every_h, BySeries):
         problem = "is proved by its coefficients; the checker knows rational ones, of stages"
         raise InputError("scheme", proof.scheme, problem)
     jets = Jets(proof.order + 2, separable=proof.separable)
-    series = generic.taylor(jets, proof.order)
+    series = every_h.taylor(jets, proof.order)
     leading = list(jets.delta_j(*series))[-1]
     names = dict(enumerate(jets.names))
     data |= map_of(proof.order, proof.convergence_order, leading, series, names)
     if proof.telescopes:
-        data["potential"] = terms(_potential(jets, generic, leading), names)
+        data["potential"] = terms(_potential(jets, every_h, leading), names)
     return data
 
 
-def _potential(jets: Jets, generic: BySeries, leading: Poly) -> Poly:
-    if isinstance(generic, TaylorSeries):
-        return telescopes_of_lie(jets, leading, generic.eta).potential
+def _potential(jets: Jets, every_h: BySeries, leading: Poly) -> Poly:
+    if isinstance(every_h, TaylorSeries):
+        return telescopes_of_lie(jets, leading, every_h.eta).potential
     return telescopes(jets, leading).potential
 
 

@@ -47,7 +47,7 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
     for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *_ones(inexact)]:
         changed = {n: _double(doubles[n]) for n in names}
-        shown = " and ".join(f"{n} is the double nearest to {_text(doubles[n])}" for n in names)
+        shown = " and ".join(f"{n} is the double nearest to {short(doubles[n])}" for n in names)
         says = f"your {shown}, and not exactly that"
         name = f"double-{'-'.join(names)}"
         yield Mistake(name, says, replace(right, orbit=_with(orbit, changed)))
@@ -93,7 +93,7 @@ def _of_step(right: Setting) -> Iterator[Mistake]:
     for name, value in orbit.hamiltonian.values:
         for what, other in (("minus", -value), ("no", Fraction(0))):
             if other != value:
-                yield Mistake(f"{what}-{name}", f"your {name} is {_text(other)}",
+                yield Mistake(f"{what}-{name}", f"your {name} is {short(other)}",
                               replace(right, orbit=_with(orbit, {name: other})))  # fmt: skip
 
 
@@ -210,7 +210,3 @@ def _double(x: Fraction) -> Fraction | None:
 def _single(x: Fraction) -> Fraction | None:
     near = np.float32(float(x))
     return Fraction(float(near)) if np.isfinite(near) and near else None
-
-
-def _text(x: Fraction) -> str:
-    return short(x)

@@ -13,7 +13,7 @@ from verify.arithmetic.exact import rational
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
-from verify.kernels.tangent_map import number as double
+from verify.kernels.tangent_map import nearest_double
 from verify.reference.make.models import Data, Run
 from verify.reference.make.reading import content_of, json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
@@ -34,7 +34,7 @@ class PublishedRun:
 
     @property
     def inputs(self) -> Inputs:
-        h, q, p = map(double, self.exact)
+        h, q, p = map(nearest_double, self.exact)
         return self.run.scheme, h, q, p
 
     @cached_property

@@ -25,7 +25,7 @@ def number_of(point: OrbitPoint | None, name: str) -> Bounded | None:
 
 
 class Points:
-    """Cases after some steps: from the reference data where they have them, else by a run."""
+    """Orbits after some steps: from the reference data where they have them, else by a run."""
 
     def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""

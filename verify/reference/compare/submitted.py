@@ -13,7 +13,7 @@ from pathlib import Path
 
 from verify.arithmetic.exact import rational
 from verify.errors import InputError, without_controls
-from verify.kernels.tangent_map import number as double
+from verify.kernels.tangent_map import nearest_double
 from verify.reference.compare.published import KEYS, Published, PublishedRun
 from verify.reference.compare.table import Table, opened
 from verify.reference.make.writing import VALUES
@@ -187,29 +187,29 @@ class _Keys:
         near = round(count)
         return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
 
-    def _find(self, told: dict[str, str], lines: Table) -> PublishedRun | None:
-        scene = told.get("scene") or self._scene(told, lines)
+    def _find(self, inputs: dict[str, str], lines: Table) -> PublishedRun | None:
+        scene = inputs.get("scene") or self._scene(inputs, lines)
         if scene is None:
             return None
         for name in KEYS:
-            if name not in told:
+            if name not in inputs:
                 values = self.ours.values_of(scene, name)
                 if len(values) > 1:
                     raise InputError(
                         f"--{_option(name)}", "", f"is wanted, as no column of {lines.name} is "
                         f"{name}; {scene} has: {', '.join(values[:8])}",
                     )  # fmt: skip
-                told[name] = values[0]
-        exact = tuple(self._number(told[n], n, lines) for n in KEYS[1:])
-        h, q, p = map(double, exact)
-        run = self.ours.run(scene, (told["scheme"], h, q, p), exact)
+                inputs[name] = values[0]
+        exact = tuple(self._number(inputs[n], n, lines) for n in KEYS[1:])
+        h, q, p = map(nearest_double, exact)
+        run = self.ours.run(scene, (inputs["scheme"], h, q, p), exact)
         if run is not None:
             for name, theirs, mine in zip(KEYS[1:], exact, run.exact, strict=True):
                 if mine != theirs:
                     self.read_as[name] = theirs, mine
         return run
 
-    def _scene(self, told: dict[str, str], lines: Table) -> str | None:
+    def _scene(self, inputs: dict[str, str], lines: Table) -> str | None:
         """The one scene that has such runs; InputError where several have."""
         every = sorted(self.ours.by_scene)
         if len(every) == 1:
@@ -217,7 +217,7 @@ class _Keys:
         matching = defaultdict(list)
         for scene in every:
             for run in self.ours.scene(scene):
-                if all(self._is(run, name, told[name], lines) for name in KEYS if name in told):
+                if all(self._is(run, name, inputs[name], lines) for name in KEYS if name in inputs):
                     matching[scene].append(run)
         if len(matching) > 1:
             names = ", ".join(matching)
@@ -226,7 +226,9 @@ class _Keys:
 
     def _is(self, run: PublishedRun, name: str, text: str, lines: Table) -> bool:
         mine = run.inputs[KEYS.index(name)]
-        return mine == (text if name == "scheme" else double(self._number(text, name, lines)))
+        return mine == (
+            text if name == "scheme" else nearest_double(self._number(text, name, lines))
+        )
 
     def _number(self, text: str, name: str, lines: Table) -> Fraction:
         try:

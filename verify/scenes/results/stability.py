@@ -15,7 +15,7 @@ KINDS: tuple[Kind, ...] = Kind.__args__  # type: ignore[attr-defined]
 
 
 class StabilityResult(Frozen):
-    """One run's verdict, and who is to blame; `id` is the case's name in its scene.
+    """One run's verdict, which says what it is due to; `id` is the run's name in its scene.
 
     `step`: where it leaves its bounds, parts from the same scheme in other arithmetic, or leaves
     float64's range. `rate`: of a drift, the energy's change in a unit of time in parts of the

@@ -34,7 +34,7 @@ def _outlines_to_draw(flow: Flow) -> tuple[DrawnOutline, ...]:
     from verify.studies.regions.polyline import text as points_text
     from verify.studies.regions.polyline import traced
 
-    shape = flow.placed_shape().made()
+    shape = flow.placed_shape().to_shape()
     return tuple(
         DrawnOutline(name=outline.name, points=points_text(points))
         for outline, points in zip(shape.outlines, traced(shape), strict=True)

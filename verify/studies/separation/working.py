@@ -24,8 +24,7 @@ from typing import Any, Literal
 import flint
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.arb import bounds as ends
-from verify.arithmetic.arb import in_reach, rational_ball
+from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.reach import limits
@@ -99,17 +98,17 @@ class WorkingRun:
         """All steps; raises Stopped where float64 leaves its range."""
         kernel = mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
         states = self._states(kernel, arithmetic, advance)
-        bounds = self._bounds(kernel, arithmetic, states[-1])
+        bound_of = self._bounds(kernel, arithmetic, states[-1])
         kind: Kind = "enclosed"
         method = "rounding counted"
-        if None in bounds.values():
+        if None in bound_of.values():
             finer = number_systems.get(arithmetic.name, _digits(arithmetic) + _MORE_DIGITS)
             again = self._states(self._kernel(finer), finer, lambda _: None)
-            bounds = {n: _apart(n, states, again, arithmetic, finer) for n in bounds}
+            bound_of = {n: _apart(n, states, again, arithmetic, finer) for n in bound_of}
             kind, method = "estimated", f"rerun with {_MORE_DIGITS} more digits"
 
         def link(name: str) -> Link | None:
-            bound = bounds.get(name)
+            bound = bound_of.get(name)
             if bound is None:
                 return None
             trail = tuple(arithmetic.exact(state[f"w_{name}"]) for state in states)
@@ -226,7 +225,7 @@ class WorkingRun:
             live, rounding = lowering.live([root]), rounding_of(arithmetic)
             found = analyse(lowering.program, live, inputs, rounding)
             error = None if found is None else found[root].error
-            return None if error is None or not in_reach(error) else ends(error)[1]
+            return None if error is None or not in_reach(error) else bounds(error)[1]
 
 
 def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Any:

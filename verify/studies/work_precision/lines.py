@@ -63,8 +63,8 @@ def line(
 
 def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
     """The order of the error in h; `scale` is the orbit's size."""
-    told = [x for x in points if x.limited_by == "truncation"]
-    return _order_within_orbit(told, [(x, x.error) for x in within_orbit(told, scale)])
+    limited = [x for x in points if x.limited_by == "truncation"]
+    return _order_within_orbit(limited, [(x, x.error) for x in within_orbit(limited, scale)])
 
 
 def lambda_slope(
@@ -75,15 +75,15 @@ def lambda_slope(
         return SlopeResult(
             value=None, standard_error=None, points=0, reason="ΔJ ≡ 0 is proved: Λ is exactly 0"
         )
-    told = [x for x in points if x.lambda_limited_by == "truncation"]
-    return _order_within_orbit(told, [(x, x.lam) for x in within_orbit(told, scale)])
+    limited = [x for x in points if x.lambda_limited_by == "truncation"]
+    return _order_within_orbit(limited, [(x, x.lam) for x in within_orbit(limited, scale)])
 
 
 def _order_within_orbit(
-    told: Sequence[WorkPoint], found: Sequence[tuple[WorkPoint, Value | None]]
+    limited: Sequence[WorkPoint], found: Sequence[tuple[WorkPoint, Value | None]]
 ) -> SlopeResult:
     """The order over those that are near; it says how many are not."""
-    slope, far = fitted(found), len(told) - len(found)
+    slope, far = fitted(found), len(limited) - len(found)
     if not far:
         return slope
     reason = f"{slope.reason}; " if slope.reason else ""

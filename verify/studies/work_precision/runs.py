@@ -85,12 +85,11 @@ class Ladder:
     def __init__(self, problem: Problem, scheme: str) -> None:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
-        step_map = self.scheme.step_map(problem.hamiltonian)
-        self.preserves_area = step_map.preserves_area
+        self.preserves_area = self.scheme.step_map(problem.hamiltonian).preserves_area
         self.arithmetic: Arithmetic = float64.compiled_at_once()
-        generic = self.scheme.step_map(self._kernel_run(problem.time, frozenset()).hamiltonian)
+        step_map = self.scheme.step_map(self._kernel_run(problem.time, frozenset()).hamiltonian)
         begun = time.perf_counter()
-        self.kernel: Kernel = Writer(generic, self.arithmetic, frozenset(), False).kernel()
+        self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()
         self.compile_seconds = time.perf_counter() - begun
 

@@ -50,10 +50,10 @@ def _result(
 
 def gradient(scheme: Scheme) -> dict[str, int] | None:
     """Evaluations of H_p and of H_q in a step, for schemes that are made of such."""
-    generic = scheme.every_h
-    if isinstance(generic, RungeKutta):
-        return dict.fromkeys(("H_p", "H_q"), len(generic.weights))
-    if isinstance(generic, Splitting):
-        kinds = Counter(kind for kind, _ in generic.parts)
+    every_h = scheme.every_h
+    if isinstance(every_h, RungeKutta):
+        return dict.fromkeys(("H_p", "H_q"), len(every_h.weights))
+    if isinstance(every_h, Splitting):
+        kinds = Counter(kind for kind, _ in every_h.parts)
         return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
     return None

@@ -1,6 +1,6 @@
 """Every number system's values lie within their bounds of what balls enclose, or reach there.
 
-One number system an example, by its numbers, so that all of them get their turn. Where the step
+One number system a sample, by its numbers, so that all of them get their turn. Where the step
 solves equations, which balls do not do here, float64 is held against 40 digits.
 """
 
@@ -21,9 +21,9 @@ from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
-_IN, _AFTER = 2, 1  # one in so many examples, and not those that are taken apart
+_IN, _AFTER = 2, 1  # one in so many samples, and not those that are taken apart
 _DIGITS = 30
-_COMPILED = 997  # of so many examples one is run in fixed point
+_COMPILED = 997  # of so many samples one is run in fixed point
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
@@ -47,7 +47,7 @@ def holds(sample: Sample) -> bool:
 
 
 def _turn(sample: Sample) -> str:
-    """The number system that is looked at: fixed, which is compiled, in few examples."""
+    """The number system that is looked at: fixed, which is compiled, in few samples."""
     turn = sample.turn
     if turn % _COMPILED == 0:
         return "fixed"

@@ -1,6 +1,6 @@
 """The parts of Λ as they are printed add up to its printed value, within their printed bounds.
 
-One example in a few is looked at.
+One sample in a few is looked at.
 """
 
 from fractions import Fraction
@@ -11,7 +11,7 @@ from verify.scenes.results.separation import Parts
 from verify.studies.separation.chain import PARTS
 from verify.studies.separation.separate import separate
 
-_IN = 8  # one in so many examples
+_IN = 8  # one in so many samples
 _DIGITS = 6
 
 

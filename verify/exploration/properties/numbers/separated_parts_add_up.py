@@ -20,7 +20,7 @@ from verify.studies.separation.chain import PARTS, Chain, Separation
 from verify.studies.separation.kernel import WORKING
 from verify.studies.separation.working import Stopped
 
-_IN = 2  # one in so many examples
+_IN = 2  # one in so many samples
 _DIGITS = 8
 
 
@@ -56,7 +56,7 @@ def _must_add_up(chain: Chain) -> None:
 
 
 def _lambda_by_balls(sample: Sample) -> tuple[Ball | None, Ball | None]:
-    """Λ by balls, of the example's numbers and of the nearest float64s."""
+    """Λ by balls, of the sample's numbers and of the nearest float64s."""
     start = sample.p, sample.q, sample.step_size
     exact = _area_error(sample, sample.step_map, start)
     rounded = tuple(map(_nearest, start))
@@ -74,7 +74,7 @@ def _nearest(x: Fraction) -> Fraction:
 
 
 def _area_error(sample: Sample, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
-    """Λ of the example's steps; None where balls do not know it."""
+    """Λ of the sample's steps; None where balls do not know it."""
     p, q, h = start
     states = ball_steps(step_map, p, q, h, sample.steps)
     if states is None or not states[-1].sharp:

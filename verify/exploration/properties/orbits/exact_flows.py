@@ -15,7 +15,7 @@ from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.potential import potential_of
 
-_IN, _OF_POTENTIALS = 3, 6  # one in so many examples
+_IN, _OF_POTENTIALS = 3, 6  # one in so many samples
 _DIGITS, _BITS = 40, 220
 _TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
 _MOST_STEPS = 100  # of the flow, in so short a time: a field that wants more is left out

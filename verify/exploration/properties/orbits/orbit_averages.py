@@ -1,6 +1,6 @@
 """Along a closed orbit the time average of H + X(p q) is H: what is a derivative averages to 0.
 
-One example in many is looked at, as an orbit is followed for that until it closes.
+One sample in many is looked at, as an orbit is followed for that until it closes.
 """
 
 from fractions import Fraction
@@ -13,7 +13,7 @@ from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average
 
-_IN = 16  # one in so many examples
+_IN = 16  # one in so many samples
 _DIGITS = 12
 _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
 

@@ -1,6 +1,6 @@
 """The certificate of a proof is accepted by its checker, and refused with one number changed.
 
-The number is one of the leading coefficient, or of the first power of h in p' or q'. One example in
+The number is one of the leading coefficient, or of the first power of h in p' or q'. One sample in
 a few is looked at, as the checker works with plain dictionaries.
 """
 
@@ -14,7 +14,7 @@ from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
 from verify.proof.potential import potential_of
 
-_IN = 10  # one in so many examples
+_IN = 10  # one in so many samples
 _LONGEST = 400  # terms in a certificate that is checked here
 
 

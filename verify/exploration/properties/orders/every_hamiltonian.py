@@ -11,7 +11,7 @@ from verify.proof.potential import potential_of
 from verify.verdict import Verdict
 
 _MOST_ORDER = 4  # of a scheme that is proved for every H here
-_IN = 3  # one in so many examples is asked whether its leading coefficient telescopes
+_IN = 3  # one in so many samples is asked whether its leading coefficient telescopes
 
 
 @lru_cache(maxsize=64)

@@ -8,7 +8,7 @@ from verify.schemes.step_map import StepMap
 from verify.schemes.substep import Substep
 from verify.verdict import Verdict
 
-_IN = 2  # one in so many examples
+_IN = 2  # one in so many samples
 
 
 def holds(sample: Sample) -> bool:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from verify.exploration.equivariance import knows_no_coordinates, same_step
 from verify.exploration.sample import Sample
 
-_IN = 2  # one in so many examples
+_IN = 2  # one in so many samples
 _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from verify.exploration.equivariance import knows_no_coordinates, same_step
 from verify.exploration.sample import Sample
 
-_IN, _AFTER = 2, 1  # one in so many examples, and not those whose time is scaled
+_IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled
 _SCALED = (Fraction(3, 2), Fraction(0)), (Fraction(0), Fraction(2, 3))
 _MIXED = (Fraction(2), Fraction(1, 3)), (Fraction(3, 2), Fraction(3, 4))
 

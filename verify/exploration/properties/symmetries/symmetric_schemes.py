@@ -8,7 +8,7 @@ from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 
-_IN = 3  # one in so many examples is looked at by series, too
+_IN = 3  # one in so many samples is looked at by series, too
 
 
 def holds(sample: Sample) -> bool:

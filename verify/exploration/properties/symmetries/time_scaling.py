@@ -8,7 +8,7 @@ from fractions import Fraction
 from verify.exploration.equivariance import same_step
 from verify.exploration.sample import Sample
 
-_IN = 2  # one in so many examples
+_IN = 2  # one in so many samples
 _IDENTITY = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))
 _FACTOR = Fraction(-2, 3)
 

@@ -63,11 +63,11 @@ def _by_equations(hamiltonian: Hamiltonian, field: VectorField) -> StepMap:
     change = unknowns(ring, 1)
     at = stages.at(stages.named((p + change[0], q)))
 
-    def there(x: Poly) -> Poly:
+    def named_at_stage(x: Poly) -> Poly:
         return ring.named(at(x))
 
-    h_p, h_q = there(field.h_p), there(field.h_q)
-    h_pq, h_qq = (there(field.ring.diff(field.h_q, name)) for name in ("p", "q"))
+    h_p, h_q = named_at_stage(field.h_p), named_at_stage(field.h_q)
+    h_pq, h_qq = (named_at_stage(field.ring.diff(field.h_q, name)) for name in ("p", "q"))
     define(
         ring,
         change,
