@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands import output as show
-from verify.commands.input import paper_folder, writable
+from verify.commands.input import keepable, paper_folder
 from verify.commands.tasks import progress_of, with_tasks
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def check(
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     with progress_of(prepared.plan.tasks, keep) as done:
         found = prepared.run(Store(keep), where=where, done=done)
     if as_json:

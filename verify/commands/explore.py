@@ -8,7 +8,7 @@ import click
 
 from verify.commands import output as show
 from verify.commands.hunt import STEPS, hunt
-from verify.commands.input import writable, writable_later
+from verify.commands.input import keepable, writable_later
 from verify.commands.tasks import progress_of, with_tasks
 from verify.errors import InputError
 
@@ -108,7 +108,7 @@ def explore(
     asked = Exploration(seed=seed, examples=examples, **looks, drawn=drawn)
     writable_later(output)
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     earlier = load_failures(output) if output.is_dir() else []
     with progress_of(asked.plan.tasks, keep) as done:
         report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)

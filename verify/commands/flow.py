@@ -8,7 +8,7 @@ import click
 
 from verify.arithmetic.exact import short
 from verify.commands import output as show
-from verify.commands.input import target, writable
+from verify.commands.input import keepable, target
 from verify.commands.tasks import progress_of, with_tasks
 from verify.errors import InputError
 
@@ -45,7 +45,7 @@ def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> No
     if not plan.tasks:
         raise InputError("SCENE", scene, "asks for no [[flow]]")
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     with progress_of(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands import output as show
-from verify.commands.input import writable
+from verify.commands.input import keepable, writable
 from verify.commands.tasks import progress_of
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def hunt(
     asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
     writable(output)
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     store, begun, tasks = Store(keep), time.perf_counter(), asked.plan.tasks
     with progress_of(tasks, keep) as done:
         found = hunt(asked, store, where=where, done=done)

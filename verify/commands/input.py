@@ -98,6 +98,20 @@ def writable(folder: Path, option: str = "--output") -> None:
         raise InputError(option, str(folder), problem) from None
 
 
+def keepable(folder: Path, option: str = "--keep") -> None:
+    """As `writable`, for a folder where results are kept.
+
+    InputError also where it lies in what is shipped: the name of a kept result is made of all files
+    there, so that what is kept would make itself unknown.
+    """
+    from verify.content import is_shipped
+
+    if is_shipped(folder):
+        problem = "lies in what verify ships; allowed: any other folder"
+        raise InputError(option, str(folder), problem)
+    writable(folder, option)
+
+
 def writable_later(folder: Path) -> None:
     """As `writable` for --output, and leaves no folder that was not there."""
     made = [path for path in (folder, *folder.parents) if not path.exists()]

@@ -8,7 +8,7 @@ import click
 
 from verify.commands import output as show
 from verify.commands.compare import compare
-from verify.commands.input import writable
+from verify.commands.input import keepable, writable
 from verify.commands.tasks import json_option, progress_of, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
@@ -67,7 +67,7 @@ def make(
     writable(folder)
     making.alone(folder, asked, parquet=parquet)
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     plan = plan_references([x.scene for x in asked])
     with progress_of(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
-from verify.commands.input import target, writable
+from verify.commands.input import keepable, target, writable
 from verify.commands.tasks import json_option, progress_of, with_placement
 from verify.errors import InputError
 
@@ -65,7 +65,7 @@ def _scene(
     title, scenes, file = target(scene)
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
-    writable(folder)
+    keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     with progress_of(planned.tasks, folder / "kept") as done:

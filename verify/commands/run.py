@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands import output as show
-from verify.commands.input import hamiltonian_of, with_system, writable
+from verify.commands.input import hamiltonian_of, keepable, with_system
 
 
 @click.command()
@@ -52,7 +52,7 @@ def run(
     exact = hamiltonian_of(system, hamiltonian, params)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
     keeper = Keeper(keep, name_of(asked))
     with steps_bar(steps) as tell:

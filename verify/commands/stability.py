@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands import output as show
-from verify.commands.input import target, writable
+from verify.commands.input import keepable, target
 from verify.commands.tasks import progress_of, with_tasks
 from verify.errors import InputError
 
@@ -68,7 +68,7 @@ def _of_scenes(
         problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
         raise InputError("SCENE", given, problem)
     if keep is not None:
-        writable(keep, "--keep")
+        keepable(keep)
     with progress_of(plan.tasks, keep) as done:
         results = execute(plan, Store(keep), where=where, done=done)
     found = findings_of(scenes, results)

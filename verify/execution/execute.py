@@ -11,8 +11,6 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from verify.content import is_shipped
-from verify.errors import InputError
 from verify.execution.executors import (
     ANYWHERE,
     THIS_PROCESS,
@@ -33,17 +31,9 @@ _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs m
 
 
 class Store:
-    """Finished results in a folder, one JSON file each; None keeps them in memory only.
-
-    InputError where the folder lies in what is shipped, whose files make the results' names.
-    """
+    """Finished results in a folder, one JSON file each; None keeps them in memory only."""
 
     def __init__(self, folder: Path | None) -> None:
-        if folder is not None and is_shipped(folder):
-            problem = (
-                "lies in what verify ships, which results depend on; allowed: a folder elsewhere"
-            )
-            raise InputError("folder", str(folder), problem)
         self.folder = folder
         self.taken = 0  # results that were found here
 

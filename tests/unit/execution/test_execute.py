@@ -164,13 +164,6 @@ def test_an_interruption_keeps_what_was_finished(
     assert not {str(plan.tasks[n]) for n in finished} & set(map(str, seen))
 
 
-@pytest.mark.parametrize("folder", ["reports/mine/kept", "reference/kept", "verify"])
-def test_nothing_is_kept_in_what_results_depend_on(folder: str) -> None:
-    with pytest.raises(InputError, match="allowed: a folder elsewhere"):
-        Store(ROOT / folder)
-    assert not (ROOT / "reports" / "mine").exists()
-
-
 # -- the source is part of a result's name --------------------------------------------------------
 
 

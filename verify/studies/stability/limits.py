@@ -74,7 +74,7 @@ def largest_step(
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and bounded(Run(hamiltonian, scheme, h, steps, p, q))
+        return steps >= 1 and bounded(Run(hamiltonian, scheme, h, q, p, steps))
 
     middle = linear or (1 / omega if omega else time / 100)
     good, bad = _bracket(stays, min(middle, time / 2), time)
@@ -133,6 +133,6 @@ def stability_map(
         own = hamiltonian.with_values(given | {parameter: value})
         longest = max(step_sizes) * steps
         omega = frequency(exact_orbit(own, p, q, longest))
-        run = Run(own, scheme, step_sizes[0], steps, p, q)
+        run = Run(own, scheme, step_sizes[0], q, p, steps)
         row = [judge(replace(run, step_size=h)) for h in step_sizes]
         yield (limit / omega if limit is not None and omega else None), row

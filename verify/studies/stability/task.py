@@ -33,7 +33,7 @@ class StabilityTask(InitialValueTask):
         from verify.studies.stability.trail import Run
 
         hamiltonian = self.exact_hamiltonian()
-        return run_result(Run(hamiltonian, self.scheme, self.step_size, self.steps, self.p, self.q))
+        return run_result(Run(hamiltonian, self.scheme, self.step_size, self.q, self.p, self.steps))
 
 
 class LargestStepTask(InitialValueTask):

@@ -14,7 +14,7 @@ from sympy import isprime
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import WORTH_COMPILING
 
@@ -25,15 +25,10 @@ MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
 @dataclass(frozen=True)
-class Run:
-    """One run: N steps of one scheme from (p, q)."""
+class Run(Orbit):
+    """One run: the first N steps of an orbit."""
 
-    hamiltonian: Hamiltonian
-    scheme: str
-    step_size: Fraction
     steps: int
-    p: Fraction
-    q: Fraction
 
     @property
     def time(self) -> Fraction:

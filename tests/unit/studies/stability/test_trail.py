@@ -19,7 +19,7 @@ from verify.studies.stability.trail import (
 
 FLOAT = arithmetic.get("float64", 17)
 GROWING = Run(
-    Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), 3000, Fraction(0), Fraction(1)
+    Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), Fraction(1), Fraction(0), 3000
 )
 
 
@@ -97,7 +97,7 @@ def test_two_runs_that_stay_together_part_nowhere() -> None:
 
 def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so() -> None:
     hamiltonian = Hamiltonian.parse("p**2/2 + q*atan(q)")  # which fixed has not
-    case = Run(hamiltonian, "lie1", Fraction(1, 10**6), 400_000, Fraction(0), Fraction(1))
+    case = Run(hamiltonian, "lie1", Fraction(1, 10**6), Fraction(1), Fraction(0), 400_000)
     trail, wide = follow_precisely(case, 30)
     assert wide.name == "mpfr"
     assert trail.finished

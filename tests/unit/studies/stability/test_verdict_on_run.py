@@ -23,7 +23,7 @@ PI = Fraction("3.141592653589793238462643383279502884197169399375105820974944592
 
 def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0") -> Run:
     at = q if isinstance(q, Fraction) else rational(q)
-    return Run(Hamiltonian.parse(text), scheme, rational(h), steps, rational(p), at)
+    return Run(Hamiltonian.parse(text), scheme, rational(h), at, rational(p), steps)
 
 
 def judged(*given: object) -> Judgement:

@@ -1,0 +1,21 @@
+"""What the commands are given, checked at the edge."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.paths import ROOT
+from verify.commands.input import keepable
+from verify.errors import InputError
+
+
+@pytest.mark.parametrize("folder", ["reports/mine", "reference/../reference/kept", "verify/kept"])
+def test_nothing_is_kept_in_what_the_names_of_results_are_made_of(folder: str) -> None:
+    with pytest.raises(InputError, match=r"--keep=.* lies in what verify ships"):
+        keepable(ROOT / folder)
+    assert not (ROOT / folder).exists()
+
+
+def test_elsewhere_a_folder_is_made_for_it(tmp_path: Path) -> None:
+    keepable(tmp_path / "reports" / "kept")
+    assert (tmp_path / "reports" / "kept").is_dir()
