@@ -95,7 +95,8 @@ def open_place(where: Placement, modules: Sequence[str] = ()) -> Iterator[Place]
     """Opens the place where functions are called; left by an exception, it ends what is under way
     at once.
 
-    `modules`: what processes have imported before their first call.
+    `modules`: what processes have imported before their first call; of several places, the first
+    says it for all.
 
     Processes are started as they are needed. InputError where the cluster does not answer, has no
     workers, or has other code than this.

@@ -95,6 +95,17 @@ def _fork_server(modules: Sequence[str]) -> Any:
     return context
 
 
+class _Safe:
+    """What the environment said before, while anyone needs a safe path."""
+
+    def __init__(self) -> None:
+        self.lock, self.users = threading.Lock(), 0
+        self.before: str | None = None
+
+
+_SAFE = _Safe()
+
+
 @contextmanager
 def safe_path() -> Iterator[None]:
     """Processes that are started meanwhile import nothing from the current folder.
@@ -119,17 +130,6 @@ def safe_path() -> Iterator[None]:
                 del os.environ[_SAFE_PATH]
                 if _SAFE.before is not None:
                     os.environ[_SAFE_PATH] = _SAFE.before
-
-
-class _Safe:
-    """What the environment said before, while anyone needs a safe path."""
-
-    def __init__(self) -> None:
-        self.lock, self.users = threading.Lock(), 0
-        self.before: str | None = None
-
-
-_SAFE = _Safe()
 
 
 @contextmanager
