@@ -62,6 +62,9 @@ def _is_content(name: str) -> bool:
 def _below(folder: Path) -> Iterator[tuple[str, Path]]:
     for path in folder.rglob("*"):
         name = path.relative_to(folder)
-        passing = any(part.startswith((".", "__pycache__")) for part in name.parts)
-        if path.is_file() and not passing and not name.name.endswith("~"):
+        left_behind = any(
+            part.startswith(".") or part.endswith("~") or part == "__pycache__"
+            for part in name.parts
+        )
+        if path.is_file() and not left_behind:
             yield name.as_posix(), path

@@ -22,9 +22,8 @@ class Catalogue:
 
     @cached_property
     def _modules(self) -> dict[str, str]:
-        found = sorted(
-            _files(self.package, self.path)
-        )  # by file name: what a seed draws hangs on it
+        # By the names of files, not by those with dashes: what a seed draws hangs on the order.
+        found = sorted(_files(self.package, self.path))
         modules = {file.replace("_", "-"): dotted for file, dotted in found}
         if len(modules) < len(found):
             raise RuntimeError(f"{self.package}: two files have one name among {[*modules]}")

@@ -1,85 +1,26 @@
-"""Imports go downwards only, and light commands stay light: read from the source."""
+"""Imports go downwards only, without a circle; what is imported is what is declared."""
 
-import ast
 import re
-import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Set
-from functools import cache
+from collections.abc import Iterable, Mapping, Set
 from pathlib import Path
 
 import pytest
 
+from tests.helpers.imports import (
+    MODULES,
+    NAMES,
+    VERIFY,
+    by_name,
+    imported,
+    relative,
+    rooms_of,
+    roots,
+    texts,
+    whole_package,
+)
 from tests.paths import ROOT
-
-VERIFY = ROOT / "verify"
-MODULES = sorted(VERIFY.rglob("*.py"))
-
-
-def name_of(path: Path) -> str:
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-
-
-NAMES = {name_of(path): path for path in MODULES}
-
-
-ONLY_FOR_TYPES = ("TYPE_CHECKING", "typing.TYPE_CHECKING")
-
-
-def may_run(node: ast.If) -> list[ast.stmt]:
-    """The statements of an `if` that may run on import."""
-    test = ast.unparse(node.test)
-    if test in ONLY_FOR_TYPES:
-        return node.orelse
-    if test.removeprefix("not ") in ONLY_FOR_TYPES:
-        return node.body
-    return [*node.body, *node.orelse]
-
-
-def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
-    """Statements that run on import: not in functions, nor under `if TYPE_CHECKING`."""
-    waiting: list[ast.AST] = [tree]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-            continue
-        if isinstance(node, ast.If):
-            waiting += may_run(node)
-            continue
-        if isinstance(node, ast.stmt):
-            yield node
-        waiting += ast.iter_child_nodes(node)
-
-
-@cache
-def imported(path: Path, everywhere: bool = False) -> frozenset[str]:
-    """The modules that a file imports: at module level, or everywhere in it."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    found: set[str] = set()
-    for node in ast.walk(tree) if everywhere else at_module_level(tree):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: a relative import"
-            assert node.module is not None
-            inner = {f"{node.module}.{alias.name}" for alias in node.names}
-            # `from verify import x` imports the module x where there is one, else the package's x.
-            found |= inner & set(NAMES)
-            if not inner <= set(NAMES):
-                found.add(node.module)
-    return frozenset(found)
-
-
-def roots(names: Set[str]) -> set[str]:
-    return {name.partition(".")[0] for name in names}
-
-
-def rooms_of(name: str) -> str:
-    """The room of a module; its own name where it stands in none."""
-    return name.split(".")[1] if "." in name else name
-
 
 # From the roof down. A module imports from its own room and from those below it.
 ROOF = ("verify", "__main__", "from_type", "testing")
@@ -117,56 +58,6 @@ def deepest(text: str) -> str:
     return next(name for name in names if name in NAMES)
 
 
-@cache
-def texts(path: Path) -> frozenset[str]:
-    """The texts in a file, and the pieces of those put together; but no docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    nodes = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in told]
-    return frozenset(node.value for node in nodes if isinstance(node.value, str))
-
-
-IMPORTERS = {"import_module", "__import__", "resolve_name", "walk_packages", "run_module",
-             "run_path", "spec_from_file_location", "exec_module", "load_module"}  # fmt: skip
-
-
-def importer(node: ast.AST) -> str | None:
-    """By which a node imports what stands in a text, or takes it where it is imported."""
-    match node:
-        case ast.Name(id=("exec" | "eval") as name):
-            return name
-        case (
-            ast.Attribute(attr="modules" as name) | ast.alias(name=("modules" | "builtins") as name)
-        ):
-            return name
-        case (
-            ast.Name(id=name)
-            | ast.Attribute(attr=name)
-            | ast.alias(name=name)
-            | ast.Constant(value=str(name))
-        ) if name in IMPORTERS:
-            return name
-    return None
-
-
-@cache
-def by_name(path: Path) -> frozenset[str]:
-    """What a file uses to import by name."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    return frozenset(name for node in ast.walk(tree) if (name := importer(node)))
-
-
-def relative(path: Path) -> list[str]:
-    """Calls of import_module with a package, to which the name is then relative."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    return [
-        ast.unparse(call)
-        for call in calls
-        if importer(call.func) == "import_module" and (len(call.args) != 1 or call.keywords)
-    ]
-
-
 # Where a name that no import statement has is imported, or run, or looked up, and why.
 BY_NAME = {
     "verify": {"import_module"},  # public names, when they are used
@@ -179,13 +70,6 @@ BY_NAME = {
     "verify.arithmetic.number_system": {"exec"},  # kernels
     "verify.arithmetic.systems.float64": {"exec"},  # kernels
 }  # fmt: skip
-
-
-def whole_package(path: Path) -> set[str]:
-    """What a file imports so that all of `verify` can be reached by attributes from there."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
-    return {name for name in names if name.partition(".")[0] == "verify"}
 
 
 def upward(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
@@ -399,134 +283,6 @@ def test_pages_compute_nothing_themselves() -> None:
         if rooms_of(name) == "pages":
             assert not roots(imported(path, everywhere=True)) & heavy, name
             assert not {rooms_of(other) for other in EDGES[name]} & rooms, name
-
-
-LIGHT = [
-    "verify",
-    "verify.commands.main",
-    "verify.commands.output",
-    "verify.from_type",
-    "verify.errors",
-    "verify.commands.progress",
-    "verify.verdict",
-]
-SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2",
-        "hypothesis"}  # fmt: skip
-
-
-def loaded_with(name: str, imports: Mapping[str, Set[str]]) -> set[str]:
-    """What is imported when a module is: what it imports and its packages, and so on."""
-    seen: set[str] = set()
-    waiting = [name]
-    while waiting:
-        module = waiting.pop()
-        if module not in seen:
-            seen.add(module)
-            waiting += {*imports.get(module, ()), module.rpartition(".")[0]} - {""}
-    return seen
-
-
-IMPORTS = {name: imported(path) for name, path in NAMES.items()}
-
-
-def test_what_is_to_be_light_is_there() -> None:
-    assert set(LIGHT) <= set(NAMES)
-
-
-@pytest.mark.parametrize("name", LIGHT)
-def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
-    found = loaded_with(name, IMPORTS)
-    assert not {m: IMPORTS[m] for m in found & set(IMPORTS) if roots(IMPORTS[m]) & SLOW}
-    assert not roots(found) & SLOW
-
-
-def test_what_a_package_and_what_is_imported_import_is_seen() -> None:
-    for module in ("verify", "verify.commands", "verify.from_type"):
-        planted = IMPORTS | {module: IMPORTS[module] | {"numpy.linalg"}}
-        assert "numpy" in loaded_with("verify.commands.main", planted), module
-
-
-def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
-    for name, path in NAMES.items():
-        drawing = name.startswith("verify.pages.figures.") or name == "verify.pages.plotting"
-        assert not roots(imported(path)) & {"numba", *(() if drawing else ("matplotlib",))}, name
-
-
-EXPLORING = {f"verify.exploration.{name}" for name in ("scenes", "explore", "property_checks",
-             "gallery", "hunting", "island_search")}  # fmt: skip
-
-
-def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
-    """What imports it when it is imported, itself or by what it imports."""
-    edges = {name: imported(path) for name, path in NAMES.items()}
-    slow = {name for name, names in edges.items() if "hypothesis" in roots(names)}
-    while more := {name for name in edges if edges[name] & slow} - slow:
-        slow |= more
-    assert {name for name in slow if not name.startswith("verify.strategies")} == EXPLORING
-
-
-def of_arrays(edges: Mapping[str, Set[str]]) -> set[str]:
-    """The modules that import numpy when they are imported themselves."""
-    return {name for name, names in edges.items() if "numpy" in roots(names)}
-
-
-def bring_arrays(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
-    """(module, array module) where the first imports the second, and is none itself."""
-    arrays = of_arrays(edges)
-    others = {name for name in set(edges) - arrays if rooms_of(name) not in ("pages", "reference")}
-    return {(name, other) for name in others for other in edges[name] & arrays}
-
-
-def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
-    """So that what needs no array never imports numpy: the others do so in functions."""
-    edges = {name: imported(path) for name, path in NAMES.items()}
-    assert not bring_arrays(edges)
-    light = {"commands", "execution", "scenes", "claims", "proof", "schemes"}
-    assert not {name for name in of_arrays(edges) if rooms_of(name) in light}
-    assert "verify.studies.regions.panels" in of_arrays(edges), "the rule speaks of something"
-    planted = edges | {
-        "verify.studies.plan": edges["verify.studies.plan"] | {"verify.studies.regions.panels"}
-    }
-    assert bring_arrays(planted) == {("verify.studies.plan", "verify.studies.regions.panels")}
-
-
-SAID = """
-import sys
-from verify.commands.main import main
-try:
-    main({arguments})
-except SystemExit as done:
-    assert not done.code, done.code
-print(sorted({{"numpy", "numba", "matplotlib"}} & set(sys.modules)), file=sys.stderr)
-"""
-FLOW = """
-system = "duffing"
-parameters = { delta = 1 }
-schemes = ["lie2"]
-[[flow]]
-shape = "circle"
-step_size = 0.01
-steps = [5]
-"""
-
-
-@pytest.mark.parametrize(
-    ("arguments", "loaded"),
-    [
-        (["plan", "SCENE"], []),
-        (["prove", "--system", "duffing", "--scheme", "lie2"], []),
-        (["flow", "SCENE", "--workers", "1"], ["numba", "numpy"]),
-    ],
-)
-def test_what_carries_no_points_loads_no_numpy(
-    arguments: list[str], loaded: list[str], tmp_path: Path
-) -> None:
-    path = tmp_path / "mine.toml"
-    path.write_text(FLOW)
-    arguments = [str(path) if given == "SCENE" else given for given in arguments]
-    command = [sys.executable, "-c", SAID.format(arguments=arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stderr.splitlines()[-1] == str(loaded)
 
 
 def test_only_what_is_declared_is_imported() -> None:

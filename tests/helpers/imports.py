@@ -1,0 +1,135 @@
+"""What a file of ours imports, and how, read from its source."""
+
+import ast
+from collections.abc import Iterator, Set
+from functools import cache
+from pathlib import Path
+
+from tests.paths import ROOT
+
+VERIFY = ROOT / "verify"
+MODULES = sorted(VERIFY.rglob("*.py"))
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+NAMES = {name_of(path): path for path in MODULES}
+
+
+ONLY_FOR_TYPES = ("TYPE_CHECKING", "typing.TYPE_CHECKING")
+
+
+def may_run(node: ast.If) -> list[ast.stmt]:
+    """The statements of an `if` that may run on import."""
+    test = ast.unparse(node.test)
+    if test in ONLY_FOR_TYPES:
+        return node.orelse
+    if test.removeprefix("not ") in ONLY_FOR_TYPES:
+        return node.body
+    return [*node.body, *node.orelse]
+
+
+def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
+    """Statements that run on import: not in functions, nor under `if TYPE_CHECKING`."""
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        if isinstance(node, ast.If):
+            waiting += may_run(node)
+            continue
+        if isinstance(node, ast.stmt):
+            yield node
+        waiting += ast.iter_child_nodes(node)
+
+
+@cache
+def imported(path: Path, everywhere: bool = False) -> frozenset[str]:
+    """The modules that a file imports: at module level, or everywhere in it."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found: set[str] = set()
+    for node in ast.walk(tree) if everywhere else at_module_level(tree):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: a relative import"
+            assert node.module is not None
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            # `from verify import x` imports the module x where there is one, else the package's x.
+            found |= inner & set(NAMES)
+            if not inner <= set(NAMES):
+                found.add(node.module)
+    return frozenset(found)
+
+
+def roots(names: Set[str]) -> set[str]:
+    return {name.partition(".")[0] for name in names}
+
+
+def rooms_of(name: str) -> str:
+    """The room of a module; its own name where it stands in none."""
+    return name.split(".")[1] if "." in name else name
+
+
+@cache
+def texts(path: Path) -> frozenset[str]:
+    """The texts in a file, and the pieces of those put together; but no docstrings."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    nodes = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in told]
+    return frozenset(node.value for node in nodes if isinstance(node.value, str))
+
+
+IMPORTERS = {"import_module", "__import__", "resolve_name", "walk_packages", "run_module",
+             "run_path", "spec_from_file_location", "exec_module", "load_module"}  # fmt: skip
+
+
+def importer(node: ast.AST) -> str | None:
+    """By which a node imports what stands in a text, or takes it where it is imported."""
+    match node:
+        case ast.Name(id=("exec" | "eval") as name):
+            return name
+        case (
+            ast.Attribute(attr="modules" as name) | ast.alias(name=("modules" | "builtins") as name)
+        ):
+            return name
+        case (
+            ast.Name(id=name)
+            | ast.Attribute(attr=name)
+            | ast.alias(name=name)
+            | ast.Constant(value=str(name))
+        ) if name in IMPORTERS:
+            return name
+    return None
+
+
+@cache
+def by_name(path: Path) -> frozenset[str]:
+    """What a file uses to import by name."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return frozenset(name for node in ast.walk(tree) if (name := importer(node)))
+
+
+def relative(path: Path) -> list[str]:
+    """Calls of import_module with a package, to which the name is then relative."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    return [
+        ast.unparse(call)
+        for call in calls
+        if importer(call.func) == "import_module" and (len(call.args) != 1 or call.keywords)
+    ]
+
+
+def whole_package(path: Path) -> set[str]:
+    """What a file imports so that all of `verify` can be reached by attributes from there."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    return {name for name in names if name.partition(".")[0] == "verify"}
+
+
+IMPORTS = {name: imported(path) for name, path in NAMES.items()}  # at module level

@@ -1,0 +1,133 @@
+"""Light commands stay light: what a command does not need is not imported."""
+
+import subprocess
+import sys
+from collections.abc import Mapping, Set
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.imports import IMPORTS, NAMES, rooms_of, roots
+from tests.paths import ROOT
+
+LIGHT = [
+    "verify",
+    "verify.commands.main",
+    "verify.commands.output",
+    "verify.from_type",
+    "verify.errors",
+    "verify.commands.progress",
+    "verify.verdict",
+]
+SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2",
+        "hypothesis"}  # fmt: skip
+
+
+def loaded_with(name: str, imports: Mapping[str, Set[str]]) -> set[str]:
+    """What is imported when a module is: what it imports and its packages, and so on."""
+    seen: set[str] = set()
+    waiting = [name]
+    while waiting:
+        module = waiting.pop()
+        if module not in seen:
+            seen.add(module)
+            waiting += {*imports.get(module, ()), module.rpartition(".")[0]} - {""}
+    return seen
+
+
+def test_what_is_to_be_light_is_there() -> None:
+    assert set(LIGHT) <= set(NAMES)
+
+
+@pytest.mark.parametrize("name", LIGHT)
+def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
+    found = loaded_with(name, IMPORTS)
+    assert not {m: IMPORTS[m] for m in found & set(IMPORTS) if roots(IMPORTS[m]) & SLOW}
+    assert not roots(found) & SLOW
+
+
+def test_what_a_package_and_what_is_imported_import_is_seen() -> None:
+    for module in ("verify", "verify.commands", "verify.from_type"):
+        planted = IMPORTS | {module: IMPORTS[module] | {"numpy.linalg"}}
+        assert "numpy" in loaded_with("verify.commands.main", planted), module
+
+
+def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
+    for name, names in IMPORTS.items():
+        drawing = name.startswith("verify.pages.figures.") or name == "verify.pages.plotting"
+        assert not roots(names) & {"numba", *(() if drawing else ("matplotlib",))}, name
+
+
+EXPLORING = {f"verify.exploration.{name}" for name in ("scenes", "explore", "property_checks",
+             "gallery", "hunting", "island_search")}  # fmt: skip
+
+
+def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
+    """What imports it when it is imported, itself or by what it imports."""
+    slow = {name for name, names in IMPORTS.items() if "hypothesis" in roots(names)}
+    while more := {name for name in IMPORTS if IMPORTS[name] & slow} - slow:
+        slow |= more
+    assert {name for name in slow if not name.startswith("verify.strategies")} == EXPLORING
+
+
+def of_arrays(edges: Mapping[str, Set[str]]) -> set[str]:
+    """The modules that import numpy when they are imported themselves."""
+    return {name for name, names in edges.items() if "numpy" in roots(names)}
+
+
+def bring_arrays(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
+    """(module, array module) where the first imports the second, and is none itself."""
+    arrays = of_arrays(edges)
+    others = {name for name in set(edges) - arrays if rooms_of(name) not in ("pages", "reference")}
+    return {(name, other) for name in others for other in edges[name] & arrays}
+
+
+def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
+    """So that what needs no array never imports numpy: the others do so in functions."""
+    assert not bring_arrays(IMPORTS)
+    light = {"commands", "execution", "scenes", "claims", "proof", "schemes"}
+    assert not {name for name in of_arrays(IMPORTS) if rooms_of(name) in light}
+    assert "verify.studies.regions.panels" in of_arrays(IMPORTS), "the rule speaks of something"
+    planted = IMPORTS | {
+        "verify.studies.plan": IMPORTS["verify.studies.plan"] | {"verify.studies.regions.panels"}
+    }
+    assert bring_arrays(planted) == {("verify.studies.plan", "verify.studies.regions.panels")}
+
+
+SAID = """
+import sys
+from verify.commands.main import main
+try:
+    main({arguments})
+except SystemExit as done:
+    assert not done.code, done.code
+print(sorted({{"numpy", "numba", "matplotlib"}} & set(sys.modules)), file=sys.stderr)
+"""
+FLOW = """
+system = "duffing"
+parameters = { delta = 1 }
+schemes = ["lie2"]
+[[flow]]
+shape = "circle"
+step_size = 0.01
+steps = [5]
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "loaded"),
+    [
+        (["plan", "SCENE"], []),
+        (["prove", "--system", "duffing", "--scheme", "lie2"], []),
+        (["flow", "SCENE", "--workers", "1"], ["numba", "numpy"]),
+    ],
+)
+def test_what_carries_no_points_loads_no_numpy(
+    arguments: list[str], loaded: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(FLOW)
+    arguments = [str(path) if given == "SCENE" else given for given in arguments]
+    command = [sys.executable, "-c", SAID.format(arguments=arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stderr.splitlines()[-1] == str(loaded)
