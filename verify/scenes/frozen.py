@@ -1,14 +1,77 @@
 """The base of all data here: frozen models that refuse what they do not know."""
 
-from typing import Annotated
+from typing import Annotated, Any, get_args
 
-from pydantic import BaseModel, ConfigDict, PlainSerializer
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    PlainSerializer,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
+
+from verify.prose import Prose
 
 Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no exact value
 Seconds = Real
+_BESIDE = "_parts"  # the key of a prose's parts is its own and this
 
 
 class Frozen(BaseModel):
     """A frozen model that refuses unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class WithProse(Frozen):
+    """A model with fields of Prose: each is its plain text in data, `NAME_parts` beside it.
+
+    What is read may leave the parts out. Raises ValueError where they are not those of the text.
+    """
+
+    @model_serializer(mode="wrap")
+    def _parts_beside(self, shown: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        for name, value in shown(self).items():
+            data[name] = value
+            if name in _prose_fields(type(self)):
+                data[name + _BESIDE] = _data_of(getattr(self, name))
+        return data
+
+    @model_validator(mode="before")
+    @classmethod
+    def _join_parts(cls, given: Any) -> Any:
+        if not isinstance(given, dict):
+            return given
+        data = dict(given)
+        for name in _prose_fields(cls):
+            parts = data.pop(name + _BESIDE, None)
+            if parts is not None:
+                data[name] = _checked(parts, data.get(name), name)
+        return data
+
+
+def _prose_fields(model: type[BaseModel]) -> list[str]:
+    return [n for n, field in model.model_fields.items() if _holds_prose(field.annotation)]
+
+
+def _holds_prose(annotation: Any) -> bool:
+    return annotation is Prose or any(_holds_prose(each) for each in get_args(annotation))
+
+
+def _data_of(value: Any) -> Any:
+    """The parts of a prose, or of each in a tuple of such."""
+    return value.as_data() if isinstance(value, Prose) else [_data_of(each) for each in value]
+
+
+def _checked(parts: Any, text: Any, name: str) -> Any:
+    """The prose of these parts; in a list, where the text is one."""
+    if isinstance(text, list | tuple):
+        if not isinstance(parts, list | tuple) or len(parts) != len(text):
+            raise ValueError(f"{name}{_BESIDE} has another length than {name}")
+        return [_checked(*each, name) for each in zip(parts, text, strict=True)]
+    found = Prose.of_data(parts)
+    if text is not None and found != text:
+        raise ValueError(f"{name}{_BESIDE} do not make up {name}")
+    return found

@@ -1,0 +1,136 @@
+"""What results say: text, formulas and numbers in turn, which each medium shows in its way.
+
+    prose("ΔJ = ", Formula("-3*h**3*delta*p*q"), " + O(", Formula("h^4"), ")")
+    read_prose("The coefficient of `h^m` in det J vanishes")   # what people write: formulas quoted
+
+A Prose is its own plain text, so whatever takes a string takes it; a page sets its `parts`.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Self
+
+_QUOTE = "`"
+
+
+class Formula(str):
+    """A formula: as users write it (`h**3*p`), or in the notation of prose (`H_qq`, `e^(Nε)`)."""
+
+    __slots__ = ()
+
+
+class Number(str):
+    """A decimal number, such as -1.5 or 2.1e-06."""
+
+    __slots__ = ()
+
+
+_KINDS: dict[str, type[str]] = {"formula": Formula, "number": Number}
+PartData = str | dict[str, str]
+
+
+class Prose(str):
+    """Plain text that knows its parts: `str`, `Formula` and `Number`; no two texts side by side.
+
+    >>> found = Prose("at q = ", Number("0.5"), Prose(" it is ", Formula("h**2")))
+    >>> str(found), found.parts
+    ('at q = 0.5 it is h**2', ('at q = ', '0.5', ' it is ', 'h**2'))
+    >>> found.as_data()
+    ['at q = ', {'number': '0.5'}, ' it is ', {'formula': 'h**2'}]
+    """
+
+    __slots__ = ("parts",)
+    parts: tuple[str, ...]
+
+    def __new__(cls, *parts: str) -> Self:
+        flat: list[str] = []
+        for part in _unpacked(parts):
+            if flat and type(part) is type(flat[-1]) is str:
+                flat[-1] += part
+            elif part:
+                flat.append(part)
+        made = super().__new__(cls, "".join(flat))
+        made.parts = tuple(flat)
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self.parts
+
+    def __add__(self, other: str) -> "Prose":
+        return Prose(self, other)
+
+    def __radd__(self, other: str) -> "Prose":
+        return Prose(other, self)
+
+    def join(self, parts: Iterable[str]) -> "Prose":
+        """The parts with this text between each two of them."""
+        between = [each for part in parts for each in (self, part)]
+        return Prose(*between[1:])
+
+    def as_data(self) -> list[PartData]:
+        """The parts as JSON has them: text as a string, the others under the name of their kind."""
+        names = {kind: name for name, kind in _KINDS.items()}
+        return [{names[type(p)]: str(p)} if type(p) in names else str(p) for p in self.parts]
+
+    @classmethod
+    def of_data(cls, data: object) -> Self:
+        """What `as_data` gave, or a plain text. ValueError for anything else."""
+        if isinstance(data, str):
+            return cls(data)
+        if not isinstance(data, list | tuple):
+            raise ValueError("prose is a text or a list of its parts")
+        return cls(*(_part_of(each) for each in data))
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, *_: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(
+            lambda given: given if isinstance(given, cls) else cls.of_data(given),
+            serialization=core_schema.to_string_ser_schema(),
+        )
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, *_: Any) -> dict[str, Any]:
+        return {"type": "string"}
+
+
+def prose(*parts: str) -> Prose:
+    """The parts as one prose; a Prose among them gives its own parts."""
+    return Prose(*parts)
+
+
+def joined(between: str, parts: Iterable[str]) -> Prose:
+    """The parts with `between` between each two of them."""
+    return Prose(between).join(parts)
+
+
+def read_prose(text: str) -> Prose:
+    """What people write: `` `h^3` `` is a formula, and so is what stands between any two backticks.
+
+    >>> read_prose("of order `h^3`, says the paper").parts
+    ('of order ', 'h^3', ', says the paper')
+
+    A backtick without its partner is text.
+    """
+    pieces = text.split(_QUOTE)
+    if len(pieces) % 2 == 0:
+        pieces[-2:] = [_QUOTE.join(pieces[-2:])]
+    return Prose(*(Formula(p) if i % 2 else p for i, p in enumerate(pieces)))
+
+
+def _unpacked(parts: Iterable[str]) -> Iterable[str]:
+    for part in parts:
+        if isinstance(part, Prose):
+            yield from part.parts
+        else:
+            yield part if type(part) in (Formula, Number) else str(part)
+
+
+def _part_of(data: object) -> str:
+    if isinstance(data, str):
+        return data
+    if isinstance(data, Mapping) and len(data) == 1:
+        ((name, text),) = data.items()
+        if name in _KINDS and isinstance(text, str):
+            return _KINDS[name](text)
+    raise ValueError(f"a part of prose is a text or one of {', '.join(_KINDS)}")
