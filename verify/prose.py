@@ -80,19 +80,6 @@ class Prose(str):
             raise ValueError("prose is a text or a list of its parts")
         return cls(*(_part_of(each) for each in data))
 
-    @classmethod
-    def __get_pydantic_core_schema__(cls, *_: Any) -> Any:
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(
-            lambda given: given if isinstance(given, cls) else cls.of_data(given),
-            serialization=core_schema.to_string_ser_schema(),
-        )
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, *_: Any) -> dict[str, Any]:
-        return {"type": "string"}
-
 
 def prose(*parts: str) -> Prose:
     """The parts as one prose; a Prose among them gives its own parts."""

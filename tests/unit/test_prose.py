@@ -8,14 +8,14 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
-from verify.scenes.frozen import WithProse
+from verify.scenes.frozen import Said, WithProse
 
 PARTS = st.lists(st.one_of(st.text(), st.builds(Formula, st.text()), st.builds(Number, st.text())))
 
 
-class Said(WithProse):
-    reason: Prose
-    checked: tuple[Prose, ...] = ()
+class Result(WithProse):
+    reason: Said
+    checked: tuple[Said, ...] = ()
 
 
 @given(PARTS)
@@ -52,8 +52,8 @@ def test_people_quote_formulas(text, parts):
 
 @given(PARTS, st.lists(PARTS))
 def test_a_model_keeps_plain_text_and_parts_beside_it(reason, checked):
-    made = Said(reason=prose(*reason), checked=tuple(prose(*each) for each in checked))
-    back = Said.model_validate_json(made.model_dump_json())
+    made = Result(reason=prose(*reason), checked=tuple(prose(*each) for each in checked))
+    back = Result.model_validate_json(made.model_dump_json())
     assert back == made
     assert back.reason.parts == made.reason.parts
     assert [c.parts for c in back.checked] == [c.parts for c in made.checked]
@@ -74,8 +74,8 @@ def test_a_model_keeps_plain_text_and_parts_beside_it(reason, checked):
 )
 def test_parts_that_are_not_those_of_the_text_are_refused(data):
     with pytest.raises(ValidationError):
-        Said.model_validate(data)
+        Result.model_validate(data)
 
 
 def test_a_text_without_parts_is_read():
-    assert Said.model_validate({"reason": "u"}).reason.parts == ("u",)
+    assert Result.model_validate({"reason": "u"}).reason.parts == ("u",)

@@ -6,7 +6,9 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     PlainSerializer,
+    PlainValidator,
     SerializerFunctionWrapHandler,
+    WithJsonSchema,
     model_serializer,
     model_validator,
 )
@@ -18,6 +20,15 @@ Seconds = Real
 _BESIDE = "_parts"  # the key of a prose's parts is its own and this
 
 
+def _read(given: object) -> Prose:
+    return given if isinstance(given, Prose) else Prose.of_data(given)
+
+
+Said = Annotated[  # a field of Prose, in a model `WithProse`
+    Prose, PlainValidator(_read), PlainSerializer(str), WithJsonSchema({"type": "string"})
+]
+
+
 class Frozen(BaseModel):
     """A frozen model that refuses unknown keys."""
 
@@ -25,7 +36,7 @@ class Frozen(BaseModel):
 
 
 class WithProse(Frozen):
-    """A model with fields of Prose: each is its plain text in data, `NAME_parts` beside it.
+    """A model with fields that are `Said`: each is its plain text in data, `NAME_parts` beside it.
 
     What is read may leave the parts out. Raises ValueError where they are not those of the text.
     """
