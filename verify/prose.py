@@ -6,10 +6,12 @@
 A Prose is its own plain text, so whatever takes a string takes it; a page sets its `parts`.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Self
 
 _QUOTE = "`"
+_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)?(/[0-9]+)?", re.ASCII)
 
 
 class Formula(str):
@@ -19,7 +21,7 @@ class Formula(str):
 
 
 class Number(str):
-    """A decimal number, such as -1.5 or 2.1e-06."""
+    """A number in digits, such as -1.5, 2.1e-06 or 1/3."""
 
     __slots__ = ()
 
@@ -84,6 +86,11 @@ class Prose(str):
 def prose(*parts: str) -> Prose:
     """The parts as one prose; a Prose among them gives its own parts."""
     return Prose(*parts)
+
+
+def number(text: str) -> str:
+    """A Number where the text is one; else the text, such as `unknown`."""
+    return Number(text) if _NUMBER.fullmatch(text) else text
 
 
 def joined(between: str, parts: Iterable[str]) -> Prose:

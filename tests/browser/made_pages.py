@@ -6,7 +6,11 @@ from functools import cache
 from typing import Any
 
 from tests.helpers.constructed.galleries import CROSSED, KEPT, NOTHING, gallery, shown
-from verify.claims.kinds import Claim, DeltaJClaim, MonotoneClaim, TableClaim, TheoremClaim
+from verify.claims.claim import Claim
+from verify.claims.kinds.delta_j import DeltaJClaim
+from verify.claims.kinds.monotone import MonotoneClaim
+from verify.claims.kinds.table import TableClaim
+from verify.claims.kinds.theorem import TheoremClaim
 from verify.claims.report import gallery_report, make_report
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS

@@ -79,3 +79,12 @@ def test_parts_that_are_not_those_of_the_text_are_refused(data):
 
 def test_a_text_without_parts_is_read():
     assert Result.model_validate({"reason": "u"}).reason.parts == ("u",)
+
+
+def test_parts_stand_in_data_where_they_say_more_than_the_text():
+    made = Result(reason=prose("of order ", Formula("h^3")), checked=(prose("a"), prose("b")))
+    assert made.model_dump() == {
+        "reason": "of order h^3",
+        "reason_parts": ["of order ", {"formula": "h^3"}],
+        "checked": ("a", "b"),
+    }

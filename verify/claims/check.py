@@ -6,10 +6,9 @@ from fnmatch import fnmatchcase
 from itertools import compress
 from operator import not_
 
+from verify.claims.claim import Claim
 from verify.claims.file import ClaimsFile
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claim
-from verify.claims.kinds import EXACT, Claim
 from verify.claims.plan import add_claims
 from verify.errors import InputError
 from verify.execution.execute import OnResult, Store, execute
@@ -36,7 +35,7 @@ class Check:
         What algebra decides comes first: a formula that turns out to be none costs no run.
         """
         found: dict[str, ClaimResult] = {}
-        exact = [isinstance(claim, EXACT) for claim in self.claims]
+        exact = [claim.exact for claim in self.claims]
         for claim in compress(self.claims, exact):
             found[claim.id] = self._judge(claim, {})
         results = execute(self.plan, store, where=where, done=done)
@@ -46,7 +45,7 @@ class Check:
 
     def _judge(self, claim: Claim, results: Mapping[str, Frozen]) -> ClaimResult:
         try:
-            return check_claim(claim, Findings(self.file.scenes, results))
+            return claim.judge(Findings(self.file.scenes, results))
         except InputError as error:
             index = self.file.claims.index(claim)
             raise self.file.located(index, claim.id, error) from None

@@ -27,30 +27,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from verify import schemes
-from verify.arithmetic.exact import text
-from verify.claims.every_hamiltonian import read_every_formula
-from verify.claims.formulas import read_formulas
-from verify.claims.growth import growth_tasks
-from verify.claims.kinds import (
-    EVERY_SEPARABLE,
-    KINDS,
-    Claim,
-    DeltaJClaim,
-    GrowthClaim,
-    MagnitudeClaim,
-    TableClaim,
-    TheoremClaim,
-    ValueClaim,
-)
-from verify.claims.scenes import (
-    HAMILTONIAN_KEYS,
-    HAMILTONIAN_SOURCES,
-    ON_RUNS,
-    ONE_RUN,
-    RUN_KEYS,
-    scene_for,
-)
+from verify.claims.claim import Claim
+from verify.claims.kinds import models
+from verify.claims.on_runs import RunKeys
+from verify.claims.quantified import QuantifiedClaim
+from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
 from verify.claims.toml_lines import Lines, lines_of
 from verify.errors import InputError
 from verify.scenes.paper_figures import PaperFigure
@@ -65,7 +46,6 @@ _GROUPS = (
     ("q", "p", "initial_values"),
     ("printed", "lg_printed", "rows"),
 )
-_EVERY_KINDS = tuple(kind for kind, model in KINDS.items() if "every" in model.model_fields)
 _ALSO = {"parameter": ("parameters",), "step_size": ("step_sizes",), "number": ()}
 
 
@@ -149,9 +129,9 @@ def _defaults(file: ClaimsFile, table: Any) -> dict[str, Any]:
     """The keys that claims share; each must be one that some kind of claim has."""
     if not isinstance(table, dict):
         raise InputError(f"{file.name}: defaults", table, "is not a table")
-    known = {key for model in KINDS.values() for key in model.model_fields}
+    known = {key for model in models().values() for key in model.model_fields}
     for key in table:
-        if key == "id" or key not in known | {*HAMILTONIAN_KEYS, *RUN_KEYS}:
+        if key == "id" or key not in known | {*HAMILTONIAN_KEYS, *RunKeys.model_fields}:
             at = file.lines.of("defaults", 0, key)
             raise InputError(f"{file.name}:{at}: defaults: {key}", table[key], "no claim shares it")
     return table
@@ -162,49 +142,46 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: "_Sc
     if not isinstance(table, dict):
         raise InputError("", table, "is not a table")
     kind = table.get("kind", defaults.get("kind", ""))
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InputError("kind", kind, f"unknown; allowed: {', '.join(KINDS)}")
-    model = KINDS[kind]
-    if model is TheoremClaim:
-        _add_theorem(file, table)
+    if not isinstance(kind, str) or kind not in models():
+        raise InputError("kind", kind, f"unknown; allowed: {', '.join(models())}")
+    model = models()[kind]
+    if not model.on_scene:
+        _append(file, model.model_validate(table))
         return
-    if "every" in table and kind not in _EVERY_KINDS:
+    if "every" in table and not issubclass(model, QuantifiedClaim):
+        quantified = [k for k, m in models().items() if issubclass(m, QuantifiedClaim)]
         raise InputError("every", table["every"], f"a claim of kind {kind} speaks of one H; of "
-                         f"every H may speak: {', '.join(_EVERY_KINDS)}")  # fmt: skip
+                         f"every H may speak: {', '.join(quantified)}")  # fmt: skip
     keys = _with_defaults(model, table, defaults)
     hamiltonian_keys = {key: keys.pop(key) for key in HAMILTONIAN_KEYS if key in keys}
-    on_runs = issubclass(model, ON_RUNS)
-    runs = {key: keys[key] for key in RUN_KEYS if key in keys} if on_runs else {}
+    runs = {key: keys[key] for key in model.run_keys if key in keys}
     for key in set(runs) - set(model.model_fields):
         del keys[key]
     if "every" in hamiltonian_keys:
         keys["every"] = hamiltonian_keys["every"]
-    claim: Claim = model.model_validate(keys)
-    _is_new(file, claim)
-    if "every" in hamiltonian_keys:
-        _check_every(claim, hamiltonian_keys)
-    else:
-        name, scene = scene_for(claim, hamiltonian_keys, runs, scenes.get)
-        _check_one(claim, scene)
-        claim = claim.model_copy(update={"scene": name})
-        file.scenes.setdefault(name, scene)
-    file.claims.append(claim)
+    claim = model.model_validate(keys)
+    if isinstance(claim, QuantifiedClaim) and claim.every:
+        _of_every_alone(hamiltonian_keys)
+        claim.check_every()
+        _append(file, claim)
+        return
+    name, scene = scene_for(claim, hamiltonian_keys, runs, scenes.get)
+    claim.check_scene(scene)
+    _append(file, claim.model_copy(update={"scene": name}))
+    file.scenes.setdefault(name, scene)
 
 
-def _add_theorem(file: ClaimsFile, table: Mapping[str, Any]) -> None:
-    """A claim in words, which has neither scene nor scheme."""
-    from verify.claims.theorems import names
-
-    claim = TheoremClaim.model_validate(table)
-    _is_new(file, claim)
-    if claim.name not in names():
-        raise InputError("name", claim.name, f"unknown; allowed: {', '.join(names())}")
-    file.claims.append(claim)
-
-
-def _is_new(file: ClaimsFile, claim: Claim) -> None:
+def _append(file: ClaimsFile, claim: Claim) -> None:
     if claim.id in {other.id for other in file.claims}:
         raise InputError("id", claim.id, "stands twice; each claim has its own")
+    file.claims.append(claim)
+
+
+def _of_every_alone(hamiltonian_keys: Mapping[str, Any]) -> None:
+    for key in hamiltonian_keys:
+        if key != "every":
+            problem = "says which H, and `every` says every H"
+            raise InputError(key, hamiltonian_keys[key], problem)
 
 
 def _with_defaults(
@@ -214,58 +191,19 @@ def _with_defaults(
     fields = set(model.model_fields)
     taken = set(fields) | set(HAMILTONIAN_SOURCES) | {"parameters"}
     taken -= set() if "every" in fields else {"every"}
-    if issubclass(model, ON_RUNS):
-        taken |= set(RUN_KEYS)
-        one = issubclass(model, ONE_RUN)
+    if model.run_keys:
+        one = model.one_run
+        taken |= set(model.run_keys)
         taken -= {"initial_values"} if one and "q" in defaults else set()
         taken -= {"step_sizes"} if one or "step_size" in fields else set()
         taken -= {"step_size"} if not one and "step_sizes" in defaults else set()
         taken -= {"q", "p"} if not one and "initial_values" in defaults else set()
     for group in _GROUPS:
         taken -= set(group) if set(group) & set(table) else set()
-    if not set(HAMILTONIAN_SOURCES) & set(
-        table
-    ):  # `parameters` alone are of the H that the claims share
+    # `parameters` alone are of the H that the claims share.
+    if not set(HAMILTONIAN_SOURCES) & set(table):
         taken |= {key for key in HAMILTONIAN_SOURCES if key != "every" or "every" in fields}
     return {**{key: value for key, value in defaults.items() if key in taken}, **table}
-
-
-def _check_every(claim: Claim, hamiltonian_keys: Mapping[str, Any]) -> None:
-    if others := [key for key in hamiltonian_keys if key != "every"]:
-        raise InputError(
-            others[0], hamiltonian_keys[others[0]], "says which H, and `every` says every H"
-        )
-    every_h = schemes.get(claim.scheme).every_h
-    if every_h is None:
-        raise InputError("scheme", claim.scheme, "is given for one H, not for every H")
-    if every_h.separable and hamiltonian_keys["every"] != EVERY_SEPARABLE:
-        problem = f"{claim.scheme} takes H = T(p) + V(q) only; say {EVERY_SEPARABLE!r}"
-        raise InputError("every", hamiltonian_keys["every"], problem)
-    if isinstance(claim, DeltaJClaim):
-        if claim.up_to is None:
-            raise InputError("up_to", "", "is missing: of every H only the first term is known")
-        read_every_formula(claim, claim.formula)
-
-
-def _check_one(claim: Claim, scene: Scene) -> None:
-    """The claim's formulas, and whether its runs are among its scene's."""
-    read_formulas(claim, scene.exact_hamiltonian().parameters)
-    grid = scene.grid
-    if isinstance(claim, GrowthClaim):
-        growth_tasks(scene, claim.scheme)
-    if grid is None:
-        return
-    if isinstance(claim, ValueClaim) and len(grid.step_sizes) * len(grid.initial_values) > 1:
-        raise InputError("", "", "speaks of one run; give step_size, q and p")
-    if isinstance(claim, TableClaim) and len(claim.rows or grid.initial_values) != (
-        count := len(grid.initial_values)
-    ):
-        raise InputError("rows", len(claim.rows or ()), f"give {count}, one an initial value")
-    asked = claim.step_sizes if isinstance(claim, TableClaim) else ()
-    asked += (claim.step_size,) if isinstance(claim, MagnitudeClaim) else ()
-    for h in asked:
-        if h not in grid.step_sizes:
-            raise InputError("step_size", text(h), "is not in the scene's grid")
 
 
 class _Scenes:

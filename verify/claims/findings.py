@@ -1,12 +1,12 @@
-"""What was found for the scenes that claims speak of, and how a claim's result is written."""
+"""What was found for the scenes that claims speak of."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Protocol
 
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.claim import ClaimResult, CriterionResult
+from verify.scenes.results.claim import CriterionResult
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
@@ -14,7 +14,13 @@ from verify.scenes.results.separation import SeparationResult
 from verify.scenes.scene import Grid, Scene
 from verify.studies.criteria import judge
 from verify.studies.plan import grid_task, growth_task, proof_task, separation_task
-from verify.verdict import Verdict
+
+
+class _Speaking(Protocol):
+    @property
+    def scene(self) -> str: ...
+    @property
+    def scheme(self) -> str: ...
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,7 @@ class Findings:
             raise InputError("claim.scene", name, f"unknown; allowed: {', '.join(self.scenes)}")
         return self.scenes[name]
 
-    def scene_of(self, claim: Any) -> Scene:
+    def scene_of(self, claim: _Speaking) -> Scene:
         """The claim's scene, which must have its scheme."""
         scene = self.scene(claim.scene)
         _has_scheme(scene, claim.scheme)
@@ -75,33 +81,7 @@ class Findings:
         return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))
 
 
-# The check of each kind of claim, by its model.
-Checks = dict[Any, Callable[[Any, Findings], ClaimResult]]
-
-
 def _has_scheme(scene: Scene, scheme: str) -> None:
     if scheme not in scene.schemes:
         known = ", ".join(scene.schemes)
         raise InputError("claim.scheme", scheme, f"is not in scene {scene.name}: {known}")
-
-
-def result(
-    claim: Any,
-    verdict: Verdict,
-    evidence: str,
-    details: Sequence[Sequence[str]] = (),
-    proof: str = "",
-) -> ClaimResult:
-    """The result for a claim; `details` is a table whose first row is its head."""
-    return ClaimResult(
-        id=claim.id,
-        kind=claim.kind,
-        source=claim.source,
-        section=claim.section,
-        statement=claim.statement,
-        scene=claim.scene,
-        verdict=verdict,
-        evidence=evidence,
-        details=tuple(tuple(row) for row in details),
-        proof=proof,
-    )

@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from verify.arithmetic.exact import text
+from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claims
-from verify.claims.kinds import Claim
 from verify.claims.plan import add_claims
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
@@ -62,7 +61,7 @@ def make_report(
     of_claims = Findings(spoken_of, {**known, **results})
     return Report(
         title=title,
-        claims=tuple(check_claims(claims, of_claims)),
+        claims=tuple(claim.judge(of_claims) for claim in claims),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         figures=tuple(figures),
         left_out=tuple(plan.left_out),

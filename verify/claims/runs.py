@@ -1,15 +1,12 @@
-"""The runs that a claim about numbers speaks of, as balls, and how its verdict rests on them."""
+"""The values of runs as balls: what claims about numbers compare, and how it is called."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Literal
 
-from verify.arithmetic.arb import Ball, ball, lg, precision
-from verify.claims.findings import Findings, result
-from verify.errors import InputError
-from verify.scenes.results.claim import ClaimResult
+from verify.arithmetic.arb import Ball, ball, lg, middle_and_radius, shown
+from verify.prose import Number, Prose, prose
 from verify.scenes.results.run import RunResult
-from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 
 QUANTITIES: dict[str, Callable[[RunResult], Ball]] = {
@@ -32,6 +29,7 @@ NEEDS = {
     "mse_over_lambda": ("mse", "lambda"),
     "delta_j_max": ("delta_j_max",),
 }
+Quantity = Literal["mse", "abs_lambda", "mse_over_lambda", "delta_j_max"]  # that claims compare
 LABELS = {
     "mse": "MSE",
     "lambda": "Λ",
@@ -45,62 +43,36 @@ LABELS = {
 
 
 class NoValueError(Exception):
-    """A run that the claim needs ended without values; the message says which and how."""
+    """A run that the claim needs ended without values; `reason` says which and how."""
+
+    def __init__(self, run: RunResult) -> None:
+        self.reason = end_of(run)
+        super().__init__(self.reason)
 
 
-def decided(check: Callable[[Any, Findings], ClaimResult]) -> Callable[..., ClaimResult]:
-    """The check, with UNDECIDED where a run that it needs has no values, and ENCLOSED for what was
-    measured where all runs have rigorous bounds."""
-
-    def checked(claim: Any, findings: Findings) -> ClaimResult:
-        try:
-            with precision():
-                found = check(claim, findings)
-        except NoValueError as reason:
-            return result(claim, Verdict.UNDECIDED, str(reason))
-        runs = findings.runs(findings.scene(claim.scene), claim.scheme)
-        enclosed = all(r.error_kind == "enclosed" for r in runs)
-        if found.verdict is Verdict.MEASURED and enclosed:
-            return found.model_copy(update={"verdict": Verdict.ENCLOSED})
-        if found.verdict is Verdict.REFUTED and not enclosed:
-            by = f"{found.evidence} (by estimated error bounds)"
-            return found.model_copy(update={"evidence": by})
-        return found
-
-    return checked
+def start_of(run: RunResult) -> Prose:
+    """The run's initial value."""
+    return prose("q₀ = ", Number(run.q), ", p₀ = ", Number(run.p))
 
 
-def rows_of(
-    claim: Any, findings: Findings, *quantities: str
-) -> tuple[Scene, list[list[RunResult]]]:
-    """The grid's runs: one row an initial value, its runs by increasing step size.
-
-    Raises InputError where the scene does not run what the claim speaks of, and NoValueError where
-    a run ended without values.
-    """
-    scene = findings.scene(claim.scene)
-    runs = findings.runs(scene, claim.scheme)
-    if not runs or scene.grid is None:
-        raise InputError("claim", claim.id, "its scene has no runs of that scheme")
-    needed = [o for quantity in quantities for o in NEEDS[quantity]]
-    for run in runs:
-        if run.status != "finished":
-            raise NoValueError(end_of(run))
-        if missing := [name for name in needed if name not in run.values]:
-            raise InputError("claim", claim.id, f"its scene does not observe {missing[0]}")
-    width = len(scene.grid.step_sizes)
-    rows = [runs[i : i + width] for i in range(0, len(runs), width)]
-    return scene, [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
-
-
-def start_of(run: RunResult) -> str:
-    return f"q₀ = {run.q}, p₀ = {run.p}"
-
-
-def end_of(run: RunResult) -> str:
+def end_of(run: RunResult) -> Prose:
     """How a run ended that has no values."""
     why = f"left the range at step {run.failed_step}" if run.failed_step else run.status
-    return f"the run from {start_of(run)} with h = {run.step_size} {why}"
+    return prose("the run from ", start_of(run), " with h = ", Number(run.step_size), f" {why}")
+
+
+def table_of(rows: Sequence[Sequence[RunResult]], quantity: str) -> list[list[str]]:
+    """A quantity of each run to five digits: a row an initial value, a column a step size."""
+    head = ["initial value", *(f"h = {run.step_size}" for run in rows[0])]
+    body = [
+        [start_of(row[0]), *(shown(QUANTITIES[quantity](run), 5) for run in row)] for row in rows
+    ]
+    return [head, *body]
+
+
+def middle(x: Ball) -> Fraction:
+    """The middle of the ball, exactly."""
+    return middle_and_radius(x)[0]
 
 
 def sign(x: Ball, *, zero: bool | None = None) -> bool | None:

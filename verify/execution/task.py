@@ -40,6 +40,10 @@ class Task(Frozen):
     def compute(self, keeper: Keeper) -> Frozen:
         """Do it; a run goes on from the checkpoint that the keeper may have."""
 
+    def proved(self) -> Frozen | None:
+        """Its result where a proof gives it at once, and nothing is to be computed."""
+        return None
+
     @property
     def key(self) -> str:
         """A name for the task by its content."""

@@ -11,79 +11,43 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from verify.claims.every_hamiltonian import of_hamiltonian
+from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claim
-from verify.claims.kinds import (
-    EVERY_SEPARABLE,
-    KINDS,
-    AreaClaim,
-    BoundedClaim,
-    Claim,
-    ConvergenceOrderClaim,
-    CriteriaClaim,
-    DeltaJClaim,
-    FlowClaim,
-    GrowthClaim,
-    JacobianClaim,
-    LessClaim,
-    MonotoneClaim,
-    OrderClaim,
-    SpreadClaim,
-    StepMapClaim,
-    TheoremClaim,
-)
+from verify.claims.kinds import models
 from verify.claims.plan import add_claims
-from verify.claims.scenes import ON_RUNS, scene_for
+from verify.claims.quantified import EVERY_SEPARABLE
+from verify.claims.scenes import scene_for
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.execution.plan import Plan
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Sample
+from verify.prose import read_prose
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.verdict import Verdict
 
 _NAME = "drawn"
-_OF_ANY = (
-    OrderClaim, ConvergenceOrderClaim, AreaClaim, MonotoneClaim, LessClaim, BoundedClaim,
-    GrowthClaim, CriteriaClaim,
-)  # fmt: skip
-
-
-def why_not(claim: Claim) -> str:
-    """Why other scenes cannot be asked what the claim says; empty where they can."""
-    every = getattr(claim, "every", None)
-    if every and isinstance(claim, AreaClaim) and not claim.area_preserving:
-        return "that not every Hamiltonian has det J ≡ 1 says nothing of a single one"
-    if isinstance(claim, _OF_ANY) or every:
-        return ""
-    if isinstance(claim, TheoremClaim):
-        return "a theorem says nothing of drawn Hamiltonians"
-    if isinstance(claim, StepMapClaim | JacobianClaim | DeltaJClaim):
-        return "a printed formula is that of its own Hamiltonian"
-    if isinstance(claim, FlowClaim):
-        return "a region that is carried is that of its own scene"
-    if isinstance(claim, SpreadClaim):
-        return "a spread is over the initial values of its own scene"
-    return "printed numbers are those of its own runs"
 
 
 def claims_left_out(claims: Sequence[Claim]) -> dict[str, list[str]]:
     """The claims that cannot be asked of other scenes, by the reason."""
     found: dict[str, list[str]] = {}
     for claim in claims:
-        if why := why_not(claim):
+        if why := claim.why_only_here():
             found.setdefault(why, []).append(claim.id)
     return found
 
 
 def claim_texts(claims: Sequence[Claim]) -> tuple[str, ...]:
     """Those that other scenes can be asked of, as tasks hold them. InputError where none can."""
-    asked = [claim for claim in claims if not why_not(claim)]
+    asked = [claim for claim in claims if not claim.why_only_here()]
     if not asked:
-        raise InputError("claim", claims[0].id, f"{why_not(claims[0])}, and no other claim is left")
+        raise InputError(
+            "claim", claims[0].id, f"{claims[0].why_only_here()}, and no other claim is left"
+        )
     return tuple(json.dumps(claim.model_dump(mode="json"), sort_keys=True) for claim in asked)
 
 
@@ -97,8 +61,10 @@ def scheme_of(text: str) -> str:
 def claim_property(text: str) -> Property:
     """The property that the claim makes; it is asked of its own scheme, whatever was drawn."""
     data: dict[str, Any] = json.loads(text)
-    claim = KINDS[data["kind"]].model_validate(data)
-    sentence = claim.statement or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
+    claim = models()[data["kind"]].model_validate(data)
+    sentence = (
+        str(read_prose(claim.statement)) or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
+    )
     return Property(claim.id, sentence, lambda sample: _holds(claim, sample), claim.scheme)
 
 
@@ -130,39 +96,20 @@ def _of_scheme(sample: Sample, name: str) -> Sample | None:
     return asked
 
 
-def _verdict_on(claim: Claim, sample: Sample) -> Any:
-    """The claim's result for the sample, a `verify.scenes.results.claim.ClaimResult`."""
-    claim = claim.model_copy(update={"scene": _NAME} | _without_every(claim, sample))
+def _verdict_on(claim: Claim, sample: Sample) -> ClaimResult:
+    """The claim's result for the sample."""
+    claim = claim.of_one(sample.hamiltonian).model_copy(update={"scene": _NAME})
     scenes = {_NAME: _scene(claim, sample)}
     plan = Plan()
     known = add_claims(plan, [claim], scenes)
     results = execute(plan, Store(None), where=THIS_PROCESS)
-    return check_claim(claim, Findings(scenes, {**known, **results}))
-
-
-def _without_every(claim: Claim, sample: Sample) -> dict[str, Any]:
-    """What changes where a claim of every H is made of this one.
-
-    An order that is not passed for all H together may well be passed for this one.
-    """
-    if not getattr(claim, "every", None):
-        return {}
-    if isinstance(claim, DeltaJClaim):
-        return {"every": None, "formula": of_hamiltonian(claim, sample.hamiltonian)}
-    if isinstance(claim, OrderClaim | ConvergenceOrderClaim):
-        return {"every": None, "at_least": True}
-    return {"every": None}
+    return claim.judge(Findings(scenes, {**known, **results}))
 
 
 def _scene(claim: Claim, sample: Sample) -> Scene:
     """The sample's scene, with the runs that the claim speaks of."""
     scene = sample.scene
-    if not isinstance(claim, ON_RUNS):
+    if not claim.run_keys:
         return scene
-    h = sample.step_size
-    runs: dict[str, Any] = {"q": sample.q, "p": sample.p}
-    if isinstance(claim, MonotoneClaim):  # it compares step sizes over one time
-        runs |= {"step_sizes": (h / 2, h), "time": sample.steps * h}
-    else:
-        runs |= {"step_size": h, "steps": sample.steps}
+    runs = {"q": sample.q, "p": sample.p, **claim.drawn_runs(sample.step_size, sample.steps)}
     return scene_for(claim, {"scene": _NAME}, runs, lambda _: scene)[1]

@@ -5,7 +5,7 @@ from typing import Literal
 from verify.execution.keeping import Keeper
 from verify.execution.task import STEP_COST, InitialValueTask
 from verify.runs.float64 import DIRECT_STEPS
-from verify.runs.run import run
+from verify.runs.run import proved_run, run
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO, StepSize
 
@@ -28,6 +28,18 @@ class RunTask(InitialValueTask):
     def cost(self) -> int:
         checked = self.arithmetic == "float64" and self.steps <= DIRECT_STEPS
         return self.steps * STEP_COST.get(AUTO if checked else self.arithmetic, _UNLISTED)
+
+    def proved(self) -> RunResult | None:
+        return proved_run(
+            self.exact_hamiltonian(),
+            self.scheme,
+            q=self.q,
+            p=self.p,
+            step_size=self.step_size,
+            steps=self.steps,
+            digits=self.digits,
+            observables=self.observables,
+        )
 
     def compute(self, keeper: Keeper) -> RunResult:
         return run(

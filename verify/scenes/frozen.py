@@ -36,9 +36,10 @@ class Frozen(BaseModel):
 
 
 class WithProse(Frozen):
-    """A model with fields that are `Said`: each is its plain text in data, `NAME_parts` beside it.
+    """A model with fields that are `Said`: each is its plain text in data.
 
-    What is read may leave the parts out. Raises ValueError where they are not those of the text.
+    Where one is more than text, `NAME_parts` stands beside it; what is read may leave that out.
+    Raises ValueError where the parts are not those of the text.
     """
 
     @model_serializer(mode="wrap")
@@ -46,7 +47,7 @@ class WithProse(Frozen):
         data: dict[str, Any] = {}
         for name, value in shown(self).items():
             data[name] = value
-            if name in _prose_fields(type(self)):
+            if name in _prose_fields(type(self)) and _more_than_text(getattr(self, name)):
                 data[name + _BESIDE] = _data_of(getattr(self, name))
         return data
 
@@ -69,6 +70,12 @@ def _prose_fields(model: type[BaseModel]) -> list[str]:
 
 def _holds_prose(annotation: Any) -> bool:
     return annotation is Prose or any(_holds_prose(each) for each in get_args(annotation))
+
+
+def _more_than_text(value: Any) -> bool:
+    if isinstance(value, Prose):
+        return any(type(part) is not str for part in value.parts)
+    return any(_more_than_text(each) for each in value)
 
 
 def _data_of(value: Any) -> Any:

@@ -5,9 +5,8 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import decimal, text
+from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claims
-from verify.claims.kinds import Claim
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.proof import ProofResult
@@ -91,7 +90,7 @@ def made_findings(
 
 def check(claim: Claim, values: Values, **scene: Any) -> ClaimResult:
     """The claim's result on a made scene whose runs have these values."""
-    (found,) = check_claims([claim], made_findings(made_scene(**scene), values))
+    (found,) = [claim.judge(made_findings(made_scene(**scene), values))]
     return found
 
 

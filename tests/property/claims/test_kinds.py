@@ -32,8 +32,7 @@ from verify.arithmetic.exact import decimal
 from verify.claims.check import prepare
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claim
-from verify.claims.kinds import KINDS
+from verify.claims.kinds import models
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.scene import Scene
@@ -73,10 +72,10 @@ def zero(x: sympy.Expr) -> bool:
 def verdict(at: True_, kind: str, **keys: Any) -> Verdict:
     """Of a claim on a scene made of that H; its formulas are written by our printer."""
     written = {n: to_text(x) if isinstance(x, sympy.Expr) else x for n, x in keys.items()}
-    claim = KINDS[kind].model_validate({"id": "c", "scene": "made", "scheme": at.scheme,
+    claim = models()[kind].model_validate({"id": "c", "scene": "made", "scheme": at.scheme,
                                         "kind": kind, **written})  # fmt: skip
     scene = Scene(hamiltonian=at.text, schemes=(at.scheme,), name="made")
-    return check_claim(claim, Findings({"made": scene})).verdict
+    return claim.judge(Findings({"made": scene})).verdict
 
 
 def entries(at: True_) -> list[list[str]]:

@@ -14,19 +14,16 @@ from tests.helpers.constructed.runs import (
     made_run,
     made_scene,
 )
+from verify.claims.claim import Claim
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claims
-from verify.claims.kinds import (
-    Claim,
-    CriteriaClaim,
-    LessClaim,
-    MagnitudeClaim,
-    MonotoneClaim,
-    SpreadClaim,
-    StepMapClaim,
-    TableClaim,
-)
+from verify.claims.kinds.criteria import CriteriaClaim
+from verify.claims.kinds.less import LessClaim
+from verify.claims.kinds.magnitude import MagnitudeClaim
+from verify.claims.kinds.monotone import MonotoneClaim
+from verify.claims.kinds.spread import SpreadClaim
+from verify.claims.kinds.step_map import StepMapClaim
+from verify.claims.kinds.table import TableClaim
 from verify.errors import InputError
 from verify.studies.plan import grid_task
 from verify.verdict import Verdict
@@ -64,7 +61,7 @@ def test_criteria_hold_together_and_the_weakest_counts(
         return {"mse": h**power, "lambda": h**power}
 
     findings = made_findings(made_scene(), values, proof)
-    (found,) = check_claims([claim], findings)
+    (found,) = [claim.judge(findings)]
     assert found.verdict is expected
     assert all(f"criterion {n}: " in found.evidence for n in numbers)
 
@@ -93,16 +90,16 @@ def two_runs(*runs: Any) -> Findings:
 @on_runs
 def test_a_claim_on_runs_that_were_not_made_is_an_input_error(claim: Claim) -> None:
     with pytest.raises(InputError, match="has no runs"):
-        check_claims([claim], two_runs())
+        [claim.judge(two_runs())]
 
 
 @on_runs
 def test_an_orbit_that_left_the_range_leaves_a_claim_undecided_or_refuted(claim: Claim) -> None:
     left = made_run("0.02", {}, status="left range", failed_step=7)
     first = made_run("0.01", FLAT)
-    found = check_claims([claim], two_runs(first, left))[0]
+    found = [claim.judge(two_runs(first, left))][0]
     assert found.verdict in (UNDECIDED, REFUTED) or claim.kind == "magnitude"
-    other_way = check_claims([claim], two_runs(made_run("0.01", {}, status="left range"), first))
+    other_way = [claim.judge(two_runs(made_run("0.01", {}, status="left range"), first))]
     assert other_way[0].verdict in (UNDECIDED, REFUTED)
 
 
@@ -110,13 +107,13 @@ def test_an_orbit_that_left_the_range_leaves_a_claim_undecided_or_refuted(claim:
 def test_a_claim_on_an_observable_that_was_not_asked_for_is_an_input_error(claim: Claim) -> None:
     runs = [made_run(h, {"delta_j_max": "1e-9"}) for h in H]
     with pytest.raises(InputError, match="mse"):
-        check_claims([claim], two_runs(*runs))
+        [claim.judge(two_runs(*runs))]
 
 
 def test_a_claim_on_a_scene_that_is_not_there_is_an_input_error() -> None:
     claim = LessClaim(**{**CLAIM, "scene": "lorenz"}, kind="less", quantity="mse", than="mse")
     with pytest.raises(InputError, match=r"claim.scene=lorenz: unknown; allowed: made"):
-        check_claims([claim], two_runs())
+        [claim.judge(two_runs())]
 
 
 PROOFS: dict[str, Claim] = {
@@ -128,7 +125,7 @@ PROOFS: dict[str, Claim] = {
 @pytest.mark.parametrize("claim", PROOFS.values(), ids=PROOFS)
 def test_a_claim_on_a_scheme_that_its_scene_does_not_have_is_an_input_error(claim: Claim) -> None:
     with pytest.raises(InputError, match="lie3"):
-        check_claims([claim.model_copy(update={"scheme": "lie3"})], two_runs())
+        [claim.model_copy(update={"scheme": "lie3"}).judge(two_runs())]
 
 
 # -- the file -------------------------------------------------------------------------------------
@@ -196,8 +193,8 @@ def test_a_claims_section_is_carried_to_its_result(tmp_path: Path) -> None:
         'area_preserving = true\nsection = "2 Area"\n'
         '[[claim]]\nid = "a"\n[[claim]]\nid = "b"\nsection = "3.1 More"\n'
     )
-    found = check_claims(load_claims(path).claims, Findings({}))
+    found = [claim.judge(Findings({})) for claim in load_claims(path).claims]
     assert [c.section for c in found] == ["2 Area", "3.1 More"]
     path.write_text(path.read_text().replace('section = "2 Area"\n', ""))
-    found = check_claims(load_claims(path).claims, Findings({}))
+    found = [claim.judge(Findings({})) for claim in load_claims(path).claims]
     assert [c.section for c in found] == ["", "3.1 More"]

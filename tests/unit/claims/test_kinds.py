@@ -16,10 +16,9 @@ import sympy
 from tests.helpers.mutation import mutants
 from tests.helpers.sampled.formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
 from tests.paths import ROOT
+from verify.claims.claim import Claim
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claims
-from verify.claims.kinds import Claim
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
@@ -131,7 +130,7 @@ def change_in(claim: Any) -> tuple[str, str, Any]:
 
 
 def verdicts(claims: Sequence[Any], findings: Findings) -> list[Verdict]:
-    return [r.verdict for r in check_claims(claims, findings)]
+    return [r.verdict for r in [claim.judge(findings) for claim in claims]]
 
 
 def test_the_equations_of_the_issue_are_all_there() -> None:
@@ -166,7 +165,7 @@ def test_mutants_change_signs_numbers_exponents_names_and_terms() -> None:
 @pytest.mark.parametrize("claim", EQUATIONS.values(), ids=EQUATIONS)
 def test_an_equation_is_proved_as_it_is_printed(claim: Claim, proved: Findings) -> None:
     assert holds(claim), "the oracle of this file agrees"
-    (found,) = check_claims([claim], proved)
+    (found,) = [claim.judge(proved)]
     assert found.verdict is Verdict.PROVED
     assert found.evidence
 
@@ -176,7 +175,7 @@ def test_an_equation_with_one_thing_changed_is_refuted(claim: Claim, proved: Fin
     made = list(mutated(claim))
     assert len(made) >= 15
     expected = [Verdict.PROVED if change_in(m) in EQUIVALENT else Verdict.REFUTED for m in made]
-    found = check_claims(made, proved)
+    found = [claim.judge(proved) for claim in made]
     wrong = [(m, f.verdict, e) for m, f, e in zip(made, found, expected, strict=True)
              if f.verdict is not e]  # fmt: skip
     assert not wrong
@@ -238,7 +237,7 @@ def test_an_equation_of_one_scheme_is_refuted_for_another(
 @pytest.mark.parametrize("formula", ["3*h**3*delta*p*q + eps", "abs(q)", "open('x')", "h**3*", ""])
 def test_a_claim_that_is_no_formula_is_an_input_error(formula: str, proved: Findings) -> None:
     with pytest.raises(InputError, match="claim eq-21"):
-        check_claims([CLAIMS["eq-21"].model_copy(update={"formula": formula})], proved)
+        [CLAIMS["eq-21"].model_copy(update={"formula": formula}).judge(proved)]
 
 
 # -- all claims, on short runs --------------------------------------------------------------------
@@ -254,7 +253,7 @@ def short() -> tuple[Findings, dict[str, ClaimResult]]:
         scenes[name] = proofs_alone(scene).model_copy(update={"grid": grid})
     results = execute(plan_scenes(list(scenes.values())), Store(None), where=THIS_PROCESS)
     findings = Findings(scenes, results)
-    return findings, {r.id: r for r in check_claims(list(CLAIMS.values()), findings)}
+    return findings, {r.id: r for r in [claim.judge(findings) for claim in list(CLAIMS.values())]}
 
 
 def test_every_claim_of_the_paper_gets_a_verdict_with_evidence(short: Any) -> None:

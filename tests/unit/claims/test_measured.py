@@ -19,7 +19,10 @@ from tests.helpers.constructed.runs import (
     check,
     one_changed,
 )
-from verify.claims.kinds import LessClaim, MagnitudeClaim, MonotoneClaim, SpreadClaim
+from verify.claims.kinds.less import LessClaim
+from verify.claims.kinds.magnitude import MagnitudeClaim
+from verify.claims.kinds.monotone import MonotoneClaim
+from verify.claims.kinds.spread import SpreadClaim
 from verify.verdict import Verdict
 
 MEASURED, REFUTED, UNDECIDED = Verdict.MEASURED, Verdict.REFUTED, Verdict.UNDECIDED

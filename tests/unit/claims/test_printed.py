@@ -19,8 +19,7 @@ from tests.helpers.constructed.runs import (
     one_changed,
 )
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claims
-from verify.claims.kinds import TableClaim
+from verify.claims.kinds.table import TableClaim
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.studies.plan import plan_scenes
@@ -105,7 +104,7 @@ def test_a_table_row_from_our_own_runs_is_measured_and_refuted_with_a_digit_chan
     logarithms = [mpmath.nstr(mpmath.log10(r.values["mse"].value), 15) for r in runs]
     printed = [f"{Decimal(x):.4f}" for x in logarithms]
     claim = table(printed, [Fraction(r.step_size) for r in runs])
-    assert check_claims([claim], findings)[0].verdict is ENCLOSED
+    assert [claim.judge(findings)][0].verdict is ENCLOSED
     last = str((int(printed[1][-1]) + 1) % 10)
     wrong = table([printed[0], printed[1][:-1] + last], list(claim.step_sizes))
-    assert check_claims([wrong], findings)[0].verdict is REFUTED
+    assert [wrong.judge(findings)][0].verdict is REFUTED

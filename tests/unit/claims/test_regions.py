@@ -8,10 +8,9 @@ import pytest
 
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claim
-from verify.claims.kinds import FlowAreaClaim, FlowDistanceClaim
+from verify.claims.kinds.flow_area import FlowAreaClaim, conserves_area
+from verify.claims.kinds.flow_distance import FlowDistanceClaim
 from verify.claims.plan import add_claims
-from verify.claims.regions import conserves_area
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING
 from verify.execution.plan import Plan
@@ -77,7 +76,7 @@ def carried() -> Findings:
 
 
 def verdict(claim: Any, found: Findings) -> Verdict:
-    result = check_claim(claim, found)
+    result = claim.judge(found)
     assert isinstance(result, ClaimResult)
     assert result.evidence
     return result.verdict

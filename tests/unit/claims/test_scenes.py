@@ -9,7 +9,7 @@ import pytest
 from tests.unit.claims.test_toml_lines import HEAD, MSE, write
 from verify.claims.check import prepare
 from verify.claims.file import ClaimsFile, load_claims
-from verify.claims.kinds import ValueClaim
+from verify.claims.kinds.value import ValueClaim
 from verify.errors import InputError
 from verify.execution.execute import Store
 

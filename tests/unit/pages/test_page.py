@@ -13,7 +13,9 @@ from typing import Any
 import pytest
 
 from tests.helpers.imported_modules import imported_by
-from verify.claims.kinds import Claim, MonotoneClaim, TableClaim
+from verify.claims.claim import Claim
+from verify.claims.kinds.monotone import MonotoneClaim
+from verify.claims.kinds.table import TableClaim
 from verify.claims.report import make_report
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS

@@ -24,6 +24,7 @@ from verify.integrators.others.tableau import (
     symplecticity,
 )
 from verify.integrators.results import Finding
+from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -44,11 +45,11 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
             kind=what,
             source=integrator.name,
             section=section,
-            statement=f"{statement} ({integrator.source})",
+            statement=prose(f"{statement} ({integrator.source})"),
             scene="",
             verdict=verdict,
-            evidence=f"{evidence}. Driven: {integrator.driven}",
-            details=details,
+            evidence=prose(evidence, f". Driven: {integrator.driven}"),
+            details=tuple(tuple(map(prose, row)) for row in details),
             reproduction=code if told else "",
         )
 

@@ -14,6 +14,7 @@ from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import ReleasedIntegrator
 from verify.integrators.others.measured import FAILURES
 from verify.integrators.step import last_line, quiet
+from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Provenance, Report
 from verify.schemes.splitting_conditions import Splitting
@@ -108,11 +109,13 @@ def _shears(section: str, prefix: str) -> ClaimResult:
         kind="area",
         source="all of them",
         section=section,
-        statement="kicks and drifts are symplectic, whatever their coefficients are",
+        statement=prose("kicks and drifts are symplectic, whatever their coefficients are"),
         scene="",
         verdict=Verdict.PROVED if proved else Verdict.UNDECIDED,
-        evidence="every kick and every drift has determinant 1, for all a h V″ and a h T″; so "
-        "every composition of them has; a wrong coefficient costs order, not area",
+        evidence=prose(
+            "every kick and every drift has determinant 1, for all a h V″ and a h T″; so "
+            "every composition of them has; a wrong coefficient costs order, not area"
+        ),
     )
 
 

@@ -1,6 +1,7 @@
 """What can be said of a claim, and of the paper's criteria: a verdict with its evidence."""
 
-from verify.scenes.frozen import Frozen
+from verify.prose import Prose
+from verify.scenes.frozen import Frozen, Said, WithProse
 from verify.verdict import Verdict
 
 
@@ -13,7 +14,7 @@ class CriterionResult(Frozen):
     evidence: str
 
 
-class ClaimResult(Frozen):
+class ClaimResult(WithProse):
     """One claim with its verdict; `evidence` is one line, `details` a table of texts.
 
     `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
@@ -26,10 +27,10 @@ class ClaimResult(Frozen):
     kind: str = ""
     source: str
     section: str = ""
-    statement: str
+    statement: Said
     scene: str
     verdict: Verdict
-    evidence: str
-    details: tuple[tuple[str, ...], ...] = ()
-    proof: str = ""
+    evidence: Said
+    details: tuple[tuple[Said, ...], ...] = ()
+    proof: Said = Prose("")
     reproduction: str = ""

@@ -8,10 +8,12 @@ from typing import Any
 
 import pytest
 
-from verify.claims.area import ProvedOrder, judge_area, judge_order
 from verify.claims.findings import Findings
-from verify.claims.judge import check_claim
-from verify.claims.kinds import AreaClaim, ConvergenceOrderClaim, DeltaJClaim, OrderClaim
+from verify.claims.kinds.area_preserving import AreaClaim
+from verify.claims.kinds.convergence_order import ConvergenceOrderClaim
+from verify.claims.kinds.delta_j import DeltaJClaim
+from verify.claims.kinds.order import OrderClaim
+from verify.claims.orders import ProvedOrder
 from verify.errors import InputError
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
@@ -43,7 +45,7 @@ every_case = pytest.mark.parametrize(("at", "orders"), KNOWN.items(), ids=lambda
 
 def judged(claim: Any, hamiltonian: str, **scene: Any) -> ClaimResult:
     made = Scene(hamiltonian=hamiltonian, schemes=(claim.scheme,), name="made", **scene)
-    return check_claim(claim, Findings({"made": made}))
+    return claim.judge(Findings({"made": made}))
 
 
 def order(r: int, scheme: str, **more: Any) -> OrderClaim:
@@ -141,9 +143,9 @@ def test_orders_are_judged_by_what_is_known(
     known: ProvedOrder, exactly: Any, at_least: Any
 ) -> None:
     for r, verdict in exactly.items():
-        assert judge_order(order(r, "lie2"), r, known).verdict is verdict
+        assert order(r, "lie2").judge_known(known).verdict is verdict
     for r, verdict in at_least.items():
-        assert judge_order(order(r, "lie2", at_least=True), r, known).verdict is verdict
+        assert order(r, "lie2", at_least=True).judge_known(known).verdict is verdict
 
 
 def test_area_is_judged_by_what_is_known() -> None:
@@ -152,8 +154,8 @@ def test_area_is_judged_by_what_is_known() -> None:
         (False, REFUTED, PROVED),
         (None, UNDECIDED, UNDECIDED),
     ):
-        assert judge_area(area(True, "lie2"), vanishes, "e").verdict is true
-        assert judge_area(area(False, "lie2"), vanishes, "e").verdict is false
+        assert area(True, "lie2").judge_known(vanishes, "e").verdict is true
+        assert area(False, "lie2").judge_known(vanishes, "e").verdict is false
 
 
 # -- every H, by a stub of the proof --------------------------------------------------------------
@@ -213,14 +215,14 @@ EVERY, SEPARABLE = {"every": "hamiltonian"}, {"every": "separable hamiltonian"}
     ],
 )
 def test_a_claim_of_every_h_is_held_against_the_proof(claim: Any, expected: Verdict) -> None:
-    found = check_claim(claim, Findings({}))
+    found = claim.judge(Findings({}))
     assert found.verdict is expected
     assert found.evidence
 
 
 def test_a_map_that_reached_all_that_was_looked_at_may_be_of_higher_order(proofs: Any) -> None:
     proofs["lie2", False] = Stub(convergence_order=3)
-    found = {k: check_claim(convergence(k, "lie2", **EVERY), Findings({})).verdict
+    found = {k: convergence(k, "lie2", **EVERY).judge(Findings({})).verdict
              for k in (2, 3, 4)}  # fmt: skip
     assert found == {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED}
 
@@ -249,25 +251,25 @@ def first_term(formula: str, up_to: int = 4, scheme: str = "lie2", **every: str)
 def test_the_first_term_for_every_h_is_held_against_the_proof(
     formula: str, up_to: int, expected: Verdict
 ) -> None:
-    assert check_claim(first_term(formula, up_to), Findings({})).verdict is expected
+    assert first_term(formula, up_to).judge(Findings({})).verdict is expected
 
 
 @pytest.mark.usefixtures("proofs")
 def test_mixed_derivatives_of_a_separable_h_vanish() -> None:
     formula = "-2*h**3*H_q*H_ppp"
-    assert check_claim(first_term(formula), Findings({})).verdict is REFUTED
-    assert check_claim(first_term(formula, **SEPARABLE), Findings({})).verdict is PROVED
+    assert first_term(formula).judge(Findings({})).verdict is REFUTED
+    assert first_term(formula, **SEPARABLE).judge(Findings({})).verdict is PROVED
     euler = first_term("h**4*H_pq", 8, "symplectic-euler", **SEPARABLE)
-    assert check_claim(euler, Findings({})).verdict is PROVED
+    assert euler.judge(Findings({})).verdict is PROVED
     wrong = first_term("h**4*H_pp", 8, "symplectic-euler", **SEPARABLE)
-    assert check_claim(wrong, Findings({})).verdict is REFUTED
+    assert wrong.judge(Findings({})).verdict is REFUTED
 
 
 @pytest.mark.usefixtures("proofs")
 @pytest.mark.parametrize("formula", ["h**3*T_p", "h*H_x", "h*delta", "h*H_pq5", "h**", "h*H"])
 def test_other_names_than_derivatives_of_h_are_input_errors(formula: str) -> None:
     with pytest.raises(InputError, match="claim c: formula"):
-        check_claim(first_term(formula), Findings({}))
+        first_term(formula).judge(Findings({}))
 
 
 # -- the paper's schemes, off by one --------------------------------------------------------------

@@ -7,9 +7,10 @@ import pytest
 
 from tests.helpers.constructed.runs import CLAIM, Given, made_findings, made_run, made_scene
 from verify.claims.findings import Findings
-from verify.claims.growth import growth_tasks
-from verify.claims.judge import check_claim
-from verify.claims.kinds import BoundedClaim, GrowthClaim, TableClaim, ValueClaim
+from verify.claims.kinds.bounded import BoundedClaim
+from verify.claims.kinds.growth import GrowthClaim
+from verify.claims.kinds.table import TableClaim
+from verify.claims.kinds.value import ValueClaim
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -20,7 +21,7 @@ H = Fraction(1, 100)
 def on_runs(claim: Any, values: dict[str, Given], *, starts: int = 1) -> ClaimResult:
     """The claim's result where each run at h = 0.01 has these values."""
     scene = made_scene(("0.01",), [(str(k), "0") for k in range(1, starts + 1)])
-    return check_claim(claim, made_findings(scene, lambda h, k: values))
+    return claim.judge(made_findings(scene, lambda h, k: values))
 
 
 # -- one value ------------------------------------------------------------------------------------
@@ -121,7 +122,7 @@ def test_a_table_has_a_row_for_each_initial_value(
     def values(_: Fraction, k: int) -> dict[str, Given]:
         return {"mse": (k + 2) * Fraction(1, 10**9), "lambda": -(k + 2) * Fraction(1, 10**3)}
 
-    assert check_claim(claim, made_findings(scene, values)).verdict is expected
+    assert claim.judge(made_findings(scene, values)).verdict is expected
 
 
 # -- a bound --------------------------------------------------------------------------------------
@@ -152,10 +153,10 @@ def growing(growth: Any, *sizes: Given, **run: Any) -> ClaimResult:
     scene = made_scene(("0.01",), [("1", "0")])
     runs = [
         made_run(t.step_size, {"lambda_max": size}, steps=t.steps, **run)
-        for t, size in zip(growth_tasks(scene, "lie2"), sizes, strict=True)
+        for t, size in zip(claim.tasks(scene), sizes, strict=True)
     ]
-    names = [task.key for task in growth_tasks(scene, "lie2")]
-    return check_claim(claim, Findings({"made": scene}, dict(zip(names, runs, strict=True))))
+    names = [task.key for task in claim.tasks(scene)]
+    return claim.judge(Findings({"made": scene}, dict(zip(names, runs, strict=True))))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,113 @@
+"""A claim: a precise reading of what a paper states, with all that is asked of it.
+
+A kind of claim is one file in `verify.claims.kinds`: a subclass that has the keys, says of which
+scene and runs it speaks, which tasks it needs, and judges. A claim's own value stands under the
+name of its kind where it has one (`order = 3`); its verdict always comes with evidence.
+"""
+
+from abc import abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import Field
+
+from verify.claims.findings import Findings
+from verify.errors import InputError
+from verify.execution.task import Task
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import prose, read_prose
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.scene import Scene
+from verify.verdict import Verdict
+
+
+class Claim(Frozen):
+    """What claims of every kind have; this base is of what algebra decides of one H.
+
+    `exact`: decided by algebra alone, so that it costs no run. `on_scene`: it speaks of a scheme
+    and a scene. `run_keys`: the keys that say of which runs it speaks, and `one_run` whether it
+    speaks of one only. `only_here`: why other scenes cannot be asked the same; empty where they
+    can. Formulas in `statement` stand between backticks.
+    """
+
+    exact: ClassVar[bool] = True
+    on_scene: ClassVar[bool] = True
+    run_keys: ClassVar[tuple[str, ...]] = ()
+    one_run: ClassVar[bool] = False
+    only_here: ClassVar[str] = ""
+
+    id: Annotated[str, Field(pattern=r"^[^\s\x00-\x1f]+$", max_length=80)]
+    kind: str
+    source: str = ""
+    section: str = ""
+    statement: str = ""
+    scene: str = ""
+    scheme: str
+
+    # -- of which scene it speaks -----------------------------------------------------------------
+
+    def scene_of_its_own(
+        self, label: str, scene: Scene, runs: Mapping[str, Any]
+    ) -> tuple[str, Scene]:
+        """The scene for the claim's own H, with its `runs`, under a name that no other has."""
+        return f"{label}: claim {self.id}", scene
+
+    def scene_on(self, name: str, scene: Scene, runs: Mapping[str, Any]) -> tuple[str, Scene]:
+        """The scene that the claim speaks of and its name, where it names this one.
+
+        Raises InputError where the scene has nothing that it speaks of.
+        """
+        if self.scheme not in scene.schemes:
+            known = ", ".join(scene.schemes)
+            raise InputError("scheme", self.scheme, f"is not in scene {name}: {known}")
+        return name, scene
+
+    def check_scene(self, scene: Scene) -> None:
+        """Raises InputError where the scene cannot be asked what the claim says."""
+
+    # -- what it needs, and its verdict -----------------------------------------------------------
+
+    def tasks(self, scene: Scene) -> Iterable[Task]:
+        """What is to be computed before the claim can be judged."""
+        return ()
+
+    @abstractmethod
+    def judge(self, findings: Findings) -> ClaimResult:
+        """The verdict with its evidence. Raises InputError where a scene or a run is missing."""
+
+    def result(
+        self,
+        verdict: Verdict,
+        evidence: str,
+        details: Sequence[Sequence[str]] = (),
+        proof: str = "",
+    ) -> ClaimResult:
+        """The result for the claim; `details` is a table whose first row is its head."""
+        return ClaimResult(
+            id=self.id,
+            kind=self.kind,
+            source=self.source,
+            section=self.section,
+            statement=read_prose(self.statement),
+            scene=self.scene,
+            verdict=verdict,
+            evidence=prose(evidence),
+            details=tuple(tuple(map(prose, row)) for row in details),
+            proof=prose(proof),
+        )
+
+    # -- the same of other scenes -----------------------------------------------------------------
+
+    def why_only_here(self) -> str:
+        """Why drawn scenes cannot be asked what the claim says; empty where they can."""
+        return self.only_here
+
+    def of_one(self, hamiltonian: Hamiltonian) -> Self:
+        """What a claim of every H says of this one."""
+        return self
+
+    def drawn_runs(self, step_size: Fraction, steps: int) -> dict[str, Any]:
+        """The keys of its runs, for a drawn run of so many steps."""
+        return {"step_size": step_size, "steps": steps}

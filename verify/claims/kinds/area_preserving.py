@@ -1,0 +1,43 @@
+"""det J ≡ 1; or, where `area_preserving` is false, not so."""
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field
+
+from verify.claims.findings import Findings
+from verify.claims.orders import delta_j_order, map_of
+from verify.claims.quantified import QuantifiedClaim
+from verify.scenes.results.claim import ClaimResult
+from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from verify.proof.every_proof import EveryProof
+
+
+class AreaClaim(QuantifiedClaim):
+    """The map preserves area exactly, or does not."""
+
+    kind: Literal["area_preserving"]
+    area_preserving: Annotated[bool, Field(strict=True)]
+
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        known = delta_j_order(map_of(self, findings))
+        return self.judge_known(known.vanishes, known.evidence)
+
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        return self.judge_known(proof.area_preserving, proof.reason)
+
+    def judge_known(self, vanishes: bool | None, evidence: str) -> ClaimResult:
+        """Whether ΔJ ≡ 0 is as claimed."""
+        if vanishes is None:
+            return self.result(Verdict.UNDECIDED, evidence)
+        holds = vanishes == self.area_preserving
+        return self.result(Verdict.PROVED if holds else Verdict.REFUTED, evidence)
+
+    def why_only_here(self) -> str:
+        if self.every and not self.area_preserving:
+            return "that not every Hamiltonian has det J ≡ 1 says nothing of a single one"
+        return ""
+
+
+CLAIM = AreaClaim

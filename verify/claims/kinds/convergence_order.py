@@ -1,0 +1,45 @@
+"""The global error is of this order in h, no higher one; with `at_least`, or of a higher one.
+
+The map agrees with the exact flow up to h to this power.
+"""
+
+from typing import TYPE_CHECKING, Literal
+
+from verify.claims.findings import Findings
+from verify.claims.orders import Order, OrderedClaim, ProvedOrder, convergence_order, map_of
+from verify.prose import Formula, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.schemes import get
+from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from verify.proof.every_proof import EveryProof
+
+
+class ConvergenceOrderClaim(OrderedClaim):
+    """The order of the scheme."""
+
+    kind: Literal["convergence_order"]
+    convergence_order: Order
+
+    @property
+    def claimed(self) -> int:
+        return self.convergence_order
+
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        return self.judge_known(convergence_order(map_of(self, findings)))
+
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        found = proof.convergence_order
+        if found is None:
+            return self.result(Verdict.UNDECIDED, proof.reason)
+        # The proof looks one order beyond the scheme's own; what reaches that may reach further.
+        exact = found <= get(self.scheme).order
+        evidence = prose(
+            "the map agrees with the exact flow of every H up to ", Formula(f"h^{found}"),
+            " and, of some, no further" if exact else "; whether further is not decided",
+        )  # fmt: skip
+        return self.judge_known(ProvedOrder(found, exact, False, evidence))
+
+
+CLAIM = ConvergenceOrderClaim

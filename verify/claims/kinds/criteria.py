@@ -1,0 +1,63 @@
+"""The scheme satisfies these of the paper's criteria."""
+
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from verify.claims.findings import Findings
+from verify.claims.on_runs import RunClaim
+from verify.execution.task import Task
+from verify.prose import joined, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.scene import Grid, Scene
+from verify.scenes.values import CLOSED_FORM
+from verify.studies.plan import proof_task
+from verify.verdict import Verdict
+
+_BY_PROOF_ALONE = {1, 2}
+
+
+class CriteriaClaim(RunClaim):
+    """Criteria of area preservation, by their numbers."""
+
+    only_here = ""
+    kind: Literal["criteria"]
+    numbers: Annotated[
+        tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...], Field(min_length=1)
+    ]
+
+    def observables(self) -> tuple[str, ...]:
+        return CLOSED_FORM
+
+    def check_grid(self, name: str, scene: Scene) -> None:
+        """A proof may decide them without a run."""
+
+    def _with_grid(
+        self, label: str, scene: Scene, base: Grid | None, runs: Mapping[str, Any]
+    ) -> tuple[str, Scene]:
+        if not runs:
+            return f"{label}: claim {self.id}", scene
+        return super()._with_grid(label, scene, base, runs)
+
+    def tasks(self, scene: Scene) -> Iterable[Task]:
+        if not set(self.numbers) <= _BY_PROOF_ALONE:
+            yield from super().tasks(scene)
+        yield proof_task(scene, self.scheme)
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        """The weakest of the criteria's verdicts."""
+        return self.compare(findings)
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        scene = findings.scene(self.scene)
+        judged = [findings.criterion(scene, self.scheme, n) for n in self.numbers]
+        evidence = joined("; ", (prose(f"criterion {c.number}: ", c.evidence) for c in judged))
+        verdicts = [c.verdict for c in judged]
+        for weak in (Verdict.REFUTED, Verdict.UNDECIDED, Verdict.MEASURED):
+            if weak in verdicts:
+                return self.result(weak, evidence)
+        return self.result(Verdict.PROVED, evidence)
+
+
+CLAIM = CriteriaClaim

@@ -1,0 +1,113 @@
+"""ΔJ is `formula`: exactly, or up to O(h^up_to).
+
+`delta_j`: printed as ΔJ itself. `mse_summand`: printed inside the square of Eq. 15.
+`lambda_factor`: printed as the factor det J of Eq. 16. Of every H, with the derivatives of H as
+names, up to the first term.
+"""
+
+from typing import TYPE_CHECKING, Literal, Self
+
+import sympy
+
+from verify.algebra.embedding import embed
+from verify.algebra.formula import to_text
+from verify.claims import every_formula
+from verify.claims.findings import Findings
+from verify.claims.formulas import FormulaClaim, gaps
+from verify.claims.orders import Order
+from verify.claims.quantified import EVERY_SEPARABLE, QuantifiedClaim
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Formula, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.schemes.step_map import H_STEP, grouped
+from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from verify.proof.every_proof import EveryProof
+
+_PRINTED_AS = {
+    "delta_j": "ΔJ",
+    "mse_summand": "the bracket that is squared in the mean (ΔJ by Eq. 15)",
+    "lambda_factor": "the factor of the product (det J by Eq. 16)",
+}
+
+
+class DeltaJClaim(QuantifiedClaim, FormulaClaim):
+    """ΔJ as printed."""
+
+    kind: Literal["delta_j", "mse_summand", "lambda_factor"]
+    formula: str
+    up_to: Order | None = None
+
+    def formulas(self) -> dict[str, str]:
+        return {"formula": self.formula}
+
+    @property
+    def _what(self) -> str:
+        return _PRINTED_AS[self.kind]
+
+    def _delta_j(self, formula: sympy.Expr) -> sympy.Expr:
+        """ΔJ as the claim's formula prints it."""
+        return formula - 1 if self.kind == "lambda_factor" else formula
+
+    # -- of one H ---------------------------------------------------------------------------------
+
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        step_map, read = self.read(findings)
+        printed = self._delta_j(read["formula"])
+        gap = gaps(step_map, [(self._what, printed, step_map.delta_j)])[0]
+        if self.up_to is None:
+            holds = "as printed, agrees with det J − 1 exactly, for all p, q, h and parameters"
+            return self.from_gaps([gap], f"{self._what}, {holds}")
+        wrong = self.differs_below(self._what, gap.ring, gap.difference, self.up_to)
+        difference = to_text(-grouped(gap.ring, gap.difference))
+        evidence = prose(
+            f"{self._what} as printed differs from det J − 1 by O(", Formula(f"h^{self.up_to}"),
+            "): the difference is ", Formula(difference),
+        )  # fmt: skip
+        return wrong or self.result(Verdict.PROVED, evidence)
+
+    # -- of every H -------------------------------------------------------------------------------
+
+    def check_every(self) -> None:
+        super().check_every()
+        if self.up_to is None:
+            raise InputError("up_to", "", "is missing: of every H only the first term is known")
+        every_formula.read(self.formula, self.id)
+
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        """Up to the first term, which is what is known of ΔJ for every H."""
+        if proof.area_preserving is not True and (proof.order is None or not proof.leading):
+            return self.result(Verdict.UNDECIDED, proof.reason)
+        up_to = self.up_to or 0
+        computed, beyond = sympy.S.Zero, up_to
+        if proof.area_preserving is not True and proof.order is not None:
+            computed, beyond = H_STEP**proof.order * self._every(proof.leading), proof.order + 1
+        difference = self._delta_j(self._every(self.formula)) - computed
+        names = {s.name for s in difference.free_symbols} | {"p", "q", "h"}
+        ring, (x,) = embed([difference], sorted(names))
+        wrong = self.differs_below(self._what, ring, x, min(up_to, beyond))
+        if wrong is not None:
+            return wrong
+        if up_to > beyond:
+            evidence = prose(
+                f"{self._what}: for every H it is known up to O(", Formula(f"h^{beyond}"),
+                "), and so far is as printed",
+            )  # fmt: skip
+            return self.result(Verdict.UNDECIDED, evidence)
+        holds = prose(f"{self._what} is as printed for every H: ", proof.reason)
+        return self.result(Verdict.PROVED, holds)
+
+    def _every(self, formula: str) -> sympy.Expr:
+        separable = self.every == EVERY_SEPARABLE
+        return every_formula.normal(every_formula.read(formula, self.id), separable=separable)
+
+    def of_one(self, hamiltonian: Hamiltonian) -> Self:
+        if self.every is None:
+            return self
+        own = every_formula.of_hamiltonian(every_formula.read(self.formula, self.id), hamiltonian)
+        return self.model_copy(update={"every": None, "formula": own})
+
+
+CLAIM = DeltaJClaim

@@ -1,0 +1,86 @@
+"""The map preserves the region's area: exactly, or changes it by this part of it at most."""
+
+from collections.abc import Sequence
+from typing import Annotated, Literal
+
+import sympy
+from pydantic import Field
+
+from verify.algebra.formula import symbol
+from verify.arithmetic.exact import text
+from verify.claims.findings import Findings
+from verify.claims.regions import HEAD, FlowClaim, Image, within
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Formula, Number, Prose, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.regions import EXACT_FLOW, FlowImage
+from verify.scenes.values import Number as ExactNumber
+from verify.verdict import Verdict
+
+_LIOUVILLE = Formula("∂(−H_q)/∂p + ∂H_p/∂q = 0")
+
+
+class FlowAreaClaim(FlowClaim):
+    """Exactly by proof; or within so much, by what was measured."""
+
+    kind: Literal["flow_area"]
+    within: Annotated[ExactNumber, Field(gt=0)] | None = None
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        images = self.images(findings)
+        details = [[*HEAD, "change of area", "its error", "mean of Λ"], *map(_row, images)]
+        known = [image for image in images if image.found.area_change is not None]
+        scene = findings.scene(self.scene)
+        if self.scheme == EXACT_FLOW and conserves_area(scene.exact_hamiltonian()):
+            said = prose(_LIOUVILLE, " identically, so that det ≡ 1; ", _largest(known))
+            return self.result(Verdict.PROVED, said, details)
+        if images and all(image.found.area_preserving for image in images):
+            return self.result(Verdict.PROVED, "det J ≡ 1; " + _largest(known), details)
+        doubtful = [i for i in images if i.found.problem or i.found.agree is False]
+        certain = [image for image in known if image not in doubtful]
+        ends = [image.change for image in certain]
+        refuted = any(low > (self.within or 0) for low, _ in ends)  # one image is enough
+        if not refuted and (doubtful or not known):
+            reasons = (image.found.problem for image in doubtful if image.found.problem)
+            reason = next(reasons, "the two measures disagree")
+            return self.result(Verdict.UNDECIDED, reason, details)
+        if self.within is None:
+            verdict = Verdict.REFUTED if refuted else Verdict.UNDECIDED
+            return self.result(verdict, _largest(certain), details)
+        against = prose(
+            _largest(certain), f", the largest of {len(certain)} changes; allowed here: ",
+            Number(text(self.within)),
+        )  # fmt: skip
+        return self.result(within(ends, self.within), against, details)
+
+
+def conserves_area(hamiltonian: Hamiltonian) -> bool:
+    """Liouville's theorem, checked for this H: its vector field has no divergence."""
+    h, p, q = hamiltonian.expression, symbol("p"), symbol("q")
+    divergence = sympy.diff(-sympy.diff(h, q), p) + sympy.diff(sympy.diff(h, p), q)
+    return bool(sympy.expand(divergence) == 0)
+
+
+def _row(image: Image) -> list[str]:
+    found = image.found
+    change = found.area_change or "unknown"
+    return [*image.cells, change, found.probe_error or "unknown", _mean(found)]
+
+
+def _mean(image: FlowImage) -> str:
+    if image.mean_lambda is None:
+        return "0, by proof" if image.area_preserving else "not computed"
+    return prose(Number(image.mean_lambda), " ± ", Number(image.mean_lambda_error or ""))
+
+
+def _largest(known: Sequence[Image]) -> Prose:
+    if not known:
+        return prose("nothing was measured")
+    image = max(known, key=lambda each: each.change.high)
+    return prose(
+        "the area of the region changes by ", Number(image.found.area_change or ""), " ± ",
+        Number(image.found.probe_error or ""), " of it (", image.place, ")",
+    )  # fmt: skip
+
+
+CLAIM = FlowAreaClaim

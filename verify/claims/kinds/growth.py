@@ -1,0 +1,118 @@
+"""How the greatest |Λ| of [0, t] grows as t goes on to the end of the run.
+
+It is read from runs to T/8, T/4, T/2 and T: the greatest |Λ| of [0, t] does not decrease in t, and
+each doubling of t multiplies it by some 2^e. The growth is `linear` where every e is within 1/8 of
+1, and `bounded` where every e is within 1/8 of 0; what is neither is UNDECIDED. This is of [0, T],
+and MEASURED at best: what holds for all times is for a proof to say.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+from typing import Literal
+
+import flint
+
+from verify.arithmetic.arb import Ball, fixed, in_reach, rational_ball, shown
+from verify.arithmetic.exact import text
+from verify.claims.findings import Findings
+from verify.claims.on_runs import RunClaim
+from verify.claims.runs import QUANTITIES, NoValueError
+from verify.errors import InputError
+from verify.prose import Formula, Number, joined, number, prose
+from verify.runs.task import RunTask
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.scene import Scene
+from verify.studies.plan import grid_task
+from verify.verdict import Verdict
+
+_DOUBLINGS = 3
+_LEAST_STEPS = 64  # of the longest run: fewer show no growth
+_EXPONENTS = {"bounded": 0, "linear": 1}
+_NEAR = Fraction(1, 8)
+
+
+class GrowthClaim(RunClaim):
+    """The growth of |Λ| along one run."""
+
+    one_run = True
+    always_own = True
+    only_here = ""
+    kind: Literal["growth"]
+    growth: Literal["bounded", "linear"]
+
+    def quantities(self) -> tuple[str, ...]:
+        return ("lambda_max",)
+
+    def check_scene(self, scene: Scene) -> None:
+        self.tasks(scene)
+
+    def tasks(self, scene: Scene) -> list[RunTask]:
+        """The runs to T/8, T/4, T/2 and T. InputError where there are several, or short ones."""
+        grid = scene.grid
+        if grid is None or len(grid.step_sizes) > 1 or len(grid.initial_values) > 1:
+            raise InputError("growth", scene.name, "speaks of one run; give step_size, q and p")
+        whole = grid_task(scene, self.scheme, grid.step_sizes[0], 0)
+        if whole.steps < _LEAST_STEPS:
+            raise InputError("growth", whole.steps, f"needs {_LEAST_STEPS} steps or more")
+        halved = [whole.steps >> k for k in range(_DOUBLINGS, -1, -1)]
+        return [whole.model_copy(update={"steps": steps}) for steps in halved]
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        """MEASURED at best, however rigorous the bounds are: four runs are not all times."""
+        return self.compared(findings)
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        scene = findings.scene_of(self)
+        results = [findings.results[task.key] for task in self.tasks(scene)]
+        runs = [run for run in results if isinstance(run, RunResult)]
+        if all(map(_is_zero, runs)):
+            holds = self.growth == "bounded"
+            evidence = "ΔJ ≡ 0 is proved: Λ is exactly 0 after every step"
+            return self.result(Verdict.PROVED if holds else Verdict.REFUTED, evidence)
+        values = [_largest(run) for run in runs]
+        exponents = [_exponent(x, y) for x, y in pairwise(values)]
+        found = (
+            prose(number(shown(value, 4)), " to t = ", Number(_end(run)))
+            for value, run in zip(values, runs, strict=True)
+        )
+        by = ("unknown" if not in_reach(e) else number(fixed(e, 2)) for e in exponents)
+        evidence = prose(
+            "max |Λ| is ", joined(", ", found), ": it grows like ", Formula("t^e"), ", e = ",
+            joined(", ", by),
+        )  # fmt: skip
+        return self.result(_judge(self.growth, exponents), evidence)
+
+
+def _is_zero(run: RunResult) -> bool:
+    """Whether Λ is proved to be 0."""
+    value = run.values.get("lambda_max")
+    exactly = "lambda_max" in run.exact and value is not None
+    return exactly and value is not None and Fraction(value.value) == Fraction(value.bound) == 0
+
+
+def _largest(run: RunResult) -> Ball:
+    if run.status != "finished":
+        raise NoValueError(run)
+    return QUANTITIES["lambda_max"](run)
+
+
+def _end(run: RunResult) -> str:
+    return text(Fraction(run.step_size) * run.steps)
+
+
+def _exponent(first: Ball, last: Ball) -> Ball:
+    """e in last = first · 2^e; not finite where one of them may be 0."""
+    return (last / first).log() / flint.arb(2).log()
+
+
+def _judge(claimed: str, exponents: Sequence[Ball]) -> Verdict:
+    near = rational_ball(_NEAR)
+    fitting = [name for name, e in _EXPONENTS.items() if all(abs(x - e) < near for x in exponents)]
+    if not fitting:
+        return Verdict.UNDECIDED
+    return Verdict.MEASURED if claimed in fitting else Verdict.REFUTED
+
+
+CLAIM = GrowthClaim

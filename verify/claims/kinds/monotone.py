@@ -1,0 +1,52 @@
+"""For each initial value the quantity does this as the step size increases."""
+
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, Literal
+
+from verify.arithmetic.arb import shown
+from verify.claims.findings import Findings
+from verify.claims.on_runs import RunClaim
+from verify.claims.runs import LABELS, QUANTITIES, Quantity, all_hold, sign, start_of, table_of
+from verify.prose import Number, number, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.verdict import Verdict
+
+
+class MonotoneClaim(RunClaim):
+    """A quantity that increases, or decreases, with the step size."""
+
+    only_here = ""
+    kind: Literal["monotone"]
+    quantity: Quantity
+    direction: Literal["increases", "decreases"]
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        rows = self.run_rows(findings, self.quantity)
+        quantity, way = QUANTITIES[self.quantity], 1 if self.direction == "increases" else -1
+        label = LABELS[self.quantity]
+        verdicts: list[bool | None] = []
+        counterexamples = []
+        for one, two in (pair for row in rows for pair in pairwise(row)):
+            gap = way * (quantity(two) - quantity(one))
+            verdicts.append(sign(gap))
+            if gap < 0:
+                counterexamples.append(prose(
+                    start_of(one), ": from h = ", Number(one.step_size), " to ",
+                    Number(two.step_size), f", {label} goes from ", number(shown(quantity(one), 4)),
+                    " to ", number(shown(quantity(two), 4)),
+                ))  # fmt: skip
+        total = f"{len(verdicts)} neighbouring pairs"
+        evidence = prose(f"{label} {self.direction} between all {total} of step sizes")
+        if counterexamples:
+            evidence = f"{len(counterexamples)} of {total} go the other way; " + counterexamples[0]
+        elif all_hold(verdicts) is Verdict.UNDECIDED:
+            evidence = prose(f"{verdicts.count(None)} of {total} of step sizes are not told apart")
+        return self.result(all_hold(verdicts), evidence, table_of(rows, self.quantity))
+
+    def drawn_runs(self, step_size: Fraction, steps: int) -> dict[str, Any]:
+        """Two step sizes over one time, which it compares."""
+        return {"step_sizes": (step_size / 2, step_size), "time": steps * step_size}
+
+
+CLAIM = MonotoneClaim

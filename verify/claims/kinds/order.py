@@ -1,0 +1,35 @@
+"""ΔJ = c h^order + …, c not the zero function; with `at_least`, ΔJ = O(h^order)."""
+
+from typing import TYPE_CHECKING, Literal
+
+from verify.claims.findings import Findings
+from verify.claims.orders import Order, OrderedClaim, ProvedOrder, delta_j_order, map_of
+from verify.scenes.results.claim import ClaimResult
+from verify.verdict import Verdict
+
+if TYPE_CHECKING:
+    from verify.proof.every_proof import EveryProof
+
+
+class OrderClaim(OrderedClaim):
+    """The order of ΔJ in h."""
+
+    kind: Literal["order"]
+    order: Order
+
+    @property
+    def claimed(self) -> int:
+        return self.order
+
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        return self.judge_known(delta_j_order(map_of(self, findings)))
+
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        preserves, order = proof.area_preserving, proof.order
+        if preserves is None and order is None:
+            return self.result(Verdict.UNDECIDED, proof.reason)
+        known = ProvedOrder(order or 0, order is not None, preserves, proof.reason)
+        return self.judge_known(known)
+
+
+CLAIM = OrderClaim

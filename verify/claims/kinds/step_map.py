@@ -1,0 +1,38 @@
+"""The scheme's step map is this one; `q_next` may use p_next."""
+
+from typing import Literal
+
+from verify.algebra.formula import symbol
+from verify.claims.findings import Findings
+from verify.claims.formulas import FormulaClaim, gaps
+from verify.proof.order import convergence_of
+from verify.prose import Formula, prose
+from verify.scenes.results.claim import ClaimResult
+
+
+class StepMapClaim(FormulaClaim):
+    """p′ and q′ as printed."""
+
+    kind: Literal["step_map"]
+    p_next: str
+    q_next: str
+
+    def formulas(self) -> dict[str, str]:
+        return {"p_next": self.p_next, "q_next": self.q_next}
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        step_map, read = self.read(findings)
+        q_next = read["q_next"].subs(symbol("p_next"), read["p_next"])
+        pairs = [("p′", read["p_next"], step_map.p_next), ("q′", q_next, step_map.q_next)]
+        found = gaps(step_map, pairs)
+        if any(gap.decision.zero is not True for gap in found):
+            return self.from_gaps(found, "")
+        order = convergence_of(step_map).order
+        holds = prose(
+            f"p′ and q′ are those of {self.scheme}, term by term, and agree with the exact flow up "
+            "to ", "every order looked at" if order is None else Formula(f"h^{order}"),
+        )  # fmt: skip
+        return self.from_gaps(found, holds)
+
+
+CLAIM = StepMapClaim

@@ -1,0 +1,147 @@
+"""Printed values, lg MSE by default, for each step size."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import product, repeat
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from verify.arithmetic.arb import Ball, in_reach, lg, rational_ball
+from verify.arithmetic.exact import text
+from verify.claims.findings import Findings
+from verify.claims.on_runs import RunClaim
+from verify.claims.printed import Row, cell, holds, places, rounds_to, short
+from verify.claims.runs import LABELS, QUANTITIES, all_hold, middle, start_of
+from verify.errors import InputError
+from verify.prose import Formula, Prose, joined, number, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.scene import Scene
+from verify.scenes.values import StepSize
+from verify.verdict import Verdict
+
+
+class TableClaim(RunClaim):
+    """`printed` is one row that every initial value has, `rows` one row for each initial value."""
+
+    kind: Literal["table"]
+    quantity: Literal["lg_mse", "mse", "lambda", "lg_abs_lambda"] = "lg_mse"
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
+    printed: Row | None = None
+    rows: Annotated[tuple[Row, ...], Field(min_length=1, max_length=1000)] | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.printed is None) == (self.rows is None):
+            raise InputError("printed, rows", "", "give one of the two")
+        name = "printed" if self.rows is None else "rows"
+        for row in self.rows or (self.printed or (),):
+            if len(row) != len(self.step_sizes):
+                raise InputError(name, len(row), f"give {len(self.step_sizes)} values in a row")
+        return self
+
+    def printed_texts(self) -> list[str]:
+        return [cell for row in self.rows or (self.printed or (),) for cell in row]
+
+    def check_scene(self, scene: Scene) -> None:
+        if scene.grid is None:
+            return
+        count = len(scene.grid.initial_values)
+        if self.rows is not None and len(self.rows) != count:
+            raise InputError("rows", len(self.rows), f"give {count}, one an initial value")
+        for h in self.step_sizes:
+            if h not in scene.grid.step_sizes:
+                raise InputError("step_size", text(h), "is not in the scene's grid")
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        rows = self.run_rows(findings, self.quantity)
+        printed_rows = self.rows or (self.printed or (),) * len(rows)
+        if len(printed_rows) != len(rows):
+            raise InputError(f"claim {self.id}: rows", len(printed_rows), f"give {len(rows)} rows")
+        details: list[list[str]] = [["initial value", *(f"h = {text(h)}" for h in self.step_sizes)]]
+        if self.printed is not None:
+            details.append(["printed, for all", *self.printed])
+        verdicts: list[bool | None] = []
+        values: list[Ball] = []
+        for row, printed in zip(rows, printed_rows, strict=True):
+            runs = [self._at(row, h) for h in self.step_sizes]
+            verdicts += map(holds, runs, repeat(self.quantity), printed)
+            if self.rows is not None:
+                details.append([prose("printed, ", start_of(row[0])), *printed])
+            own = map(cell, runs, repeat(self.quantity), map(places, printed))
+            details.append([start_of(row[0]), *own])
+            values += [QUANTITIES[self.quantity](run) for run in runs]
+        if False not in verdicts:
+            evidence = self._seen(values) + ", as printed"
+            return self.result(all_hold(verdicts), evidence, details)
+        grid = findings.scene(self.scene).grid
+        evidence = prose(
+            f"{verdicts.count(False)} of {len(verdicts)} entries are wrong: ", self._seen(values),
+            self._named(rows[0], grid.time if grid else None),
+        )  # fmt: skip
+        return self.result(Verdict.REFUTED, evidence, details)
+
+    def _at(self, row: Sequence[RunResult], h: Fraction) -> RunResult:
+        found = next((run for run in row if Fraction(run.step_size) == h), None)
+        if found is None:
+            name = f"claim {self.id}: step_sizes"
+            raise InputError(name, text(h), "is not in the scene's grid")
+        return found
+
+    def _seen(self, values: Sequence[Ball]) -> Prose:
+        label = LABELS[self.quantity]
+        known = sorted((v for v in values if in_reach(v)), key=middle)
+        if not known:
+            return prose(f"no computed {label} is known")
+        low, high = (number(short(v, self.quantity)) for v in (known[0], known[-1]))
+        return prose(f"computed {label} lies between ", low, " and ", high)
+
+    def _named(self, row: Sequence[RunResult], time: Fraction | None) -> Prose:
+        """What a wrong row is, where it is the logarithm of a product."""
+        if self.quantity != "lg_mse" or self.printed is None:
+            return prose("")
+        runs = [self._at(row, h) for h in self.step_sizes]
+        names = [Formula(f"lg({_monomial(e)})") for e in _identities(runs, self.printed, time)]
+        if not names:
+            return prose("")
+        return prose("; the printed row is ", joined(" = ", names), " to all its digits")
+
+
+def _identities(
+    runs: Sequence[RunResult], printed: Sequence[str], time: Fraction | None
+) -> list[tuple[int, int, int]]:
+    """Products hᵃ Nᵇ Tᶜ whose lg is the printed row to all its digits, simplest first.
+
+    Looked for among small exponents. As N h = T (up to a step), one of a, b, c can be 0.
+    """
+    found = []
+    for exponents in product(range(-6, 7), range(-3, 4), range(-3, 4)):
+        if 0 not in exponents or not any(exponents):
+            continue
+        if all(
+            rounds_to(lg(_power(run, time, exponents)), each) is True
+            for run, each in zip(runs, printed, strict=True)
+        ):
+            found.append(exponents)
+    return sorted(found, key=lambda each: (sum(map(abs, each)), each))
+
+
+def _power(run: RunResult, time: Fraction | None, exponents: tuple[int, int, int]) -> Ball:
+    a, b, c = exponents
+    h, steps = Fraction(run.step_size), Fraction(run.steps)
+    length = h * steps if time is None else time
+    return rational_ball(h**a * steps**b * length**c)
+
+
+def _monomial(exponents: tuple[int, int, int]) -> str:
+    above = [_factor(n, e) for n, e in zip("hNT", exponents, strict=True) if e > 0]
+    below = [_factor(n, -e) for n, e in zip("hNT", exponents, strict=True) if e < 0]
+    return (" ".join(above) or "1") + (f"/{' '.join(below)}" if below else "")
+
+
+def _factor(name: str, exponent: int) -> str:
+    return name if exponent == 1 else f"{name}^{exponent}"
+
+
+CLAIM = TableClaim

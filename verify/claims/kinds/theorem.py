@@ -1,0 +1,35 @@
+"""What a paper says in words, judged by the function of that `name` in `verify.claims.theorems`."""
+
+from typing import Literal, Self
+
+from pydantic import model_validator
+
+from verify.claims import theorems
+from verify.claims.claim import Claim
+from verify.claims.findings import Findings
+from verify.errors import InputError
+from verify.scenes.results.claim import ClaimResult
+
+
+class TheoremClaim(Claim):
+    """A claim in words, which has neither scene nor scheme."""
+
+    on_scene = False
+    only_here = "a theorem says nothing of drawn Hamiltonians"
+    kind: Literal["theorem"]
+    name: str
+    scheme: str = ""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.name not in theorems.names():
+            allowed = ", ".join(theorems.names())
+            raise InputError("name", self.name, f"unknown; allowed: {allowed}")
+        return self
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        found = theorems.check_theorem(self.name)
+        return self.result(found.verdict, found.evidence, found.details, found.proof)
+
+
+CLAIM = TheoremClaim

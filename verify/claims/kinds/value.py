@@ -1,0 +1,56 @@
+"""MSE, or Λ, of one run as printed; or its lg, for Λ that of |Λ|."""
+
+from typing import Literal, Self
+
+from pydantic import model_validator
+
+from verify.claims.findings import Findings
+from verify.claims.on_runs import RunClaim
+from verify.claims.printed import Printed, holds, shown_to
+from verify.claims.runs import LABELS, all_hold
+from verify.errors import InputError
+from verify.prose import Number, number, prose
+from verify.scenes.results.claim import ClaimResult
+
+_ALSO_SHOWN = 3  # digits beyond those that are printed
+_SAYS = {True: "which rounds to", False: "which does not round to", None: "not known to round to"}
+
+
+class ValueClaim(RunClaim):
+    """One printed number of one run."""
+
+    one_run = True
+    always_own = True
+    kind: Literal["mse", "lambda"]
+    printed: Printed | None = None
+    lg_printed: Printed | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.printed is None) == (self.lg_printed is None):
+            raise InputError("printed, lg_printed", "", "give one of the two")
+        return self
+
+    def quantities(self) -> tuple[str, ...]:
+        if self.lg_printed is None:
+            return (self.kind,)
+        return ("lg_mse" if self.kind == "mse" else "lg_abs_lambda",)
+
+    def printed_texts(self) -> list[str]:
+        return [self.printed or self.lg_printed or ""]
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        (quantity,), (printed,) = self.quantities(), self.printed_texts()
+        (run, *more), *others = self.run_rows(findings, quantity)
+        if more or others:
+            raise InputError(f"claim {self.id}", "", "speaks of one run; give step_size, q and p")
+        rounds = holds(run, quantity, printed)
+        known = shown_to(run, quantity, len(printed.partition("e")[0]) + _ALSO_SHOWN)
+        evidence = prose(
+            f"{LABELS[quantity]} = ", number(known), f", {_SAYS[rounds]} ", Number(printed),
+            f", in {run.steps} steps",
+        )  # fmt: skip
+        return self.result(all_hold([rounds]), evidence)
+
+
+CLAIM = ValueClaim

@@ -1,0 +1,197 @@
+"""Claims about numbers, decided by runs whose values carry error bounds.
+
+A comparison counts only where the bounds do not touch what it is compared with; else the answer is
+UNDECIDED. Keys that say of which runs: `step_size` or `step_sizes`, `time` or `steps`, `q` and `p`
+or `initial_values`, and `digits`. What a claim on a named scene does not say of its runs is the
+scene's.
+"""
+
+from abc import abstractmethod
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from verify.arithmetic.arb import precision
+from verify.claims.claim import Claim
+from verify.claims.findings import Findings
+from verify.claims.runs import NEEDS, NoValueError
+from verify.errors import InputError
+from verify.execution.task import Task
+from verify.scenes.frozen import Frozen
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
+from verify.scenes.scene import Grid, Scene
+from verify.scenes.values import AUTO, Digits, InitialValue, Number, Steps, StepSize, Time
+from verify.studies.plan import grid_task
+from verify.verdict import Verdict
+
+_LEAST_DIGITS = 20  # certified of every value, unless the claim asks for more or fewer
+_MORE_DIGITS = 5  # than are printed
+
+
+class RunKeys(Frozen):
+    """Of which runs; None where the claim does not say."""
+
+    step_size: StepSize | None = None
+    step_sizes: tuple[StepSize, ...] | None = None
+    time: Time | None = None
+    steps: Steps | None = None
+    q: Number | None = None
+    p: Number | None = None
+    initial_values: tuple[InitialValue, ...] | None = None
+    digits: Digits | None = None
+
+
+class RunClaim(Claim):
+    """The base of the kinds that runs decide.
+
+    `always_own`: it takes certified runs of its own, whatever the scene has.
+    """
+
+    exact = False
+    run_keys = tuple(RunKeys.model_fields)
+    only_here = "printed numbers are those of its own runs"
+    always_own: ClassVar[bool] = False
+
+    def quantities(self) -> tuple[str, ...]:
+        """What it compares, of `verify.claims.runs.QUANTITIES`."""
+        names = (getattr(self, "quantity", ""), getattr(self, "than", ""))
+        return tuple(name for name in names if name)
+
+    def observables(self) -> tuple[str, ...]:
+        """What its runs compute: what it asks for, and nothing else."""
+        return tuple(dict.fromkeys(o for name in self.quantities() for o in NEEDS[name]))
+
+    def printed_texts(self) -> list[str]:
+        """The decimals that it prints, all of whose digits are to be known."""
+        return []
+
+    # -- of which runs it speaks ------------------------------------------------------------------
+
+    def scene_of_its_own(
+        self, label: str, scene: Scene, runs: Mapping[str, Any]
+    ) -> tuple[str, Scene]:
+        return self._with_grid(label, scene, None, runs)
+
+    def scene_on(self, name: str, scene: Scene, runs: Mapping[str, Any]) -> tuple[str, Scene]:
+        if not runs:
+            super().scene_on(name, scene, runs)
+        # What names runs of the scene's grid among all of them asks for no others.
+        if self.always_own or set(runs) - set(type(self).model_fields):
+            bare = {"schemes": (self.scheme,), "grid": None, "separation": (), "series": ()}
+            return self._with_grid(name, scene.model_copy(update=bare), scene.grid, runs)
+        self.check_grid(name, scene)
+        return name, scene
+
+    def check_grid(self, name: str, scene: Scene) -> None:
+        """Raises InputError where the scene has no runs that the claim could speak of."""
+        if scene.grid is None:
+            raise InputError("scene", name, "has no [grid]; say which runs: step_size, steps, q, p")
+
+    def check_scene(self, scene: Scene) -> None:
+        grid = scene.grid
+        if grid is None:
+            return
+        if self.one_run and len(grid.step_sizes) * len(grid.initial_values) > 1:
+            raise InputError("", "", "speaks of one run; give step_size, q and p")
+
+    def _with_grid(
+        self, label: str, scene: Scene, base: Grid | None, runs: Mapping[str, Any]
+    ) -> tuple[str, Scene]:
+        keys = RunKeys.model_validate(runs)
+        longest = max((len(t.partition("e")[0]) for t in self.printed_texts()), default=0)
+        grid = Grid(
+            **_length(keys, base),
+            step_sizes=_step_sizes(keys, base),
+            initial_values=_initial_values(keys, base),
+            arithmetic=AUTO,
+            digits=keys.digits or max(_LEAST_DIGITS, longest + _MORE_DIGITS),
+            observables=self.observables(),
+        )
+        made = {**scene.model_dump(), "grid": grid}
+        return f"{label}: claim {self.id}", Scene.model_validate(made)
+
+    # -- what it needs, and its verdict -----------------------------------------------------------
+
+    def tasks(self, scene: Scene) -> Iterable[Task]:
+        grid = scene.grid
+        if grid is not None:
+            for start in range(len(grid.initial_values)):
+                for h in grid.step_sizes:
+                    yield grid_task(scene, self.scheme, h, start)
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        """ENCLOSED for what was measured where all runs have rigorous bounds."""
+        found = self.compared(findings)
+        runs = findings.runs(findings.scene(self.scene), self.scheme)
+        enclosed = all(run.error_kind == "enclosed" for run in runs)
+        if found.verdict is Verdict.MEASURED and enclosed:
+            return found.model_copy(update={"verdict": Verdict.ENCLOSED})
+        if found.verdict is Verdict.REFUTED and not enclosed:
+            said = found.evidence + " (by estimated error bounds)"
+            return found.model_copy(update={"evidence": said})
+        return found
+
+    def compared(self, findings: Findings) -> ClaimResult:
+        """As `compare`, and UNDECIDED where a run that it needs has no values."""
+        try:
+            with precision():
+                return self.compare(findings)
+        except NoValueError as error:
+            return self.result(Verdict.UNDECIDED, error.reason)
+
+    @abstractmethod
+    def compare(self, findings: Findings) -> ClaimResult:
+        """The verdict by the values of its runs: MEASURED where it holds."""
+
+    def run_rows(self, findings: Findings, *quantities: str) -> list[list[RunResult]]:
+        """The grid's runs: one row an initial value, its runs by increasing step size.
+
+        Raises InputError where the scene does not run what the claim speaks of, and NoValueError
+        where a run ended without values.
+        """
+        scene = findings.scene(self.scene)
+        runs = findings.runs(scene, self.scheme)
+        if not runs or scene.grid is None:
+            raise InputError("claim", self.id, "its scene has no runs of that scheme")
+        needed = [o for quantity in quantities for o in NEEDS[quantity]]
+        for run in runs:
+            if run.status != "finished":
+                raise NoValueError(run)
+            if missing := [name for name in needed if name not in run.values]:
+                raise InputError("claim", self.id, f"its scene does not observe {missing[0]}")
+        width = len(scene.grid.step_sizes)
+        rows = [runs[i : i + width] for i in range(0, len(runs), width)]
+        return [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
+
+
+def _length(keys: RunKeys, base: Grid | None) -> dict[str, Any]:
+    if keys.time is not None and keys.steps is not None:
+        raise InputError("steps", keys.steps, "give one of time and steps")
+    if keys.time is None and keys.steps is None:
+        if base is None:
+            raise InputError("time", "", "is missing: give time or steps")
+        return {"time": base.time, "steps": base.steps}
+    return {"time": keys.time, "steps": keys.steps}
+
+
+def _step_sizes(keys: RunKeys, base: Grid | None) -> tuple[Any, ...]:
+    if keys.step_size is not None and keys.step_sizes is not None:
+        raise InputError("step_size", keys.step_size, "give one of step_size and step_sizes")
+    if keys.step_size is not None:
+        return (keys.step_size,)
+    if keys.step_sizes is None and base is None:
+        raise InputError("step_size", "", "is missing")
+    return keys.step_sizes or (base.step_sizes if base else ())
+
+
+def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[InitialValue, ...]:
+    if keys.q is None and keys.p is None:
+        if keys.initial_values is None and base is None:
+            raise InputError("q", "", "is missing: give q and p, or initial_values")
+        return keys.initial_values or (base.initial_values if base else ())
+    if keys.initial_values is not None:
+        raise InputError("initial_values", "", "give these, or q and p")
+    if keys.q is None or keys.p is None:
+        raise InputError("p" if keys.p is None else "q", "", "is missing: give q and p")
+    return (InitialValue(q=keys.q, p=keys.p),)

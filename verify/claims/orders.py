@@ -1,0 +1,103 @@
+"""Claims that say an order in h, and what is proved of such an order."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Annotated, Self
+
+from pydantic import Field
+
+from verify.algebra.formula import to_text
+from verify.claims.claim import Claim
+from verify.claims.findings import Findings
+from verify.claims.formulas import step_map_of, witness_of
+from verify.claims.quantified import QuantifiedClaim
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.expansion import MOST_ORDERS
+from verify.proof.order import convergence_of, leading_of
+from verify.prose import Formula, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.schemes.step_map import StepMap
+from verify.verdict import Verdict
+
+Order = Annotated[int, Field(ge=1, le=64, strict=True)]
+
+
+class OrderedClaim(QuantifiedClaim):
+    """The base of the kinds that say an order; with `at_least`, that it is no lower one."""
+
+    at_least: bool = False
+
+    @property
+    @abstractmethod
+    def claimed(self) -> int:
+        """The order that is claimed."""
+
+    def judge_known(self, known: "ProvedOrder") -> ClaimResult:
+        """Whether what is proved is as claimed."""
+        return self.result(known.verdict(self.claimed, at_least=self.at_least), known.evidence)
+
+    def of_one(self, hamiltonian: Hamiltonian) -> Self:
+        """An order that is not passed for all H together may well be passed for one."""
+        return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
+
+
+@dataclass(frozen=True)
+class ProvedOrder:
+    """What is proved of an order: it is at least `least`, and no more than that where `exact`.
+
+    `vanishes`: whether it is that of the zero function, which has every order; None where that is
+    not decided. `evidence` says so in one line.
+    """
+
+    least: int
+    exact: bool
+    vanishes: bool | None
+    evidence: str
+
+    def verdict(self, order: int, *, at_least: bool) -> Verdict:
+        """Whether the order is this one, or with `at_least` no lower one."""
+        if at_least:
+            if order <= self.least or self.vanishes:
+                return Verdict.PROVED
+            return Verdict.REFUTED if self.exact else Verdict.UNDECIDED
+        if self.vanishes or order < self.least or (self.exact and order != self.least):
+            return Verdict.REFUTED
+        return Verdict.PROVED if self.exact else Verdict.UNDECIDED
+
+
+def map_of(claim: Claim, findings: Findings) -> StepMap:
+    """The exact map of the claim's scheme for its scene's H."""
+    return step_map_of(findings.scene_of(claim).exact_hamiltonian(), claim.scheme)
+
+
+def delta_j_order(step_map: StepMap) -> ProvedOrder:
+    """The order of ΔJ in h."""
+    leading = leading_of(step_map)
+    beyond, decision = MOST_ORDERS + 1, leading.decision
+    if decision.zero is True:
+        return ProvedOrder(beyond, False, True, "ΔJ is the zero function: det J ≡ 1")
+    power = beyond if leading.power is None else leading.power
+    if decision.zero is None or leading.power is None:
+        evidence = prose(
+            "ΔJ = O(", Formula(f"h^{power}"), "), and whether of higher order is not decided",
+            "; ΔJ is not the zero function" if decision.zero is False else "",
+        )  # fmt: skip
+        return ProvedOrder(power, False, decision.zero, evidence)
+    evidence = prose(
+        "ΔJ = (", Formula(to_text(leading.coefficient)), ")·", Formula(f"h^{power}"), " + O(",
+        Formula(f"h^{power + 1}"), ")", witness_of(decision, "the coefficient is"),
+    )  # fmt: skip
+    return ProvedOrder(power, True, False, evidence)
+
+
+def convergence_order(step_map: StepMap) -> ProvedOrder:
+    """To which power of h the map agrees with the exact flow."""
+    found = convergence_of(step_map)
+    if found.order is None:
+        evidence = f"the map agrees with the exact flow in all orders looked at, {MOST_ORDERS}"
+        return ProvedOrder(MOST_ORDERS, False, None, evidence)
+    agrees = prose("the map agrees with the exact flow up to ", Formula(f"h^{found.order}"))
+    if found.order < 0:
+        agrees = prose("the map does not agree with the exact flow even at h = 0")
+    more = " and no further" if found.decided else "; whether further is not decided"
+    return ProvedOrder(found.order, found.decided, False, agrees + more)

@@ -1,0 +1,56 @@
+"""A claim that may be made of every H, or of every H = T(p) + V(q); then it has no scene.
+
+"For every H" means: whatever H is. ΔJ = c h^r + … then has a c made of derivatives of H, and c is
+not zero for some H; det J ≡ 1 is false where some H has another det J.
+"""
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Literal, Self
+
+from verify.claims.claim import Claim
+from verify.claims.findings import Findings
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.results.claim import ClaimResult
+from verify.schemes import get
+
+if TYPE_CHECKING:
+    from verify.proof.every import EveryProof
+
+EVERY_SEPARABLE = "separable hamiltonian"
+
+
+class QuantifiedClaim(Claim):
+    """The base of the kinds that have `every`."""
+
+    every: Literal["hamiltonian", "separable hamiltonian"] | None = None
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        if self.every is None:
+            return self.judge_one(findings)
+        from verify.proof.every import prove_every
+
+        return self.judge_every(prove_every(self.scheme, separable=self.every == EVERY_SEPARABLE))
+
+    @abstractmethod
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        """The verdict for the scene's H."""
+
+    @abstractmethod
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        """The verdict for every H, by what is proved for all of them."""
+
+    def check_every(self) -> None:
+        """Raises InputError where the claim cannot be made of every H that it says."""
+        every_h = get(self.scheme).every_h
+        if every_h is None:
+            raise InputError("scheme", self.scheme, "is given for one H, not for every H")
+        if every_h.separable and self.every != EVERY_SEPARABLE:
+            problem = f"{self.scheme} takes H = T(p) + V(q) only; say {EVERY_SEPARABLE!r}"
+            raise InputError("every", self.every, problem)
+
+    def why_only_here(self) -> str:
+        return "" if self.every else self.only_here
+
+    def of_one(self, hamiltonian: Hamiltonian) -> Self:
+        return self.model_copy(update={"every": None})
