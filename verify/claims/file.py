@@ -10,7 +10,7 @@
     id = "eq-3"
     source = "Eq. 3"                # these three may be left out
     section = "2 The scheme"         # a report groups the claims by it
-    statement = "ΔJ is of order h³."
+    statement = "ΔJ is of order `h^3`."   # a formula stands between backticks
     kind = "order"
     order = 3
 

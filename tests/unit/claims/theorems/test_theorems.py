@@ -25,6 +25,7 @@ from verify.claims.theorems.differential import Flow, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Areas, Point, value
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import read_prose
 from verify.scenes.scene import read_toml
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -77,7 +78,7 @@ def test_the_claims_file_says_what_the_functions_judge() -> None:
     for table in tables:
         argument = check_theorem(table["name"])
         assert table["kind"] == "theorem"
-        assert (table["id"], table["source"], table["statement"]) == (
+        assert (table["id"], table["source"], read_prose(table["statement"])) == (
             argument.id, argument.source, argument.statement,
         )  # fmt: skip
 
