@@ -15,9 +15,21 @@ if TYPE_CHECKING:
     from verify.scenes.results.claim import ClaimResult
 
 REFUTED = 1  # exit status
+_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence")
 
 
-@click.command()
+class _Check(click.Command):
+    """Its help names the kinds of claims that there are, which are read only then."""
+
+    def format_epilog(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        from verify.claims.kinds import models
+
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text("Kinds: " + " ".join(models()))
+
+
+@click.command(cls=_Check)
 @click.argument("claims", metavar="CLAIMS")
 @click.option(
     "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
@@ -57,10 +69,6 @@ def check(
     q = 1.5
     p = 0
     printed = "-2.666e-06"            # or lg_printed
-
-    \b
-    Kinds: step_map jacobian delta_j order convergence_order area_preserving
-           mse lambda table bounded growth spread monotone less magnitude criteria theorem
     """
     from verify.claims.check import prepare
     from verify.claims.file import load_claims
@@ -73,8 +81,7 @@ def check(
     with progress_of(prepared.plan.tasks, keep) as done:
         found = prepared.run(Store(keep), where=where, done=done)
     if as_json:
-        keys = {"id", "kind", "source", "statement", "verdict", "evidence"}
-        show.print_json({"claims": [c.model_dump(mode="json", include=keys) for c in found]})
+        show.print_json({"claims": [{key: getattr(c, key) for key in _KEYS} for c in found]})
     else:
         _print(found)
     if any(claim.verdict == "REFUTED" for claim in found):
