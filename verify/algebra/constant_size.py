@@ -4,8 +4,6 @@ sympy settles signs and identities of constants by evaluating them, which for si
 never ends. Ball arithmetic says at once that such a constant is out of reach.
 """
 
-from typing import Any
-
 import flint
 import sympy
 
@@ -31,10 +29,10 @@ def within_reach(constant: sympy.Expr) -> bool:
     with working_precision(128):
         ball = _ball(constant)
         limit = flint.arb(2) ** MAX_BITS
-        return ball is not None and bool(ball.is_finite()) and bool(abs(ball) < limit)
+        return ball is not None and ball.is_finite() and abs(ball) < limit
 
 
-def _ball(node: sympy.Expr) -> Any:
+def _ball(node: sympy.Expr) -> flint.arb | None:
     """A ball around the constant, or None where this module does not know the expression."""
     if node.is_Rational:
         return flint.arb(flint.fmpq(int(node.p), int(node.q)))
@@ -42,8 +40,9 @@ def _ball(node: sympy.Expr) -> Any:
         return flint.arb.pi()
     if node is sympy.E:
         return flint.arb(1).exp()
-    arguments = [_ball(argument) for argument in node.args]
-    if any(a is None or not a.is_finite() for a in arguments):
+    balls = [_ball(argument) for argument in node.args]
+    arguments = [x for x in balls if x is not None and x.is_finite()]
+    if len(arguments) < len(balls):
         return None
     if node.is_Add:
         return sum(arguments, flint.arb(0))
@@ -55,4 +54,5 @@ def _ball(node: sympy.Expr) -> Any:
     if node.is_Pow:
         return arguments[0] ** arguments[1]
     method = _FUNCTIONS.get(node.func)
-    return getattr(arguments[0], method)() if method else None
+    found: flint.arb | None = getattr(arguments[0], method)() if method else None
+    return found

@@ -7,13 +7,12 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import flint
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.algebra.generator import Generator, Poly
+from verify.algebra.generator import Generator, Poly, System
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 
@@ -51,7 +50,7 @@ class DifferentialRing:
         self._inside: dict[int, list[int]] = {}
         self._rules: dict[int, Callable[[str], Poly]] = {}
         # Of equations, by their unknowns; see `verify.algebra.implicit_unknowns`.
-        self.systems: dict[int, Any] = {}
+        self.systems: dict[int, System] = {}
         self.expressions: dict[int, sympy.Expr] = {}  # of generators, by `verify.algebra.ring_text`
 
     # -- elements -----------------------------------------------------------------------------
@@ -167,7 +166,7 @@ class DifferentialRing:
         found = {}
         for power in range(x.degrees()[at] + 1):
             part = x.subs({at: 0})
-            if part != 0:
+            if not part.is_zero():
                 found[power] = part / math.factorial(power)
             x = x.derivative(at)
         return found
@@ -178,7 +177,7 @@ class DifferentialRing:
         self,
         kind: str,
         expression: sympy.Expr | None,
-        argument: Poly = None,
+        argument: Poly | None = None,
         degree: int = 1,
     ) -> Poly:
         """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
@@ -191,7 +190,7 @@ class DifferentialRing:
         self._by_index[index] = generator
         return self._gens[index]
 
-    def find(self, kind: str, argument: Poly, degree: int = 1) -> Poly | None:
+    def find(self, kind: str, argument: Poly | None, degree: int = 1) -> Poly | None:
         """The generator of that kind for that argument, where there is one."""
         for g in self.generators:
             if g.kind == kind and g.degree == degree and g.argument == argument:
@@ -205,7 +204,9 @@ class DifferentialRing:
     def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
         """d generator = outer · d inner."""
         partials = ((name, self.diff(inner, name)) for name in self.variables)
-        gradient = {name: self.multiply(outer, part) for name, part in partials if part != 0}
+        gradient = {
+            name: self.multiply(outer, part) for name, part in partials if not part.is_zero()
+        }
         self._gradients[self._gens.index(generator)] = gradient
 
     def gradient(self, index: int) -> dict[str, Poly]:

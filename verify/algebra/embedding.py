@@ -6,6 +6,7 @@ sines (and of all exponentials) decide together over which basis they are expand
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import flint
 import sympy
@@ -144,7 +145,7 @@ class _Builder:
             ring.relate(s, 2, s**2 + c**2 - 1)
             ring.set_gradient(c, -s, b)
             ring.set_gradient(s, c, b)
-        return lambda k: self.multiple(c, s, k, -1)
+        return partial(self.multiple, c, s, sign=-1)
 
     def exponential(
         self, b: Poly, functions: list[sympy.Expr]
@@ -161,14 +162,14 @@ class _Builder:
             ring.relate(s, 2, s**2 - c**2 + 1)
             ring.set_gradient(c, s, b)
             ring.set_gradient(s, c, b)
-        if c is not None:
-            return lambda k: self.multiple(c, s, k, 1)
+        if c is not None and s is not None:
+            return partial(self.multiple, c, s, sign=1)
         if e is None:
             e = ring.add("exp", sympy.exp(expression), b)
             ring.set_gradient(e, e, b)
         return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
 
-    def multiple(self, c: Poly, s: Poly, k: int, sign: int) -> tuple[Poly, Poly]:
+    def multiple(self, c: Poly, s: Poly, k: int, *, sign: int) -> tuple[Poly, Poly]:
         """(c, s) at k times the argument by the addition theorem; `sign` is that of s² in it."""
         ring = self.ring
         even, odd = ring.one, ring.zero

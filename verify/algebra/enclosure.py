@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import product
-from typing import Any
 
 import flint
 
@@ -12,10 +11,13 @@ from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.generator import Generator, Poly, terms_of
 from verify.arithmetic.flint_precision import working_precision
 
+Ball = flint.arb
 _FAR_POINTS = 200
 
 
-def enclose(ring: DifferentialRing, x: Any, point: dict[str, Fraction], precision: int) -> Any:
+def enclose(
+    ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
+) -> Ball | None:
     """A ball (flint.arb) that contains x at the point, or None where x is not defined.
 
     Leaves flint's global context as it was. A polynomial in the variables is evaluated exactly.
@@ -34,7 +36,17 @@ def enclose(ring: DifferentialRing, x: Any, point: dict[str, Fraction], precisio
         return enclose_over(ring, x, exact)
 
 
-def enclose_over(ring: DifferentialRing, x: Any, box: Mapping[str, Any]) -> Any:
+def enclosed(
+    ring: DifferentialRing, x: Poly, point: Mapping[str, Fraction], precision: int
+) -> Ball:
+    """As `enclose`, of what is defined there; ValueError where it may not be."""
+    ball = enclose(ring, x, point, precision)
+    if ball is None:
+        raise ValueError(f"an element is not defined at {dict(point)}")
+    return ball
+
+
+def enclose_over(ring: DifferentialRing, x: Poly, box: Mapping[str, Ball]) -> Ball | None:
     """A ball that contains x at every point of a box of balls, or None where x may be undefined.
 
     In flint's present precision.
@@ -44,11 +56,11 @@ def enclose_over(ring: DifferentialRing, x: Any, box: Mapping[str, Any]) -> Any:
 
 
 def enclose_all(
-    ring: DifferentialRing, elements: Sequence[Any], box: Mapping[str, Any]
-) -> list[Any] | None:
+    ring: DifferentialRing, elements: Sequence[Poly], box: Mapping[str, Ball]
+) -> list[Ball] | None:
     """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
-    values: dict[int, Any] = {}
-    powers: dict[tuple[int, int], Any] = {}
+    values: dict[int, Ball] = {}
+    powers: dict[tuple[int, int], Ball] = {}
     for g in ring.generators_in(*elements):
         if g.kind == "variable":
             values[g.index] = box[g.name]
@@ -57,28 +69,29 @@ def enclose_all(
         elif g.kind == "solved":
             return None  # where the equations have a solution is not looked into
         elif g.kind == "stage":
-            values[g.index] = _at(g.argument, values, powers)
+            values[g.index] = _at(g.inner, values, powers)
         else:
-            values[g.index] = BALLS[g.kind](_at(g.argument, values, powers), g.degree)
+            values[g.index] = BALLS[g.kind](_at(g.inner, values, powers), g.degree)
         if not values[g.index].is_finite():
             return None
     return [_at(x, values, powers) for x in elements]
 
 
-def power_of(x: Any, n: int) -> Any:
+def power_of(x: Ball, n: int) -> Ball:
+    """xⁿ of a ball, n ≥ 1, as narrow as its squares are."""
     # arb's own ** goes by the logarithm for an exponent that it does not see to be an integer,
     # and is then undefined around 0.
     half = square(power_of(x, n // 2)) if n > 1 else flint.arb(1)
     return half * x if n % 2 else half
 
 
-def square(x: Any) -> Any:
+def square(x: Ball) -> Ball:
     """x² of a ball: as narrow as its ends are, which x · x is not."""
     low, high = x.abs_lower(), x.abs_upper()
     return (low * low).union(high * high)
 
 
-BALLS: dict[str, Callable[[Any, int], Any]] = {
+BALLS: dict[str, Callable[[Ball, int], Ball]] = {
     "sin": lambda x, _: x.sin(),
     "cos": lambda x, _: x.cos(),
     "exp": lambda x, _: x.exp(),
@@ -91,7 +104,7 @@ BALLS: dict[str, Callable[[Any, int], Any]] = {
 }
 
 
-def _at(x: Any, values: dict[int, Any], powers: dict[tuple[int, int], Any]) -> Any:
+def _at(x: Poly, values: Mapping[int, Ball], powers: dict[tuple[int, int], Ball]) -> Ball:
     """`powers`: those of the values that were made for other elements, too."""
     total = flint.arb(0)
     present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
@@ -141,8 +154,7 @@ def _halton_points(count: int) -> list[tuple[Fraction, ...]]:
     return found
 
 
-Ball = Any  # flint.arb
-Terms = list[tuple[Any, list[tuple[int, int]]]]  # coefficients, generators with their powers
+Terms = list[tuple[flint.fmpq, list[tuple[int, int]]]]  # coefficients, generators with their powers
 
 
 class Enclosures:

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
+import flint
 import sympy
 
-Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+Poly = flint.fmpq_mpoly
 
 
 @dataclass(frozen=True)
@@ -22,17 +22,39 @@ class Generator:
     index: int
     kind: str
     expression: sympy.Expr | None
-    argument: Poly = None
+    argument: Poly | None = None
     degree: int = 1
+
+    @property
+    def inner(self) -> Poly:
+        """The argument; of a function, an inverse, a stage, an unknown: not of a variable or π."""
+        assert self.argument is not None  # noqa: S101 - the caller looks at the kind
+        return self.argument
 
     @property
     def name(self) -> str:
         """Of a variable."""
         assert self.kind == "variable"  # noqa: S101 - the caller looks at the kind
-        return str(self.expression.name)  # type: ignore[union-attr]
+        return str(self.expression)
 
 
-def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], Any]]:
+@dataclass(frozen=True)
+class System:
+    """Equations F(Z) = 0 of generators Z, solved for; see `verify.algebra.implicit_unknowns`.
+
+    `updates`: (∂F/∂Z)⁻¹ F; `determinants`: of the blocks that are divided by, whose product is
+    that of ∂F/∂Z; `starts`: where Newton's method begins; `added_to`: p or q, of which each unknown
+    is a change.
+    """
+
+    unknowns: tuple[Generator, ...]
+    starts: tuple[Poly, ...]
+    added_to: tuple[Poly, ...]
+    updates: tuple[Poly, ...]
+    determinants: tuple[Poly, ...]
+
+
+def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
     """Each monomial, as the powers of all generators, with its coefficient.
 
     Far faster than by a dictionary of flint's own making.
@@ -59,6 +81,6 @@ _FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
 }
 
 
-def rational_of(value: Any) -> sympy.Rational:
+def rational_of(value: flint.fmpq) -> sympy.Rational:
     """A flint rational as sympy's."""
     return sympy.Rational(int(value.numer()), int(value.denom()))

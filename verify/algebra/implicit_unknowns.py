@@ -10,29 +10,15 @@ does, Newton's method fails, and the kernel says so.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import sympy
 
-from verify.algebra.generator import Generator
+from verify.algebra.generator import System
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 
 Column = list[Poly]
 Matrix = Sequence[Sequence[Poly]]
-
-
-@dataclass(frozen=True)
-class System:
-    """`updates`: (∂F/∂Z)⁻¹ F; `determinants`: of the blocks that are divided by, whose product is
-    that of ∂F/∂Z; `starts`: where Newton's method begins; `added_to`: p or q, of which each unknown
-    is a change."""
-
-    unknowns: tuple[Generator, ...]
-    starts: tuple[Poly, ...]
-    added_to: tuple[Poly, ...]
-    updates: tuple[Poly, ...]
-    determinants: tuple[Poly, ...]
 
 
 def unknowns(ring: Ring, count: int) -> list[Poly]:
@@ -128,7 +114,7 @@ class Elimination:
     def _one_over(self, x: Poly) -> Poly:
         """1/x, with x = 1 at h = 0."""
         ring = self.ring
-        if x == 1:
+        if x.is_one():
             return x
         found = ring.find("inverse", x)
         if found is None:

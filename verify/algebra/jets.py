@@ -14,11 +14,10 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import product
-from typing import Any
 
 import flint
 
-Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+Poly = flint.fmpq_mpoly
 Series = list[Poly]
 
 

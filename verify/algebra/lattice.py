@@ -1,7 +1,6 @@
 """A basis for the arguments of sines or exponentials, over which they are expanded."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import flint
 
@@ -44,7 +43,7 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
     return elements, multiples
 
 
-def _rows(matrix: Any) -> list[list[int]]:
+def _rows(matrix: flint.fmpz_mat) -> list[list[int]]:
     return [[int(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())]
 
 

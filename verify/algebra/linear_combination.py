@@ -1,7 +1,6 @@
 """Whether a polynomial is a linear combination of others, by linear algebra over the rationals."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import flint
 
@@ -11,7 +10,7 @@ from verify.algebra.ring import Poly
 _PRIME = 2_305_843_009_213_693_951  # 2⁶¹ − 1
 
 
-def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, Any] | None, int]:
+def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, flint.fmpq] | None, int]:
     """({index: its coefficient} with Σ coefficient·column = wanted, the rank of the columns).
 
     None for the coefficients where there are none.
@@ -49,7 +48,7 @@ def may_combine(columns: Sequence[Poly], wanted: Poly) -> bool:
 
 def _by_monomial(
     elements: Sequence[Poly],
-) -> tuple[list[dict[tuple[int, ...], Any]], dict[tuple[int, ...], int]]:
+) -> tuple[list[dict[tuple[int, ...], flint.fmpq]], dict[tuple[int, ...], int]]:
     """Each one's coefficients by their monomials, and a row for each monomial that occurs."""
     terms = [dict(terms_of(x)) for x in elements]
     return terms, {m: k for k, m in enumerate({m for each in terms for m in each})}

@@ -43,23 +43,23 @@ class Series:
         ring, most = self.ring, self.most
         total = [ring.zero] * (most + 1)
         for i, x in enumerate(self.coefficients):
-            if x != 0:
+            if not x.is_zero():
                 for j, y in enumerate(other.coefficients[: most + 1 - i]):
-                    if y != 0:
+                    if not y.is_zero():
                         total[i + j] += x * y
         return Series(ring, tuple(map(ring.reduce, total)))
 
     @property
     def vanishes(self) -> bool:
         """Whether all coefficients that are kept are 0."""
-        return all(c == 0 for c in self.coefficients)
+        return all(c.is_zero() for c in self.coefficients)
 
     def times(self, x: Poly | Fraction) -> "Series":
         """Its product with what does not depend on h."""
         factor = self.ring.constant(x) if isinstance(x, Fraction) else x
         multiply = self.ring.multiply
         return Series(
-            self.ring, tuple(multiply(factor, c) if c != 0 else c for c in self.coefficients)
+            self.ring, tuple(c if c.is_zero() else multiply(factor, c) for c in self.coefficients)
         )
 
     def shifted(self, n: int) -> "Series":
@@ -85,7 +85,7 @@ def partials(ring: Ring, x: Poly) -> Partial:
 
 def at_point(partial: Partial, u: Series, v: Series) -> Series:
     """f(p + u, q + v) for the function f with these partial derivatives; u and v are O(h)."""
-    if u.coefficients[0] != 0 or v.coefficients[0] != 0:
+    if not (u.coefficients[0].is_zero() and v.coefficients[0].is_zero()):
         raise ValueError("the point is not (p, q) at h = 0")
     ring, most = u.ring, u.most
     total = Series.of(ring, [], most)
@@ -95,12 +95,12 @@ def at_point(partial: Partial, u: Series, v: Series) -> Series:
         both = along_p
         for j in range(most + 1 - i):
             derivative = partial(i, j)
-            if derivative == 0 or both.vanishes:  # and so are all further ones by q
+            if derivative.is_zero() or both.vanishes:  # and so are all further ones by q
                 break
             share = Fraction(1, math.factorial(i) * math.factorial(j))
             total += both.times(derivative * ring.constant(share))
             both = both * v
-        if partial(i, 0) == 0:
+        if partial(i, 0).is_zero():
             break
         along_p = along_p * u
     return total

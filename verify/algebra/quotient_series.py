@@ -52,8 +52,8 @@ class QuotientSeries:
 
     def _of_inverse(self, index: int) -> Series | None:
         g = self._by_index[index]
-        divisor = self.of(g.argument) if g.kind == "inverse" else None
-        if divisor is None or divisor[0] == 0 or not divisor[0].is_constant():
+        divisor = self.of(g.inner) if g.kind == "inverse" else None
+        if divisor is None or divisor[0].is_zero() or not divisor[0].is_constant():
             return None
         first = 1 / divisor[0].leading_coefficient()
         found = [self.ring.one * first]

@@ -42,7 +42,7 @@ class Ring(DifferentialRing):
     def vanishes(self, x: Poly) -> bool | None:
         """`decide(x).zero`, without the witness where that is not needed for it."""
         x = self.reduce(x)
-        if x == 0:
+        if x.is_zero():
             return True
         if self.in_variables(x):
             return False  # a polynomial that is not 0 is not the zero function

@@ -26,13 +26,13 @@ def _of(ring: DifferentialRing, g: Generator) -> sympy.Expr:
     if g.expression is not None:
         return g.expression
     if g.index not in ring.expressions:
-        ring.expressions[g.index] = generator_expression(g, as_expression(ring, g.argument))
+        ring.expressions[g.index] = generator_expression(g, as_expression(ring, g.inner))
     return ring.expressions[g.index]
 
 
 def as_product(ring: DifferentialRing, x: Poly) -> sympy.Expr:
     """x as an expression, factored into irreducible polynomials in the generators."""
-    if x == 0:
+    if x.is_zero():
         return sympy.Integer(0)
     content, factors = x.factor()
     parts = [as_expression(ring, f) ** int(n) for f, n in factors]

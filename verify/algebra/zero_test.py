@@ -26,12 +26,12 @@ class Decision:
 
 def decided(ring: DifferentialRing, x: Poly) -> Decision:
     """Of x in normal form."""
-    if x == 0:
+    if x.is_zero():
         return Decision(True)
     names = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
     # A point usually tells at once; clearing denominators can be long work.
     found = _witness(ring, x, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
-    if found is None and clear_inverses(ring, x) == 0:
+    if found is None and clear_inverses(ring, x).is_zero():
         return Decision(True)
     for precision in _PRECISIONS:
         found = found or _witness(ring, x, points(names), precision)
@@ -56,7 +56,7 @@ def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
         if highest:
             total = ring.zero
             for power in range(highest + 1):  # Horner's rule in the denominator
-                total = ring.reduce(total * g.argument) if power else total
+                total = ring.reduce(total * g.inner) if power else total
                 total += parts.get(power, ring.zero)
             x = ring.reduce(total)
     return x

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import Protocol
 
 import flint
 
 from verify.arithmetic.exact import known_digits
 from verify.arithmetic.flint_precision import working_precision
 
-Ball = Any  # flint.arb, which has no type stubs
+Ball = flint.arb
 UNKNOWN = flint.arb.nan()
 _BITS = 256
 _MOST_EXPONENT = 1 << 17  # of what becomes a rational; a ball's exponent may itself be astronomical
@@ -67,7 +67,7 @@ def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
     return middle, radius
 
 
-def _rational(mantissa: Any, exponent: Any) -> Fraction:
+def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> Fraction:
     if abs(int(exponent)) > _MOST_EXPONENT:
         raise OverflowError("a ball is too large, or too small, for a rational")
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -91,7 +91,9 @@ class _OrbitSearch:
         self.start, self.time = start, self.number(time)
         self.z0: State = self.number(start[0]), self.number(start[1])
         self.shifts = [self.turned(s) for s in shifts(hamiltonian)]
-        self.free = tuple(x == 0 for x in (field.h_p, field.h_q))  # whether q, p stay as they are
+        self.free = tuple(
+            x.is_zero() for x in (field.h_p, field.h_q)
+        )  # whether q, p stay as they are
         self.points: list[State] = [self.z0]
         self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
 

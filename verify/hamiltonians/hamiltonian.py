@@ -159,13 +159,19 @@ def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
 class VectorField:
     """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative.
 
-    `energy`: H itself; None in a ring to which only its derivatives were carried.
+    `of_energy`: H itself; None in a ring to which only its derivatives were carried.
     """
 
     ring: Ring
     h_p: Poly
     h_q: Poly
-    energy: Poly = None
+    of_energy: Poly | None = None
+
+    @property
+    def energy(self) -> Poly:
+        """H, of a field that was made of it."""
+        assert self.of_energy is not None  # noqa: S101 - the field of a Hamiltonian has it
+        return self.of_energy
 
     @classmethod
     def of(cls, ring: Ring, hamiltonian: Poly) -> "VectorField":
@@ -198,7 +204,7 @@ class VectorField:
     def taylor(self, name: str, most: int) -> dict[int, Poly]:
         """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
         terms = {n: self._powers.term(name, n) for n in range(most + 1)}
-        return {n: x for n, x in terms.items() if x != 0}
+        return {n: x for n, x in terms.items() if not x.is_zero()}
 
     def truncated(self, eta: int) -> tuple[Poly, Poly]:
         """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""

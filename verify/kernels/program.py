@@ -9,8 +9,7 @@ from fractions import Fraction
 from itertools import permutations
 from typing import Any, TypeVar
 
-from verify.algebra.generator import Generator, terms_of
-from verify.algebra.implicit_unknowns import System
+from verify.algebra.generator import Generator, System, terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.kernels.operations import Loop, Tail
 from verify.kernels.operations import Op as Op
@@ -103,11 +102,11 @@ class Evaluator:
         if g.kind == "pi":
             return self.program.apply("pi")
         if g.kind == "stage":
-            return self.evaluate(g.argument)
+            return self.evaluate(g.inner)
         if g.kind == "solved":
             self._solve(self.ring.systems[g.index])
             return self._at[g.index]
-        return self.program.apply(g.kind, self.evaluate(g.argument), degree=g.degree)
+        return self.program.apply(g.kind, self.evaluate(g.inner), degree=g.degree)
 
     def _solve(self, system: System) -> None:
         """Writes the loop that finds a system's unknowns, with what moves in it inside."""

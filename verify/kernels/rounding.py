@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 import flint
 
@@ -18,7 +17,7 @@ from verify.algebra.enclosure import BALLS, square
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.program import Op, Program
 
-Ball = Any  # flint.arb
+Ball = flint.arb
 PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digits
 
 
@@ -88,7 +87,7 @@ _UNIT, _LEAST = flint.arb(2) ** -52, flint.arb(2) ** -1000
 FLOAT: Rounding = lambda op, size: size * _UNIT + _LEAST  # noqa: E731
 
 
-def _fmpq(x: Fraction) -> Any:
+def _fmpq(x: Fraction) -> flint.fmpq:
     """flint's rational, whose differences take a tenth of the time."""
     return flint.fmpq(x.numerator, x.denominator)
 
@@ -98,7 +97,7 @@ def analyse(
     live: Sequence[int],
     inputs: Mapping[str, Rounded],
     rounding: Rounding,
-    limit: Ball = None,
+    limit: Ball | None = None,
 ) -> dict[int, Rounded] | None:
     """Each live operation's value over the inputs' intervals; None where one may be undefined.
 

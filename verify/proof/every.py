@@ -99,7 +99,7 @@ def _convergence(jets: Jets, every_h: BySeries, most: int) -> int:
 def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> EveryProof:
     most = scheme.order + 2
     agreed = _convergence(Jets(most + 1, separable=separable), every_h, most)
-    preserved = all(a == b and a != 0 for a, b in every_h.determinants())
+    preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
     verdict, reason = Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1, stage by stage"
     if agreed < scheme.order:
         verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
@@ -123,7 +123,7 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
     while True:
         jets = Jets(most + 2, separable=separable)
         coefficients = list(jets.delta_j(*every_h.taylor(jets, most)))
-        order = next((n for n, x in enumerate(coefficients, 1) if x != 0), None)
+        order = next((n for n, x in enumerate(coefficients, 1) if not x.is_zero()), None)
         if order is not None or most == scheme.order + _MORE:
             break
         most += 1
@@ -148,7 +148,7 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         leading=shown(leading),
         formula=formula,
         telescopes=found.holds,
-        potential=shown(found.potential) if found.holds else None,
+        potential=None if found.potential is None else shown(found.potential),
         why=found.reason,
         checked=(
             f"the coefficients of h¹ … h^{order - 1} in det J are the zero polynomial",

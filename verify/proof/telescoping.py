@@ -17,7 +17,9 @@ where f does, and there div(X^η f) = tr A^(η+1) = 2 (−det Hess H)^((η+1)/2)
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
+
+import flint
 
 from verify.algebra.generator import terms_of
 from verify.algebra.jets import Jets, Poly, shown
@@ -41,8 +43,8 @@ def potential_of_lie(field: Derivation, eta: int) -> Poly:
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
     p, q = field.lie_derivatives("p", eta), field.lie_derivatives("q", eta)
-    total = sum((-1) ** k * field.bracket(p[eta - k], q[k]) for k in range(eta + 1))
-    return total / -math.factorial(eta + 1)
+    signed = ((-1) ** k * field.bracket(p[eta - k], q[k]) for k in range(eta + 1))
+    return sum(signed, p[0] * 0) / -math.factorial(eta + 1)
 
 
 # -- for a leading coefficient in the jets --------------------------------------------------------
@@ -54,7 +56,7 @@ class Telescoping:
 
     holds: bool
     reason: str
-    potential: Poly = None
+    potential: Poly | None = None
 
 
 def telescopes(jets: Jets, leading: Poly) -> Telescoping:
@@ -64,12 +66,12 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
     at an equilibrium, which rules out every smooth G, or one that linear algebra finds.
     """
     at_rest = _at_equilibrium(jets, leading)
-    if at_rest != 0:
+    if not at_rest.is_zero():
         return Telescoping(
             False,
             f"X·G vanishes where H_p = H_q = 0, for any smooth G; there L is {shown(at_rest)}",
         )
-    graded: dict[tuple[int, int, int], dict[tuple[int, ...], Any]] = {}
+    graded: dict[tuple[int, int, int], dict[tuple[int, ...], flint.fmpq]] = {}
     for monomial, coefficient in terms_of(leading):
         grade = _grade(jets, monomial)
         graded.setdefault(grade, {})[tuple(map(int, monomial))] = coefficient

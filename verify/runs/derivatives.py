@@ -83,7 +83,7 @@ def _whole(step_map: StepMap) -> Substep:
     if len(step_map.substeps) > 1 or not step.staged or not in_stages(step.ring, elements):
         return step_map.whole
     found = unfolded(step.ring, elements, _MOST_TERMS)
-    closed = Substep(step.field, *found) if found else None
+    closed = Substep(step.field, found[0], found[1]) if found else None
     return closed if closed and closed.terms_of_delta_j <= _MOST_OF_DELTA_J else step
 
 

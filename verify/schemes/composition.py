@@ -25,9 +25,9 @@ def composed_polynomials(ring: Ring, maps: Sequence[Map], most: int) -> list[Pol
     start: list[Poly] = [ring.variable(name) for name in STATE]
     for pair in maps:
         after = [_at(ring, x, start, most) for x in pair]
-        if None in after:
+        start = [x for x in after if x is not None]
+        if len(start) < len(after):
             return None
-        start = after
     return start
 
 
@@ -45,11 +45,12 @@ def unfolded(ring: Ring, elements: Sequence[Poly], most: int) -> list[Poly] | No
     images = {g.index: ring.variable(str(g.expression)) for g in used if g.kind == "variable"}
     for g in used:
         if g.kind == "stage":
-            images[g.index] = _put(ring, g.argument, images, most)
-            if images[g.index] is None:
+            image = _put(ring, g.inner, images, most)
+            if image is None:
                 return None
-    found = [_put(ring, x, images, most) for x in elements]
-    return None if None in found else found
+            images[g.index] = image
+    found = [x for y in elements if (x := _put(ring, y, images, most)) is not None]
+    return found if len(found) == len(elements) else None
 
 
 def _put(ring: Ring, x: Poly, images: Mapping[int, Poly], most: int) -> Poly | None:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import flint
 import sympy
@@ -124,7 +124,9 @@ class StageEquations:
     def conditions(self) -> tuple[Condition, ...]:
         """det A = det B of each stage, which together suffice for det J ≡ 1."""
         return tuple(
-            Condition(f"A J = B with det A = det B = {b}", 0, str(a - b), bool(a == b and a != 0))
+            Condition(
+                f"A J = B with det A = det B = {b}", 0, str(a - b), a == b and not a.is_zero()
+            )
             for a, b in self.determinants()
         )
 
@@ -159,7 +161,7 @@ class StageEquations:
         return found
 
 
-def _det(m: Sequence[Sequence[Any]]) -> Poly:
+def _det(m: Sequence[Sequence[Poly]]) -> Poly:
     return m[0][0] * m[1][1] - m[0][1] * m[1][0]
 
 

@@ -139,7 +139,7 @@ class StepMap:
                 whole, found = self.hamiltonian.field(*self.composed, most_terms=_MOST_COMPOSED)
             except InputError:
                 return None
-        step = Substep(whole, *found) if found else None
+        step = Substep(whole, found[0], found[1]) if found else None
         return step if step and step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
 
     @cached_property
@@ -205,7 +205,7 @@ class StepMap:
 
 def _long_text(ring: Ring, coefficients: Mapping[int, Poly]) -> str:
     """Σ hⁿ cₙ as it stands, for coefficients that are too long to be factored."""
-    parts = (f"h**{n}*({ring.text(c)})" for n, c in sorted(coefficients.items()) if c != 0)
+    parts = (f"h**{n}*({ring.text(c)})" for n, c in sorted(coefficients.items()) if not c.is_zero())
     return " + ".join(parts)
 
 

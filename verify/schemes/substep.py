@@ -139,7 +139,7 @@ class Substep:
         """∂(x, y)/∂(p, q) of the coefficients x of hᵏ in p' and y of hᵐ in q'."""
         x_p, x_q, y_p, y_q = self._gradients
         if k not in x_p or m not in y_p:
-            return 0
+            return self.ring.zero
         return x_p[k] * y_q[m] - x_q[k] * y_p[m]
 
     def taylor(self, p: Series, q: Series) -> tuple[Series, Series] | None:

@@ -7,12 +7,13 @@ for this H. The derivatives of H are all that is needed, at that point: no serie
 which for an involved H takes minutes.
 """
 
+from collections.abc import Mapping
+from fractions import Fraction
 from itertools import islice
-from typing import Any
 
 import flint
 
-from verify.algebra.enclosure import enclose, points
+from verify.algebra.enclosure import enclose, enclosed, points
 from verify.algebra.power_series import partials
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import VectorField
@@ -41,7 +42,7 @@ def _differ(tableau: ImplicitTableau, field: VectorField, order: int) -> bool:
     names = [n for n in field.ring.variables if n != "h"]
     with working_precision(_PRECISION):
         shares = {
-            tree: enclose(ring, gap, {}, _PRECISION) / symmetry(tree)
+            tree: enclosed(ring, gap, {}, _PRECISION) / symmetry(tree)
             for tree, gap in gaps_of(tableau, order).items()
         }
         for point in islice(points(names), _POINTS):
@@ -58,13 +59,13 @@ def _differ(tableau: ImplicitTableau, field: VectorField, order: int) -> bool:
 class _AtPoint:
     """The derivatives of H at a point, as balls, in the jets' place."""
 
-    def __init__(self, field: VectorField, point: dict[str, Any]) -> None:
+    def __init__(self, field: VectorField, point: Mapping[str, Fraction]) -> None:
         self.field, self.point, self.defined = field, point, True
         self.zero = flint.arb(0)
         self._of_p, self._of_q = (partials(field.ring, x) for x in (field.h_p, field.h_q))
-        self._known: dict[tuple[int, int], Any] = {}
+        self._known: dict[tuple[int, int], flint.arb] = {}
 
-    def h(self, i: int, j: int) -> Any:
+    def h(self, i: int, j: int) -> flint.arb:
         if (i, j) not in self._known:
             x = self._of_p(i - 1, j) if i else self._of_q(0, j - 1)
             value = enclose(self.field.ring, x, self.point, _PRECISION)

@@ -8,7 +8,7 @@ import flint
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
-from verify.claims.theorems.differential import Differential, flow_of_every_hamiltonian
+from verify.claims.theorems.differential import Differential, Poly, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Areas, Point, areas
 from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians import systems
@@ -20,7 +20,7 @@ TIME = 20000
 STEP_SIZES = (Fraction(1, 100), Fraction(1, 1000), Fraction(1, 10**6), Fraction(1, 10**9))
 
 
-def consistent_map(hamiltonian: bool = True) -> dict[int, object]:
+def consistent_map(hamiltonian: bool = True) -> dict[int, Poly]:
     """ΔJ, by powers of h, of p' = p + ha + h²r, q' = q + hb + h²s, for generic r and s.
 
     (a, b) is the vector field of a generic H; where `hamiltonian` is False, a generic one.

@@ -8,14 +8,13 @@ for the derivatives of F.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import flint
 
 from verify.algebra.formula import parse, symbol
 from verify.algebra.generator import terms_of
 
-Poly = Any  # flint.fmpq_mpoly, which has no type stubs
+Poly = flint.fmpq_mpoly
 
 
 class Differential:

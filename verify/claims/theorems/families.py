@@ -63,7 +63,7 @@ def separable() -> Check:
 def equilibrium() -> Check:
     """At a critical point of a generic H, ΔJ of lie2 is h⁴D²/4."""
     flow = flow_of_every_hamiltonian(4)
-    at = {"H1_0": 0, "H0_1": 0}
+    at: dict[str | int, int] = {"H1_0": 0, "H0_1": 0}
     delta_j = {n: x.subs(at) for n, x in flow.delta_j(*flow.lie(2)).items()}
     fourth = delta_j.pop(4) - flow.hessian_determinant**2 / 4
     return vanishes("ΔJ of lie2 where ∇H = 0 is h⁴D²/4, for a generic H", fourth, *delta_j.values())

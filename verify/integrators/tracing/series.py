@@ -5,9 +5,8 @@ differential equation, as sin and cos from s' = c x', c' = −s x' (Griewank and
 Derivatives, section 13.2).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
 import sympy
 
@@ -58,7 +57,7 @@ class TracedSeries:
         return p, q
 
 
-def _beginnings(node: Node, at_zero: dict[int, Any]) -> list[tuple[str, sympy.Expr]]:
+def _beginnings(node: Node, at_zero: Mapping[int, sympy.Expr]) -> list[tuple[str, sympy.Expr]]:
     """What its series needs at h = 0, by name."""
     x = [at_zero[one.number] for one in node.inputs]
     name = node.operation
@@ -121,7 +120,7 @@ class _Maker:
         if name == "power" and (node.number, "value") not in self.known:
             return self._natural(x, int(node.value))
         value = self.known[node.number, "value"]
-        inverse = self.known.get((node.number, "inverse"))
+        inverse = self.known.get((node.number, "inverse"), self.ring.zero)
         match name:
             case "power":
                 return self._power(x, node.value, value, inverse)
@@ -155,7 +154,7 @@ class _Maker:
         for k in range(self.most + 1):
             total = x.coefficients[k] if k <= x.most else ring.zero
             for j in range(1, k + 1):
-                if y.coefficients[j] != 0:
+                if not y.coefficients[j].is_zero():
                     total = total - y.coefficients[j] * found[k - j]
             found.append(ring.multiply(ring.reduce(total), inverse))
         return Series.of(ring, found, self.most)
@@ -192,7 +191,7 @@ class _Maker:
         for k in range(1, self.most + 1):
             up, down = ring.zero, ring.zero
             for j in range(1, k + 1):
-                if x.coefficients[j] != 0:
+                if not x.coefficients[j].is_zero():
                     part = ring.constant(Fraction(j, k)) * x.coefficients[j]
                     up, down = up + part * c[k - j], down + part * s[k - j]
             s.append(ring.reduce(up))

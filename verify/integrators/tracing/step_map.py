@@ -70,10 +70,10 @@ def _closed(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> Substep | N
     made = expressions(nodes, {})
     try:
         pair = [checked(made[x.number], "step", "its closed form") for x in (p_next, q_next)]
-        field, elements = hamiltonian.field(*pair, most_terms=_MOST_TERMS)
+        field, (p, q) = hamiltonian.field(*pair, most_terms=_MOST_TERMS)
     except InputError:
         return None
-    step = Substep(field, *elements)
+    step = Substep(field, p, q)
     return step if step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
 
 

@@ -54,12 +54,13 @@ def of_every(proof: EveryProof) -> dict[str, Any]:
     leading = list(jets.delta_j(*series))[-1]
     names = dict(enumerate(jets.names))
     data |= map_of(proof.order, proof.convergence_order, leading, series, names)
-    if proof.telescopes:
-        data["potential"] = terms(_potential(jets, every_h, leading), names)
+    potential = _potential(jets, every_h, leading) if proof.telescopes else None
+    if potential is not None:
+        data["potential"] = terms(potential, names)
     return data
 
 
-def _potential(jets: Jets, every_h: BySeries, leading: Poly) -> Poly:
+def _potential(jets: Jets, every_h: BySeries, leading: Poly) -> Poly | None:
     if isinstance(every_h, TaylorSeries):
         return telescopes_of_lie(jets, leading, every_h.eta).potential
     return telescopes(jets, leading).potential

@@ -99,17 +99,15 @@ class _Plain:
                     str(g.expression),
                     "no certificate: it takes sin, cos, exp, denominators",
                 )
-        self.functions = [
-            [self.names[g.index], g.kind, terms(g.argument, self.names)] for g in made
-        ]
+        self.functions = [[self.names[g.index], g.kind, terms(g.inner, self.names)] for g in made]
         self._images: dict[int, dict[str, Poly]] = {}
         gens = ring.context.gens()
         for g in made:
             own = gens[g.index]
             partner = {"sin": "cos", "cos": "sin"}.get(g.kind)
-            side = ring.find(partner, g.argument) if partner else None
-            slope = {"sin": side, "cos": side and -side, "exp": own, "inverse": -(own**2)}[g.kind]
-            self._images[g.index] = {by: slope * self.diff(g.argument, by) for by in "pq"}
+            side = (partner and ring.find(partner, g.inner)) or ring.zero
+            slope = {"sin": side, "cos": -side, "exp": own, "inverse": -(own**2)}[g.kind]
+            self._images[g.index] = {by: slope * self.diff(g.inner, by) for by in "pq"}
 
     def diff(self, x: Poly, by: str) -> Poly:
         total = x.derivative(self.ring.room + self.ring.variables.index(by))
@@ -126,7 +124,7 @@ class _Plain:
             if x.degrees()[index] >= power:
                 quotient, x = divmod(x, relation)
                 found[index] = found.get(index, self.ring.zero) + quotient
-        if x != 0:
+        if not x.is_zero():
             raise InputError("proof", str(x)[:60], "no certificate: zero is not seen by reducing")
         return {self.names[index]: terms(c, self.names) for index, c in found.items()}
 
@@ -136,7 +134,7 @@ def _cofactors(
 ) -> Iterator[tuple[str, Any]]:
     """(what is zero, its cofactors), in the checker's words; what is zero as it stands has none."""
     for what, x in _zeros(plain, data, h, series, leading, potential):
-        if x != 0:
+        if not x.is_zero():
             yield what, plain.cofactors(x)
 
 

@@ -73,9 +73,10 @@ class Problem:
             enclose(ring, energy, dict(zip("pq", at, strict=True)), _BITS)
             for at in (state, self.start)
         ]
-        if None in ends or not all(map(in_reach, ends)):
+        reached = [x for x in ends if x is not None and in_reach(x)]
+        if len(reached) < len(ends):
             return None
-        (a, a_bound), (b, b_bound) = map(middle_and_radius, ends)
+        (a, a_bound), (b, b_bound) = map(middle_and_radius, reached)
         return printed(abs(a - b), a_bound + b_bound)
 
 

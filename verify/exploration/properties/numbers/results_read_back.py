@@ -51,7 +51,7 @@ def _must_be_same_map(sample: Sample) -> None:
     texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
     read = StepMap.from_formulas(sample.hamiltonian, *texts).whole
     for name in ("p_next", "q_next"):
-        pair = [enclose(step.ring, getattr(step, name), sample.start, BITS)
-                for step in (closed, read)]  # fmt: skip
-        if None not in pair and not pair[0].overlaps(pair[1]):
-            raise Violation(f"{name} reads back as {shown(pair[1])}, and is {shown(pair[0])}")
+        ours, theirs = (enclose(step.ring, getattr(step, name), sample.start, BITS)
+                        for step in (closed, read))  # fmt: skip
+        if ours is not None and theirs is not None and not ours.overlaps(theirs):
+            raise Violation(f"{name} reads back as {shown(theirs)}, and is {shown(ours)}")

@@ -75,8 +75,9 @@ def _derivatives(sample: Sample, jets: Jets) -> dict[tuple[int, int], Ball] | No
         if (i, j) not in found:
             lower, name = ((i, j - 1), "q") if j else ((i - 1, 0), "p")
             found[i, j] = ring.diff(found[lower], name)
-    values = {ij: enclose(ring, found[ij], sample.start, BITS) for ij in jets.indices}
-    return None if None in values.values() else values
+    balls = ((ij, enclose(ring, found[ij], sample.start, BITS)) for ij in jets.indices)
+    values = {ij: ball for ij, ball in balls if ball is not None}
+    return values if len(values) == len(jets.indices) else None
 
 
 def _value(x: Poly, derivatives: dict[tuple[int, int], Ball]) -> Ball:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from verify.algebra.enclosure import enclose
+from verify.algebra.enclosure import enclosed
 from verify.arithmetic.arb import middle_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.others.integrator import Compared, FloatStep, Map, ReleasedIntegrator
@@ -122,8 +122,8 @@ def _distance(formula: str, eta: int) -> tuple[float, float]:
             taylor.state[k] = float(x)
         taylor.step(max_delta_t=float(_STEP))
         exact = (own.p_next, own.q_next, *own.jacobian)
-        for k, x in enumerate(exact):
-            ball = enclose(own.ring, x, {"p": p, "q": q, "h": _STEP}, 400)
+        for k, element in enumerate(exact):
+            ball = enclosed(own.ring, element, {"p": p, "q": q, "h": _STEP}, 400)
             middle, _ = middle_and_radius(ball)
             gap = abs(Fraction(float(taylor.state[k])) - middle)
             units = float(gap) / (_UNIT * max(1.0, abs(float(middle))))
