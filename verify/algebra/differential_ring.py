@@ -57,16 +57,20 @@ class DifferentialRing:
 
     @property
     def zero(self) -> Poly:
+        """The element 0."""
         return self.context.constant(0)
 
     @property
     def one(self) -> Poly:
+        """The element 1."""
         return self.context.constant(1)
 
     def constant(self, value: Fraction) -> Poly:
+        """A rational number as an element."""
         return self.context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def variable(self, name: str) -> Poly:
+        """A variable as an element; KeyError where the ring has none of that name."""
         return self._gens[self.places[name]]
 
     def reduce(self, x: Poly) -> Poly:
@@ -80,6 +84,7 @@ class DifferentialRing:
         return x
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
+        """x y in normal form."""
         return self.reduce(x * y)
 
     def diff(self, x: Poly, name: str) -> Poly:

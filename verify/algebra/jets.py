@@ -40,10 +40,12 @@ class Jets:
 
     @property
     def zero(self) -> Poly:
+        """The polynomial 0."""
         return self.context.constant(0)
 
     @property
     def one(self) -> Poly:
+        """The polynomial 1."""
         return self.context.constant(1)
 
     def h(self, i: int, j: int) -> Poly:
@@ -56,10 +58,12 @@ class Jets:
 
     @cached_property
     def p(self) -> Poly:
+        """The variable p."""
         return self._gens[0]
 
     @cached_property
     def q(self) -> Poly:
+        """The variable q."""
         return self._gens[1]
 
     # -- derivatives --------------------------------------------------------------------------
@@ -125,5 +129,10 @@ def multiplied(x: Series, y: Series) -> Series:
 
 
 def shown(x: Poly) -> str:
-    """A polynomial in the jets as a formula, 0 for zero."""
+    """A polynomial in the jets as a formula, 0 for zero.
+
+    >>> jets = Jets(2)
+    >>> shown(jets.derive(jets.h(1, 0)))
+    '-H_q*H_pp + H_p*H_pq'
+    """
     return str(x).replace("^", "**")

@@ -30,6 +30,7 @@ class Series:
 
     @property
     def most(self) -> int:
+        """The highest power of h that is kept."""
         return len(self.coefficients) - 1
 
     def __add__(self, other: "Series") -> "Series":
@@ -67,6 +68,7 @@ class Series:
         return Series.of(self.ring, [*[self.ring.zero] * n, *self.coefficients], self.most)
 
     def diff(self, name: str) -> "Series":
+        """∂/∂name of each coefficient."""
         return Series(self.ring, tuple(self.ring.diff(c, name) for c in self.coefficients))
 
 

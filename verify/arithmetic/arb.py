@@ -32,6 +32,7 @@ def precision() -> AbstractContextManager[None]:
 
 
 def rational_ball(value: Fraction) -> Ball:
+    """The narrowest ball around a rational, at flint's present precision."""
     return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 
@@ -99,7 +100,11 @@ def fixed(x: Ball, places: int) -> str:
 
 
 def place(units: int, places: int) -> str:
-    """An integer number of 10^−places as a decimal."""
+    """An integer number of 10^−places as a decimal.
+
+    >>> place(-12345, 2)
+    '-123.45'
+    """
     digits = f"{abs(units):0{places + 1}d}"
     return f"{'-' if units < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 

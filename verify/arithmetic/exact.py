@@ -8,7 +8,7 @@ import re
 import warnings
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Protocol
 
 import gmpy2
 
@@ -24,11 +24,21 @@ _ORDINARY = Fraction(1, 1000), 10**4
 _SHORT = 10  # characters
 
 
+class Mpf(Protocol):
+    """A finite number of mpmath: sign, mantissa, exponent and the mantissa's length."""
+
+    @property
+    def _mpf_(self) -> tuple[int, int, int, int]: ...
+
+
 def rational(value: Exact, name: str = "number") -> Fraction:
     """The exact value of a user's number.
 
     Strings may be decimals (`0.001`, `1e-3`) or quotients (`7/3`). Raises InputError for NaN,
     infinities, booleans, other types, and exponents beyond ±1000.
+
+    >>> rational("0.1"), rational("7/3")
+    (Fraction(1, 10), Fraction(7, 3))
     """
     if isinstance(value, bool) or not isinstance(value, Exact):
         raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
@@ -45,7 +55,7 @@ def rational(value: Exact, name: str = "number") -> Fraction:
 
 
 def positive(value: Exact, name: str) -> Fraction:
-    """The exact value, refused unless it is greater than zero."""
+    """The exact value; InputError unless it is greater than zero."""
     number = rational(value, name)
     if number <= 0:
         raise InputError(name, value, "must be greater than 0")
@@ -81,7 +91,11 @@ def _from_float(value: float, name: str) -> Fraction:
 
 
 def text(value: Fraction) -> str:
-    """A short exact text of a rational: a decimal where it ends, else a quotient."""
+    """A short exact text of a rational: a decimal where it ends, else a quotient.
+
+    >>> text(Fraction(1, 8)), text(Fraction(1, 3))
+    ('0.125', '1/3')
+    """
     denominator = value.denominator
     twos = fives = 0
     while denominator % 2 == 0:
@@ -97,18 +111,26 @@ def text(value: Fraction) -> str:
 
 
 def plain(value: Fraction, digits: int) -> str:
-    """So many significant digits, without an exponent where the number is of ordinary size."""
+    """So many significant digits, without an exponent where the number is of ordinary size.
+
+    >>> plain(Fraction(1, 3), 5)
+    '0.33333'
+    """
     ordinary = value == 0 or _ORDINARY[0] <= abs(value) < _ORDINARY[1]
     return f"{float(value):.{digits}g}" if ordinary else decimal(value, digits)
 
 
 def short(value: Fraction) -> str:
-    """Its exact text where that is short, else three significant digits of it."""
+    """Its exact text where that is short, else three significant digits of it.
+
+    >>> short(Fraction(1, 3)), short(Fraction(1, 3**30))
+    ('1/3', '4.86e-15')
+    """
     written = text(value)
     return written if len(written) <= _SHORT else decimal(value, 3)
 
 
-def of_mpf(x: Any) -> Fraction:
+def of_mpf(x: Mpf) -> Fraction:
     """The rational that a finite number of mpmath is."""
     sign, mantissa, exponent, _ = x._mpf_
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
@@ -116,7 +138,11 @@ def of_mpf(x: Any) -> Fraction:
 
 
 def decimal(value: Fraction, digits: int) -> str:
-    """`value` rounded half-even to `digits` significant digits, in scientific notation."""
+    """`value` rounded half-even to `digits` significant digits, in scientific notation.
+
+    >>> decimal(Fraction(1, 3), 4)
+    '3.333e-01'
+    """
     if value == 0:
         return "0"
     units, exponent = rounded_units(value, digits)
@@ -129,13 +155,21 @@ def decimal(value: Fraction, digits: int) -> str:
 
 
 def rounded_units(value: Fraction, digits: int) -> tuple[int, int]:
-    """(units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits` digits."""
+    """(units, exponent): value ≠ 0 rounded half-even to units·10^exponent, of `digits` digits.
+
+    >>> rounded_units(Fraction(1, 3), 4)
+    (3333, -4)
+    """
     exponent = magnitude(value) - digits + 1
     return round(value / Fraction(10) ** exponent), exponent
 
 
 def magnitude(value: Fraction) -> int:
-    """The decimal exponent e of value ≠ 0: 10^e ≤ |value| < 10^(e+1)."""
+    """The decimal exponent e of value ≠ 0: 10^e ≤ |value| < 10^(e+1).
+
+    >>> magnitude(Fraction(1234))
+    3
+    """
     top, bottom = abs(value.numerator), value.denominator
     # Bit lengths place the exponent within one; the comparison settles it.
     exponent = (top.bit_length() - bottom.bit_length()) * 30103 // 100000 - 1
@@ -154,6 +188,9 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
 
     The last digit printed has a unit of at least twice `bound`, so that it is known to one unit.
     The returned bound includes the rounding of the text. Where no digit is known the text is "0".
+
+    >>> known_digits(Fraction(1, 3), Fraction(1, 10**5), 12)
+    ('3.333e-01', '4.34e-05')
     """
     if value == 0 and bound == 0:
         return "0", "0"
@@ -168,7 +205,11 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
 
 
 def upper(bound: Fraction) -> str:
-    """A bound rounded up to three significant digits."""
+    """A bound rounded up to three significant digits.
+
+    >>> upper(Fraction(1, 3))
+    '3.34e-01'
+    """
     if bound == 0:
         return "0"
     unit = Fraction(10) ** (magnitude(bound) - 2)

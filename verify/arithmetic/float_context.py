@@ -54,6 +54,7 @@ class FloatContext:
     # -- numbers --------------------------------------------------------------------------------
 
     def mpf(self, x: Any) -> Number:
+        """A number, a text or a batch in this precision."""
         if isinstance(x, Batch):
             return Batch(x.values.astype(self.type))
         return self._np.asarray(x, dtype=self.type)[()]

@@ -175,6 +175,7 @@ class VectorField:
 
     @classmethod
     def of(cls, ring: Ring, hamiltonian: Poly) -> "VectorField":
+        """That of H, an element of the ring."""
         return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"), hamiltonian)
 
     def derive(self, y: Poly) -> Poly:

@@ -80,6 +80,7 @@ class Finding:
         return self.convergence_order >= 1 and (self.order_decided or self.how == "proof")
 
     def noting(self, *notes: str) -> "Finding":
+        """The same with further notes."""
         return replace(self, notes=(*self.notes, *notes))
 
 

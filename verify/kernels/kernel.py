@@ -119,6 +119,7 @@ class Writer:
     # -- what is computed ---------------------------------------------------------------------
 
     def kernel(self) -> Kernel:
+        """The kernel, compiled. UnsupportedError where the arithmetic lacks what it needs."""
         outputs = self.made.outputs
         lines = self.statements(outputs)
         limits = LIMITS if self.arithmetic.absolute else ()
@@ -159,6 +160,7 @@ class Writer:
             raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
 
     def constants_of_tangent(self) -> dict[str, Any]:
+        """The constants of the tangent map's lines, as doubles by their names."""
         made = self.tangent
         return (
             made.lowering.named_constants(tangent_map.nearest_double, made.change) if made else {}
@@ -230,9 +232,11 @@ class Writer:
         return f"if {first}not {of} {opposite} {name}: {name} = {value}"
 
     def carry(self, name: str, start: int | str, kind: str = "wide") -> None:
+        """Adds to the state: its name, the value it starts with, and its kind of number."""
         self.state_names.append((name, kind, start))
 
     def accumulate(self, name: str, increment: str) -> list[str]:
+        """The statements `name += increment`; compensated (Kahan) where the kernel is."""
         if name not in ("p", "q"):
             self.carry(name, 0, "sum")
         if not self.compensated:
@@ -249,6 +253,7 @@ class Writer:
     def assemble(
         self, needed: Sequence[int], statements: list[str], more_arguments: Sequence[str]
     ) -> str:
+        """The kernel's source for `needed` operations; more arguments follow H's parameters."""
         static, dynamic = self.lowering.lines(needed)
         if self.tangent:
             more = self.tangent.lowering.lines(self.tangent.change)

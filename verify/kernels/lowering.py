@@ -33,6 +33,7 @@ class Lowering:
     _written: set[int] = field(default_factory=set)
 
     def name(self, index: int) -> str:
+        """The variable that holds an operation's value."""
         return f"{self.prefix}{index}"
 
     def live(self, roots: Sequence[int]) -> list[int]:
@@ -80,6 +81,7 @@ class Lowering:
         return f"{first}, {second} = {both}({self.name(op.args[0])})"
 
     def inner(self, loop: Loop) -> "Lowering":
+        """That of an inner loop's program, under a prefix of its own."""
         return Lowering(loop.inner, self.functions, f"n{loop.number}_", self.bits)
 
     def _newton(self, loop: Loop) -> tuple[list[str], list[str]]:
@@ -119,6 +121,7 @@ class Lowering:
         return bool(self.loops(self.live(roots)))
 
     def loops(self, live: Sequence[int]) -> list[Loop]:
+        """The inner loops among live operations, in their order."""
         ops = (self.program.ops[index] for index in live)
         return [self.program.loops[op.degree] for op in ops if op.kind == "loop"]
 
@@ -151,6 +154,7 @@ class Lowering:
         return radicand.kind == "const" and radicand.value > 0
 
     def constants(self) -> Mapping[int, Fraction]:
+        """The rational constants, by their operations."""
         return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
 
     def named_constants(self, number: Any, roots: Sequence[int] | None = None) -> dict[str, Any]:

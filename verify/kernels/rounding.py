@@ -40,6 +40,7 @@ class Rounded:
 
     @property
     def widened(self) -> Ball:
+        """An interval that holds the computed value."""
         return self.interval + self.error * flint.arb(0, 1)
 
 

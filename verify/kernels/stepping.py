@@ -35,6 +35,7 @@ class Outcome:
 
     @property
     def values(self) -> dict[str, Fraction]:
+        """What is carried, after the last step that was done."""
         return self.trail[-1]
 
 

@@ -56,4 +56,5 @@ class EveryProof:
 
     @property
     def quantifier(self) -> str:
+        """For which H it is proved, in words."""
         return "every smooth H = T(p) + V(q)" if self.separable else "every smooth H"

@@ -92,6 +92,7 @@ class Expansion:
         return QuotientSeries(self.ring, self.length + 1).of(self._derivatives[0])
 
     def leading(self) -> Leading:
+        """The first coefficient that is not the zero function, as far as `length` goes."""
         found = first_nonzero(self.coefficient, self.length)
         if found is None and not self.polynomial:
             return Leading(self.length, Decision(None))

@@ -38,6 +38,7 @@ class Proof:
 
     @property
     def leading(self) -> sympy.Expr:
+        """The leading coefficient of ΔJ as an expression; 0 where ΔJ ≡ 0."""
         return self.first.coefficient
 
     @property
@@ -47,6 +48,7 @@ class Proof:
 
     @property
     def consistent(self) -> bool:
+        """Whether the map agrees with the exact flow up to h, at least."""
         return self.convergence_order is None or self.convergence_order >= 1
 
     def _repr_html_(self) -> str:

@@ -26,6 +26,7 @@ class RunTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
+        """Steps times what a step in this arithmetic costs."""
         checked = self.arithmetic == "float64" and self.steps <= DIRECT_STEPS
         return self.steps * STEP_COST.get(AUTO if checked else self.arithmetic, _UNLISTED)
 
@@ -42,6 +43,7 @@ class RunTask(InitialValueTask):
         )
 
     def compute(self, keeper: Keeper) -> RunResult:
+        """The run, from its last checkpoint where there is one."""
         return run(
             self.exact_hamiltonian(),
             self.scheme,

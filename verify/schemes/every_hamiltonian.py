@@ -40,6 +40,7 @@ class TaylorSeries:
     separable: bool = False
 
     def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+        """p' and q' as series up to h^most; see `BySeries`."""
         kept = min(self.eta, most)
 
         def cut(name: str) -> Series:
@@ -58,6 +59,7 @@ class RungeKutta:
     separable: bool = False
 
     def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+        """p' and q' as series up to h^most; see `BySeries`."""
         slopes: list[tuple[Series, Series]] = []
         for row in self.rows:
             at = _moved(jets, slopes, row, most)

@@ -84,7 +84,11 @@ def words(kind: str, most: int) -> tuple[str, ...]:
 
 @cache
 def lyndon(kind: str, weight: int) -> tuple[str, ...]:
-    """The Lyndon words of that weight: smaller than each of their proper ends."""
+    """The Lyndon words of that weight: smaller than each of their proper ends.
+
+    >>> lyndon("splitting", 3)
+    ('DDK', 'DKK')
+    """
     own = (word for word in words(kind, weight) if weight_of(word) == weight)
     return tuple(w for w in own if all(w < w[k:] for k in range(1, len(w))))
 

@@ -48,6 +48,7 @@ class ImplicitTableau:
 
     @property
     def stages(self) -> int:
+        """How many stages there are."""
         return len(self.weights)
 
     @cached_property
@@ -105,6 +106,7 @@ class Numbers:
 
     @classmethod
     def of(cls, tableau: ImplicitTableau) -> "Numbers":
+        """Those of a tableau, embedded together."""
         count = tableau.stages
         ring, found = embed([*tableau.weights, *(x for row in tableau.rows for x in row)], ())
         rows = [tuple(found[count * (i + 1) : count * (i + 2)]) for i in range(count)]

@@ -38,6 +38,7 @@ class Scheme:
         return bool(getattr(self.every_h, "separable", False))
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
+        """The scheme's map for H. Raises InputError for an H that it does not take."""
         return _step_map(self.build, hamiltonian)
 
 

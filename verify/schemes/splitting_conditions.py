@@ -62,6 +62,7 @@ class Splitting:
 
     @property
     def most_order(self) -> int:
+        """The highest order of which there are conditions."""
         return MOST_ORDER
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:

@@ -85,6 +85,7 @@ class StepMap:
     def from_expressions(
         cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
     ) -> "StepMap":
+        """A map from p' and q' as expressions in p, q, h; InputError where they are not smooth."""
         whole, (p1, q1) = hamiltonian.field(p_next, q_next)
         return cls(hamiltonian, (Substep(whole, p1, q1),))
 
@@ -103,6 +104,7 @@ class StepMap:
 
     @cached_property
     def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
+        """p' and q' in closed form. Raises InputError for a map that is given by equations."""
         if self.implicit:
             raise InputError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
         p1, q1 = P, Q
@@ -113,10 +115,12 @@ class StepMap:
 
     @property
     def p_next(self) -> sympy.Expr:
+        """p' in closed form; see `composed`."""
         return self.composed[0]
 
     @property
     def q_next(self) -> sympy.Expr:
+        """q' in closed form; see `composed`."""
         return self.composed[1]
 
     @cached_property

@@ -29,10 +29,12 @@ class Substep:
 
     @property
     def ring(self) -> Ring:
+        """The ring of p', q' and the field."""
         return self.field.ring
 
     @property
     def increments(self) -> tuple[Poly, Poly]:
+        """p' − p and q' − q."""
         return (
             self.p_next - self.ring.variable("p"),
             self.q_next - self.ring.variable("q"),
@@ -61,6 +63,7 @@ class Substep:
 
     @cached_property
     def delta_j(self) -> Poly:
+        """ΔJ = det J − 1 in normal form, written so that the constant 1 never occurs in it."""
         a, u_q, v_p, d = self.jacobian
         u_p, v_q = a - 1, d - 1
         if self.staged:

@@ -62,11 +62,20 @@ def _forests(vertices: int, largest: int, last: Tree | None) -> Iterator[tuple[T
 
 
 def vertices(tree: Tree) -> int:
+    """|t|.
+
+    >>> vertices(((), ((),)))
+    4
+    """
     return 1 + sum(map(vertices, tree))
 
 
 def density(tree: Tree) -> int:
-    """γ(t)."""
+    """γ(t).
+
+    >>> density(((), ((),)))
+    8
+    """
     product = vertices(tree)
     for child in tree:
         product *= density(child)
@@ -74,7 +83,11 @@ def density(tree: Tree) -> int:
 
 
 def symmetry(tree: Tree) -> int:
-    """σ(t)."""
+    """σ(t).
+
+    >>> symmetry(((), ()))
+    2
+    """
     product = 1
     for child, n in Counter(tree).items():
         product *= math.factorial(n) * symmetry(child) ** n
@@ -82,7 +95,11 @@ def symmetry(tree: Tree) -> int:
 
 
 def condition_text(tree: Tree) -> str:
-    """The left side of the tree's condition."""
+    """The left side of the tree's condition.
+
+    >>> condition_text(((), ((),)))
+    'b·(c A(c))'
+    """
     inner = _vector(tree) if tree else "1"
     return f"b·({inner})" if " " in inner else f"b·{inner}"
 
@@ -103,6 +120,7 @@ class TreeConditions:
 
     @property
     def most_order(self) -> int:
+        """The highest order of which there are conditions."""
         return MOST_ORDER
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
@@ -120,9 +138,11 @@ class TreeConditions:
         return _of_order(self.tableau, order, self.separable)
 
     def area_conditions(self) -> tuple[Condition, ...]:
+        """See `ImplicitTableau.area_conditions`."""
         return self.tableau.area_conditions()
 
     def symmetry_conditions(self) -> tuple[Condition, ...]:
+        """See `ImplicitTableau.symmetry_conditions`."""
         return self.tableau.symmetry_conditions()
 
 
@@ -217,6 +237,7 @@ class Weights:
         return self.weight(tree) - self.ring.one / density(tree)
 
     def condition(self, tree: Tree, gap: Poly) -> Condition:
+        """The tree's condition, of which `gap` is left side − right side."""
         name = f"{condition_text(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
         return self.numbers.condition(name, vertices(tree), gap)
 

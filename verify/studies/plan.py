@@ -30,6 +30,7 @@ def plan_scenes(scenes: list[Scene]) -> Plan:
 
 
 def proof_task(scene: Scene, scheme: str, *, formulas: bool = True) -> ProofTask:
+    """The proof of one scheme for the scene's H; `formulas`: with ΔJ in closed form."""
     return ProofTask(**scene.hamiltonian_fields(), scheme=scheme, formulas=formulas)
 
 
@@ -72,6 +73,7 @@ def grids_separated(scene: Scene) -> list[Grid]:
 
 
 def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
+    """The run of the scene's series of that index."""
     series = scene.series[index]
     at = series.initial_value
     return RunTask(

@@ -37,9 +37,11 @@ class Differential:
 
     @property
     def zero(self) -> Poly:
+        """The polynomial 0."""
         return self.context.constant(0)
 
     def set_gradient(self, name: str, **partials: Poly) -> None:
+        """The partial derivatives of the variable `name`: ∂name/∂key for each key."""
         self._gradients[name] = partials
 
     def relate(self, *relations: Poly) -> None:
@@ -47,6 +49,7 @@ class Differential:
         self._relations += relations
 
     def reduce(self, x: Poly) -> Poly:
+        """The normal form of x modulo the relations."""
         for relation in self._relations:
             x = divmod(x, relation)[1]
         return x
@@ -99,6 +102,7 @@ class Flow:
         return result
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
+        """∂(x, y)/∂(p, q)."""
         return self.ring.bracket(x, y)
 
     @property
@@ -109,6 +113,7 @@ class Flow:
 
     @property
     def hessian_determinant(self) -> Poly:
+        """H_pp H_qq − H_pq²."""
         pp, pq, qq = self.hessian
         return self.ring.reduce(pp * qq - pq * pq)
 

@@ -16,6 +16,7 @@ class EveryTask(Task):
     scheme: str
 
     def compute(self, keeper: Keeper) -> EveryResult:
+        """The proof for every H, as a result."""
         from verify.proof.every import prove_every
 
         proof = prove_every(self.scheme)

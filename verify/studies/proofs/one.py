@@ -24,6 +24,7 @@ class ProofTask(SchemeTask):
     formulas: bool = True
 
     def compute(self, keeper: Keeper) -> ProofResult:
+        """The proof for this H, as a result."""
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
         begun = time.perf_counter()
         step_map = scheme.step_map(hamiltonian)

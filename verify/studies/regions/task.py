@@ -27,9 +27,11 @@ class FlowTask(HamiltonianTask):
 
     @property
     def cost(self) -> int:
+        """About how many float64 steps it is worth."""
         return _COST + _POINTS * self.steps
 
     def compute(self, keeper: Keeper) -> FlowImage:
+        """The images of the outline, as a result."""
         from verify.studies.regions.carry import carry
 
         return carry(

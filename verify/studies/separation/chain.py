@@ -100,6 +100,7 @@ class Chain:
 
     @property
     def kind(self) -> Kind:
+        """ "enclosed" where the bound of every link is proved, else "estimated"."""
         return "enclosed" if all(x.kind == "enclosed" for x in self.links) else "estimated"
 
     @property

@@ -22,9 +22,11 @@ class SeparationTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
+        """About how many float64 steps its runs are worth."""
         return _RUNS * self.steps * STEP_COST[AUTO]
 
     def compute(self, keeper: Keeper) -> SeparationResult:
+        """The separation, as a result."""
         return separate(
             self.exact_hamiltonian(),
             self.scheme,

@@ -19,6 +19,7 @@ class StabilityFindings:
     maps: tuple[StabilityMapResult, ...]
 
     def as_json(self) -> dict[str, Any]:
+        """As a report's JSON has them, under `cases`, `largest_steps` and `maps`."""
         return {
             "cases": [
                 {"id": run.id, "verdict": run.verdict} | run.model_dump(mode="json", exclude={"id"})
@@ -30,6 +31,7 @@ class StabilityFindings:
 
 
 def findings_of(scenes: Sequence[Scene], results: Mapping[str, Frozen]) -> StabilityFindings:
+    """Those of all scenes; `results` by the keys of their tasks. What has no result is left out."""
     return StabilityFindings(
         tuple(run for scene in scenes for run in run_verdicts(scene, results)),
         tuple(step for scene in scenes for step in largest_steps(scene, results)),
@@ -48,10 +50,12 @@ def run_verdicts(scene: Scene, results: Mapping[str, Frozen]) -> tuple[Stability
 
 
 def largest_steps(scene: Scene, results: Mapping[str, Frozen]) -> tuple[LargestStepResult, ...]:
+    """The largest stable steps that were found for the scene."""
     found = (results.get(task.key) for task in largest_step_tasks(scene))
     return tuple(r for r in found if isinstance(r, LargestStepResult))
 
 
 def stability_maps(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityMapResult, ...]:
+    """The maps of stability over step sizes and starts that were found for the scene."""
     found = (results.get(task.key) for task in stability_map_tasks(scene))
     return tuple(r for r in found if isinstance(r, StabilityMapResult))

@@ -35,9 +35,11 @@ class WorkPrecisionTask(HamiltonianTask):
 
     @property
     def cost(self) -> int:
+        """About how many float64 steps it is worth."""
         return _POINT_COST * len(self.schemes) * len(self.step_sizes)
 
     def compute(self, keeper: Keeper) -> WorkPrecisionResult:
+        """The measured points, as a result."""
         return self.measure(lambda _: None)
 
     def measure(self, advance: Callable[[int], None]) -> WorkPrecisionResult:
