@@ -20,7 +20,15 @@ from verify.execution.executors import (
     open_place,
     results_of,
 )
-from verify.execution.keeping import NOTHING, Keeper, fingerprint, write_atomically
+from verify.execution.keeping import (
+    KEPT,
+    NOTHING,
+    Keeper,
+    fingerprint,
+    sealed,
+    unsealed,
+    write_atomically,
+)
 from verify.execution.plan import Plan
 from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
@@ -31,7 +39,10 @@ _WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs m
 
 
 class Store:
-    """Finished results in a folder, one JSON file each; None keeps them in memory only."""
+    """Finished results in a folder, one JSON file each; None keeps them in memory only.
+
+    A file that is damaged, or of another version of the format, is none: its task is done again.
+    """
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
@@ -45,8 +56,11 @@ class Store:
         if path is None or not path.exists():
             return None
         try:
-            found = task.result.model_validate_json(path.read_text())
+            content = unsealed(KEPT, path.read_text())
+            found = task.result.model_validate_json(content) if content else None
         except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
+            return None
+        if found is None:
             return None
         self.taken += 1
         return found
@@ -54,7 +68,7 @@ class Store:
     def put(self, name: str, result: Frozen) -> None:
         path = self.path(name)
         if path is not None:
-            write_atomically(path, result.model_dump_json(indent=1))
+            write_atomically(path, sealed(KEPT, result.model_dump_json(indent=1)))
             self.keeper(name).clear()
 
     def keeper(self, name: str) -> Keeper:

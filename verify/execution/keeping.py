@@ -19,6 +19,7 @@ from verify.content import shipped_files
 
 _VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
 _DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
+KEPT, CHECKPOINT = "areaproof kept result 1", "areaproof checkpoint 1"  # formats
 _SECONDS = 5.0  # between two checkpoints of a run
 
 
@@ -84,8 +85,21 @@ def fraction_of(x: str) -> Fraction:
     return Fraction(numerator, denominator)
 
 
-def _digest(content: str) -> str:
-    return hashlib.sha256(content.encode()).hexdigest()
+def sealed(form: str, content: str) -> str:
+    """An object with the JSON `content` in it, beside its format and digest."""
+    digest = hashlib.sha256(content.encode()).hexdigest()
+    return f'{{"format": "{form}", "sha256": "{digest}", "data":\n{content}\n}}\n'
+
+
+def unsealed(form: str, text: str) -> str | None:
+    """The content that was sealed in that format; None for any other text.
+
+    >>> unsealed(KEPT, sealed(KEPT, "[1, 2]"))
+    '[1, 2]'
+    >>> unsealed(KEPT, sealed(KEPT, "[1, 2]").replace("1, 2", "1, 3"))
+    """
+    content = text.partition("\n")[2].removesuffix("\n}\n")
+    return content if sealed(form, content) == text else None
 
 
 class Keeper:
@@ -106,17 +120,16 @@ class Keeper:
         return self._folder / f"{self._name}-{fingerprint()}-{short}.checkpoint"
 
     def load(self, label: str) -> dict[str, Any] | None:
-        """What was kept under the label; None where that is nothing, or damaged."""
+        """What was kept under the label; None where that is nothing, damaged, of another format."""
         path = self._path(label)
         if path is None:
             return None
         try:
-            digest, _, content = path.read_text().partition("\n")
-            found = json.loads(content)
+            content = unsealed(CHECKPOINT, path.read_text())
         except (OSError, ValueError):
             return None
-        intact = digest == _digest(content)
-        return found["data"] if intact and found["label"] == label else None
+        found = json.loads(content) if content else {}
+        return found["data"] if found.get("label") == label else None
 
     def due(self, label: str) -> bool:
         """Whether some seconds have passed since the last checkpoint under the label."""
@@ -127,7 +140,7 @@ class Keeper:
         path = self._path(label)
         if path is not None:
             content = json.dumps({"label": label, "data": data})
-            write_atomically(path, f"{_digest(content)}\n{content}")
+            write_atomically(path, sealed(CHECKPOINT, content))
             self._written[label] = time.monotonic()
 
     def clear(self) -> None:

@@ -25,7 +25,7 @@ from verify.pages.text.typography import number
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.proof import ProofResult
-from verify.scenes.results.report import Provenance, Report, SceneResult
+from verify.scenes.results.report import Provenance, Report, SceneResult, read_report
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import scene_from
 from verify.verdict import Verdict
@@ -258,7 +258,7 @@ def test_the_same_report_gives_the_same_page(tmp_path: Path) -> None:
     page = write(real(), tmp_path)
     assert page == tmp_path / "index.html"
     assert page.read_text(encoding="utf-8") == page_of("real")
-    assert Report.model_validate_json((tmp_path / "results.json").read_text()) == real()
+    assert read_report(tmp_path / "results.json") == real()
 
 
 def test_what_a_report_lacks_is_not_shown() -> None:

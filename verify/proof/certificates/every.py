@@ -1,6 +1,7 @@
 """Certificates of proofs: the polynomials and the identities between them, as JSON.
 
 A polynomial is a list of terms `[coefficient, name, name, …]`, a name once for each power.
+- `format`: what this is, with its version (see `verify.formats`).
 - `hamiltonian`: a polynomial, or "every": then the names are p, q and H_p, H_q, H_pp, … as free
   derivatives of H (`separable`: the mixed ones are 0).
 - `functions`: `[name, kind, argument]`, kind one of sin, cos, exp, inverse, inner ones first.

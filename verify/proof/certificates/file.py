@@ -1,25 +1,20 @@
 """A certificate's file, checked: what it says where it holds, and else why it is refused."""
 
-import json
 from pathlib import Path
 from typing import Any
 
-from verify.errors import InputError
+from verify.formats import read_json
 from verify.proof.certificates.checker import check
 
 FORMAT = "areaproof certificate 1"
 
 
 def checked(path: Path) -> tuple[bool, str]:
-    """(whether it holds, its statement or why not); InputError where it is no certificate."""
-    try:
-        data = json.loads(path.read_bytes())
-    except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
-    except (ValueError, RecursionError):
-        raise InputError("file", str(path), "is not JSON") from None
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise InputError("file", str(path), f"is not of the format {FORMAT!r}")
+    """(whether it holds, its statement or why not); InputError where it is no such certificate.
+
+    `verify.proof.certificates.checker` takes data without looking at their format.
+    """
+    data = read_json(path, FORMAT)
     try:
         check(data)
         return True, statement(data)

@@ -25,10 +25,11 @@ from verify.execution.executors import (
     results_of,
 )
 from verify.execution.keeping import versions
+from verify.formats import check_format
 from verify.reference.check import consistency
 from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.recompute import recomputed
-from verify.reference.make.models import Data, Manifest
+from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
 from verify.reference.make.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
 from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
@@ -77,7 +78,7 @@ def check(
     `own`: the folder of the scenes that it must have been made from, where that is known.
     `most_steps`: how many are done again at most; the runs that want more are named. `done`
     is called with how many recomputations are finished, of how many. InputError where a file cannot
-    be read: it is missing, too large, no UTF-8, no JSON, no CSV.
+    be read: it is missing, too large, of another format or version, no UTF-8, no JSON, no CSV.
     """
     found = Checked(seed=seed)
     units = []
@@ -135,7 +136,7 @@ def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -
 def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[Data, str]]:
     if not folder.is_dir():
         raise InputError("DIR", str(folder), "is no folder")
-    manifest = _model(Manifest, content_of(folder / MANIFEST), MANIFEST, found)
+    manifest = _model(Manifest, MANIFEST_FORMAT, content_of(folder / MANIFEST), MANIFEST, found)
     if manifest is None:
         return
     contents: dict[str, bytes] = {}
@@ -146,7 +147,7 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
     read = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
-            read[name] = _model(Data, content, name, found)
+            read[name] = _model(Data, DATA_FORMAT, content, name, found)
         elif name.endswith(".csv"):
             rows_of(content, name)
     for each in manifest.files:
@@ -186,9 +187,9 @@ def _of_scene(
     yield data, file
 
 
-def _model(model: type[M], content: bytes, name: str, found: Checked) -> M | None:
+def _model(model: type[M], form: str, content: bytes, name: str, found: Checked) -> M | None:
     """The model in a file; None, and a difference, where it is not as the schema says."""
-    raw = json_of(content, name)
+    raw = check_format(json_of(content, name), form, name)
     try:
         made = model.model_validate(raw)
     except ValidationError as error:

@@ -11,10 +11,11 @@ from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
 from verify.errors import InputError
+from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.tangent_map import nearest_double
-from verify.reference.make.models import Data, Run
+from verify.reference.make.models import DATA_FORMAT, Data, Run
 from verify.reference.make.reading import content_of, json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitPoint
@@ -106,8 +107,9 @@ def load(folder: Path, scene: str | None) -> Published:
 
 
 def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
+    raw = check_format(json_of(content_of(folder / name), name), DATA_FORMAT, name)
     try:
-        data = Data.model_validate(json_of(content_of(folder / name), name))
+        data = Data.model_validate(raw)
     except ValidationError as error:
         told = error.errors(include_url=False)[0]
         where = ".".join(map(str, told["loc"]))

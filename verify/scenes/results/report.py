@@ -1,5 +1,12 @@
 """What was found for a scene, and a whole report: results of all kinds put together."""
 
+from pathlib import Path
+from typing import Literal
+
+from pydantic import ValidationError
+
+from verify.errors import InputError
+from verify.formats import read_json
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, Seconds
 from verify.scenes.paper_figures import PaperFigure
@@ -13,6 +20,9 @@ from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.verdict import Verdict
+
+ReportFormat = Literal["areaproof report 1"]
+FORMAT: ReportFormat = "areaproof report 1"
 
 
 class SceneResult(Frozen):
@@ -66,6 +76,7 @@ class Report(Frozen):
     which libraries are installed.
     """
 
+    format: ReportFormat = FORMAT
     title: str
     claims: tuple[ClaimResult, ...]
     scenes: tuple[SceneResult, ...]
@@ -77,6 +88,17 @@ class Report(Frozen):
 
     def _repr_html_(self) -> str:
         return _report_html(self)
+
+
+def read_report(path: Path) -> Report:
+    """The report in a `results.json`. InputError, one line, for what is none of this format."""
+    data = read_json(path, FORMAT)
+    try:
+        return Report.model_validate(data)
+    except ValidationError as error:
+        told = error.errors(include_url=False)[0]
+        where = ".".join(map(str, told["loc"]))
+        raise InputError("file", str(path), f"is no report: {where}: {told['msg']}") from None
 
 
 def _report_html(report: Report) -> str:

@@ -11,7 +11,7 @@ import pytest
 from tests.helpers.constructed.reference import SCENES, changed, flipped, made, put, repaired
 from verify.errors import InputError
 from verify.reference.check.check import Checked, check
-from verify.reference.make.models import Data
+from verify.reference.make.models import DATA_FORMAT, Data
 from verify.reference.make.writing import MANIFEST, digest
 
 FLIPS = 20  # of each kind of file
@@ -247,8 +247,16 @@ def test_a_huge_file_is_not_read(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("value", [[], 3, "text", {"format": 1}, None])
-def test_json_of_another_shape_is_a_difference(folder: Path, value: Any) -> None:
+def test_json_of_another_format_is_one_line(folder: Path, value: Any) -> None:
     (folder / "mine.json").write_text(json.dumps(value))
+    repaired(folder, "mine.json")
+    with pytest.raises(InputError, match=r"mine\.json.*this version reads"):
+        look(folder)
+
+
+@pytest.mark.parametrize("value", [{}, {"name": []}])
+def test_json_of_another_shape_is_a_difference(folder: Path, value: Any) -> None:
+    (folder / "mine.json").write_text(json.dumps({"format": DATA_FORMAT} | value))
     repaired(folder, "mine.json")
     assert "mine.json" in first(folder)
     assert "as the schema says" in first(folder)

@@ -1,0 +1,162 @@
+"""Every reader of our files says in one line that a file is of another format or version."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verify.errors import InputError
+from verify.execution.execute import Store
+from verify.execution.keeping import KEPT, NOTHING, Keeper, sealed, unsealed
+from verify.formats import check_format
+from verify.proof.certificates import file as certificates
+from verify.proof.certificates.every import of_every
+from verify.proof.every import prove_every
+from verify.reference.check.check import check
+from verify.reference.compare.published import load
+from verify.reference.make.make import PUBLISHED
+from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT
+from verify.scenes.results import report as reports
+from verify.scenes.results.report import Provenance, Report, read_report
+from verify.studies.proofs.every import EveryTask
+
+Reader = Callable[[Path], object]
+REPORT = Report(
+    title="none", claims=(), scenes=(), left_out=(),
+    provenance=Provenance(command="", versions={}, machine="", seconds=1, kept=0, computed=0),
+)  # fmt: skip
+
+
+def manifest(path: Path) -> object:
+    path.rename(path.parent / "manifest.json")
+    return check(path.parent, share=0, seed=0)
+
+
+def scene(path: Path) -> object:
+    return load(path.parent, None).scene("duffing")
+
+
+READERS: dict[str, tuple[str, Reader, Callable[[], str]]] = {
+    "certificate": (
+        certificates.FORMAT, certificates.checked,
+        lambda: json.dumps(of_every(prove_every("lie2"))),
+    ),
+    "results.json": (reports.FORMAT, read_report, REPORT.model_dump_json),
+    "data": (DATA_FORMAT, scene, (PUBLISHED / "duffing.json").read_text),
+    "manifest": (MANIFEST_FORMAT, manifest, (PUBLISHED / "manifest.json").read_text),
+}  # fmt: skip
+readers = pytest.mark.parametrize(("own", "read", "written"), READERS.values(), ids=READERS)
+
+
+@readers
+def test_a_file_of_the_own_format_is_read(
+    tmp_path: Path, own: str, read: Reader, written: Callable[[], str]
+) -> None:
+    path = tmp_path / "mine.json"
+    path.write_text(written())
+    assert json.loads(written())["format"] == own
+    assert read(path)
+
+
+MISSING = object()
+OTHERS: dict[str, tuple[Callable[[str], Any], str]] = {
+    "newer": (lambda own: own[:-1] + "2", "which is newer"),
+    "much-newer": (lambda own: own[:-1] + "9" * 5000, "which is newer"),
+    "older": (lambda own: own[:-1] + "0", "which is older"),
+    "no-number": (lambda own: own[:-1] + "one", "one'; this"),
+    "no-version": (lambda own: own[:-2], "has the format"),
+    "another-format": (lambda _: "areaproof poem 1", "'areaproof poem 1'"),
+    "missing": (lambda _: MISSING, "names no format"),
+    "null": (lambda _: None, "has the format None"),
+    "a-number": (lambda _: 1, "has the format 1"),
+    "a-list": (lambda own: [own], "has the format ['areaproof"),
+}
+
+
+@readers
+@pytest.mark.parametrize(("other", "told"), OTHERS.values(), ids=OTHERS)
+def test_a_file_of_another_format_is_one_line_and_nothing_else_of_it_is_read(
+    tmp_path: Path, own: str, read: Reader, written: Callable[[], str],
+    other: Callable[[str], Any], told: str,
+) -> None:  # fmt: skip
+    path, content = tmp_path / "mine.json", {"format": other(own), "title": 1, "name": []}
+    if content["format"] is MISSING:
+        del content["format"]
+    path.write_text(json.dumps(content))
+    with pytest.raises(InputError) as error:
+        read(path)
+    line = str(error.value)
+    assert told in line
+    assert f"this version reads {own!r}" in line
+    assert "mine.json" in line or "manifest.json" in line
+    assert "\n" not in line
+    assert len(line) < 300
+
+
+@pytest.mark.parametrize("content", ["[]", "1", "null", '"areaproof certificate 1"'])
+def test_what_is_no_object_has_no_format(content: str) -> None:
+    with pytest.raises(InputError, match="is no JSON object, but"):
+        check_format(json.loads(content), "areaproof certificate 1", "mine.json")
+
+
+def test_a_report_of_this_format_that_is_none_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "results.json").write_text(json.dumps({"format": reports.FORMAT}))
+    with pytest.raises(InputError, match="is no report: title: Field required"):
+        read_report(tmp_path / "results.json")
+    with pytest.raises(InputError, match="No such file"):
+        read_report(tmp_path / "none.json")
+
+
+# -- what is kept: another version is not believed, and not worth a line ---------------------------
+
+CHANGES: dict[str, Callable[[str], str]] = {
+    "newer": lambda text: text.replace("kept result 1", "kept result 2"),
+    "older": lambda text: text.replace("kept result 1", "kept result 0"),
+    "another": lambda text: text.replace("kept result", "checkpoint"),
+    "no-format": lambda text: text.replace('"format": "areaproof kept result 1", ', ""),
+    "bare": lambda text: text.partition("\n")[2].removesuffix("}\n"),
+    "one-digit": lambda text: text.replace('"order": 3', '"order": 4'),
+    "no-digest": lambda text: text.replace('"sha256"', '"sha"'),
+    "more": lambda text: text + "\n",
+}
+
+
+@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
+def test_a_kept_result_of_another_version_or_content_is_none(
+    tmp_path: Path, change: Callable[[str], str]
+) -> None:
+    store, task = Store(tmp_path), EveryTask(scheme="lie2")
+    result = task.compute(NOTHING)
+    store.put(task.key, result)
+    assert store.get(task.key, task) == result
+    (path,) = tmp_path.iterdir()
+    text = path.read_text()
+    assert json.loads(text)["format"] == KEPT
+    path.write_text(change(text))
+    assert path.read_text() != text
+    assert store.get(task.key, task) is None
+    assert store.taken == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("checkpoint 1", "checkpoint 2"), ("checkpoint 1", "kept result 1"), (": 5", ": 6")],
+)
+def test_a_checkpoint_of_another_version_or_content_is_none(
+    tmp_path: Path, old: str, new: str
+) -> None:
+    keeper = Keeper(tmp_path, "run")
+    keeper.save("plain", {"done": 5})
+    assert keeper.load("plain") == {"done": 5}
+    (path,) = tmp_path.iterdir()
+    assert old in path.read_text()
+    path.write_text(path.read_text().replace(old, new))
+    assert keeper.load("plain") is None
+
+
+def test_what_was_sealed_is_told_by_its_format() -> None:
+    assert unsealed(KEPT, sealed(KEPT, "{}")) == "{}"
+    assert unsealed("areaproof poem 1", sealed(KEPT, "{}")) is None
+    assert unsealed(KEPT, "") is None

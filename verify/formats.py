@@ -1,0 +1,60 @@
+"""The format of our JSON files: its name and version under the key `format`, looked at first.
+
+    {"format": "areaproof certificate 1", …}
+
+A format's version is a whole number, which grows when a reader of the old one would misread the
+new. Each format is named where its files are made: `FORMAT` of `proof.certificates.file` and of
+`scenes.results.report` (results.json), `KEPT` and `CHECKPOINT` of `execution.keeping`,
+`DATA_FORMAT` and `MANIFEST_FORMAT` of `reference.make.models`.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from verify.errors import InputError
+
+
+def read_json(path: Path, wanted: str) -> dict[str, Any]:
+    """The object of that format in a file. InputError for what is not there, or no such JSON."""
+    try:
+        data = json.loads(path.read_bytes())
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+    except (ValueError, RecursionError):
+        raise InputError("file", str(path), "is not JSON") from None
+    return check_format(data, wanted, str(path))
+
+
+def check_format(data: object, wanted: str, file: str) -> dict[str, Any]:
+    """The data, if they are an object of the format `wanted`.
+
+    >>> check_format({"format": "areaproof certificate 2"}, "areaproof certificate 1", "lie2.json")
+    Traceback (most recent call last):
+    verify.errors.InputError: file=lie2.json: has the format 'areaproof certificate 2', which is \
+newer; this version reads 'areaproof certificate 1'
+
+    Raises InputError, one line, for an older or newer version, for another format and for none.
+    """
+    if isinstance(data, dict) and data.get("format") == wanted:
+        return data
+    if not isinstance(data, dict):
+        found = f"is no JSON object, but {_short(data)}"
+    elif "format" not in data:
+        found = "names no format"
+    else:
+        found = f"has the format {_short(data['format'])}{_age(data['format'], wanted)}"
+    raise InputError("file", file, f"{found}; this version reads {wanted!r}")
+
+
+def _age(found: object, wanted: str) -> str:
+    """Whether it is the same format of another version."""
+    (name, _, version), (own, _, current) = (str(x).rpartition(" ") for x in (found, wanted))
+    if name != own or not version.isdecimal():
+        return ""
+    return ", which is newer" if int(version[:9]) > int(current) else ", which is older"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:60]}…"
