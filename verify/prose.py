@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Self
 
 _QUOTE = "`"
-_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)?(/[0-9]+)?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(/[0-9]+)?", re.ASCII)
 
 
 class Formula(str):
@@ -103,13 +103,19 @@ def read_prose(text: str) -> Prose:
 
     >>> read_prose("of order `h^3`, says the paper").parts
     ('of order ', 'h^3', ', says the paper')
+    >>> read_prose("at q = `-0.5`").as_data()  # a quoted decimal is a Number
+    ['at q = ', {'number': '-0.5'}]
 
     A backtick without its partner is text.
     """
     pieces = text.split(_QUOTE)
     if len(pieces) % 2 == 0:
         pieces[-2:] = [_QUOTE.join(pieces[-2:])]
-    return Prose(*(Formula(p) if i % 2 else p for i, p in enumerate(pieces)))
+    return Prose(*(_quoted(p) if i % 2 else p for i, p in enumerate(pieces)))
+
+
+def _quoted(text: str) -> str:
+    return Number(text) if _NUMBER.fullmatch(text) else Formula(text)
 
 
 def _unpacked(parts: Iterable[str]) -> Iterable[str]:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from verify.algebra.conditions import ByConditions, Condition
 from verify.proof.every_proof import EveryProof
+from verify.prose import Formula, Number, Prose, prose
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -34,12 +35,12 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions) -> EveryProof:
         order=None,
         area_preserving=True if preserved else None,
         convergence_order=agreed,
-        checked=(f"order {agreed}, {_count(every_h, agreed)}", *end),
+        checked=(prose(f"order {agreed}, {_count(every_h, agreed)}"), *end),
         conditions=(*asked, *area),
     )
 
 
-def _agreed(every_h: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
+def _agreed(every_h: ByConditions, claimed: int) -> tuple[int, tuple[Prose, ...]]:
     """The order of the map, as far as it is looked at, and what ends it."""
     most = min(claimed + _MORE, every_h.most_order)
     for order in range(1, most + 1):
@@ -47,8 +48,8 @@ def _agreed(every_h: ByConditions, claimed: int) -> tuple[int, tuple[str, ...]]:
         wrong = first_wrong(here)
         if wrong is not None:
             word = "does not hold" if wrong.holds is False else "is not decided"
-            end = f"no further: of h^{order}, {shown(wrong)} {word}"
-            return order - 1, (end,)
+            power = Formula(f"h^{order}")
+            return order - 1, (prose("no further: of ", power, ", ", shown(wrong), f" {word}"),)
     return most, ()
 
 
@@ -59,22 +60,21 @@ def _count(every_h: ByConditions, order: int) -> str:
 
 def _verdict(
     scheme: Scheme, asked: Sequence[Condition], area: Sequence[Condition]
-) -> tuple[Verdict, str]:
+) -> tuple[Verdict, Prose]:
     wrong = first_wrong(asked)
     if wrong is not None and wrong.holds is False:
-        return Verdict.REFUTED, (
-            f"{scheme.name} claims order {scheme.order}; of h^{wrong.order}, {shown(wrong)} does "
-            "not hold"
-        )
+        claimed, power = f"{scheme.name} claims order {scheme.order}", Formula(f"h^{wrong.order}")
+        return Verdict.REFUTED, prose(claimed, "; of ", power, ", ", shown(wrong), " does not hold")
     if wrong is not None:
-        return Verdict.UNDECIDED, f"whether {shown(wrong)} holds is not decided"
+        return Verdict.UNDECIDED, prose("whether ", shown(wrong), " holds is not decided")
     of_area = first_wrong(area)
     if of_area is not None:
-        return Verdict.UNDECIDED, (
-            f"order {scheme.order} is proved; of what suffices for det J ≡ 1, {shown(of_area)} "
-            "does not hold, and by that alone det J is not decided"
+        return Verdict.UNDECIDED, prose(
+            f"order {scheme.order} is proved; of what suffices for det J ≡ 1, ",
+            shown(of_area),
+            " does not hold, and by that alone det J is not decided",
         )
-    return Verdict.PROVED, (
+    return Verdict.PROVED, prose(
         f"det J ≡ 1, and order {scheme.order}: every condition on the coefficients holds exactly"
     )
 
@@ -86,5 +86,7 @@ def first_wrong(conditions: Sequence[Condition]) -> Condition | None:
     return next(failing, next((c for c in ordered if c.holds is None), None))
 
 
-def shown(condition: Condition) -> str:
-    return f"{condition.name} (residue {condition.residue})"
+def shown(condition: Condition) -> Prose:
+    """The condition with its residue."""
+    residue = Number(condition.residue)
+    return prose(Formula(condition.name), " (residue ", residue, ")")

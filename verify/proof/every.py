@@ -31,6 +31,7 @@ from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.order import leading_of
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
+from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
 from verify.schemes.scheme import Scheme
@@ -69,15 +70,16 @@ def _of_conditions(scheme: Scheme, every_h: ByConditions, separable: bool) -> Ev
     if separable and not every_h.separable:
         proof = replace(proof, separable=True)
         if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
-            reason = f"of every smooth H: {proof.reason}; of H = T(p) + V(q) alone nothing is said"
+            alone = "; of H = T(p) + V(q) alone nothing is said"
+            reason = prose("of every smooth H: ", proof.reason, alone)
             return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
     agreed = proof.convergence_order
     if proof.verdict is Verdict.UNDECIDED and agreed is not None and agreed >= scheme.order:
         found = counterexample(scheme, separable)
         if found is not None:
             hamiltonian, order = found
-            lost = f"not det J ≡ 1: ΔJ has order {order} for H = {hamiltonian}"
-            reason = f"of order {scheme.order}, but {lost}"
+            lost = f"not det J ≡ 1: ΔJ has order {order} for H = "
+            reason = prose(f"of order {scheme.order}, but {lost}", Formula(hamiltonian))
             return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
     if proof.verdict is not Verdict.UNDECIDED or not isinstance(every_h, BySeries):
         return proof
@@ -100,12 +102,13 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
     most = scheme.order + 2
     agreed = _convergence(Jets(most + 1, separable=separable), every_h, most)
     preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
-    verdict, reason = Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1, stage by stage"
+    verdict, reason = Verdict.PROVED, prose("ΔJ is the zero function: det J ≡ 1, stage by stage")
     if agreed < scheme.order:
         verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
     elif not preserved:
         return _of_series(scheme, every_h, separable)
-    ratios = ", ".join(dict.fromkeys(str(a) for a, _ in every_h.determinants()))
+    ratios = joined(", ", dict.fromkeys(Formula(str(a)) for a, _ in every_h.determinants()))
+    names = read_prose(" (a, b, c = `H_pp`, `H_pq`, `H_qq`)")
     return EveryProof(
         scheme.name,
         separable,
@@ -114,7 +117,7 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
         order=None,
         area_preserving=True,
         convergence_order=agreed,
-        checked=(f"A J = B with det A = det B = {ratios} (a, b, c = H_pp, H_pq, H_qq)",),
+        checked=(prose("A J = B with det A = det B = ", ratios, names),),
     )
 
 
@@ -130,7 +133,9 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
     agreed = _convergence(jets, every_h, most)
     if order is None:
         verdict = Verdict.UNDECIDED
-        reason = f"the coefficients of ΔJ up to h^{most} vanish; whether all do is not decided"
+        reason = read_prose(
+            f"the coefficients of ΔJ up to `h^{most}` vanish; whether all do is not decided"
+        )
         if agreed < scheme.order:
             verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
         return EveryProof(scheme.name, separable, verdict, reason, None, None, agreed)
@@ -151,7 +156,9 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         potential=None if found.potential is None else shown(found.potential),
         why=found.reason,
         checked=(
-            f"the coefficients of h¹ … h^{order - 1} in det J are the zero polynomial",
+            read_prose(
+                f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
+            ),
             *checked,
         )
         if order > 1
@@ -159,26 +166,26 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
     )
 
 
-def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, str]:
+def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, Prose]:
     if agreed < scheme.order:
         return Verdict.REFUTED, _missed(scheme, agreed)
     if scheme.area_preserving:
-        return Verdict.REFUTED, f"{scheme.name} claims det J ≡ 1; ΔJ has order {order}"
-    return Verdict.PROVED, (
-        f"the coefficients of ΔJ below h^{order} vanish for every H, that of h^{order} does not"
+        return Verdict.REFUTED, prose(f"{scheme.name} claims det J ≡ 1; ΔJ has order {order}")
+    return Verdict.PROVED, read_prose(
+        f"the coefficients of ΔJ below `h^{order}` vanish for every H, that of `h^{order}` does not"
     )
 
 
-def _missed(scheme: Scheme, agreed: int) -> str:
-    return (
+def _missed(scheme: Scheme, agreed: int) -> Prose:
+    return read_prose(
         f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the exact "
-        f"flow up to h^{agreed} only"
+        f"flow up to `h^{agreed}` only"
     )
 
 
 def _telescoping(
     jets: Jets, every_h: BySeries, leading: Poly, order: int
-) -> tuple[Telescoping, str, tuple[str, ...]]:
+) -> tuple[Telescoping, str, tuple[Prose, ...]]:
     """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
     if not isinstance(every_h, TaylorSeries):
         return telescopes(jets, leading), "", ()
@@ -186,13 +193,14 @@ def _telescoping(
     end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in ("p", "q")]
     divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
     formula = ""
-    checked: tuple[str, ...] = ()
+    checked: tuple[Prose, ...] = ()
     if order == eta + 1 and leading * math.factorial(eta + 1) == -divergence:
         formula = f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
-        checked = (f"that of h^{eta + 1} is −div(X^{eta} f)/{eta + 1}!",)
+        told = f"that of `h^{eta + 1}` is −div(`X^{eta}` f)/{eta + 1}!"
+        checked = (read_prose(told),)
     found = telescopes_of_lie(jets, leading, eta)
     if found.holds:
-        checked = (*checked, "X·G is that coefficient")
+        checked = (*checked, prose("X·G is that coefficient"))
     return found, formula, checked
 
 

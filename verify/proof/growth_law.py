@@ -54,6 +54,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion
 from verify.proof.telescoping import potential_of_lie
+from verify.prose import read_prose
 from verify.schemes import get
 from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.step_map import Substep
@@ -112,8 +113,12 @@ def _plain_law(step: Substep) -> GrowthLaw:
         if zero is True:
             continue
         if zero is None:
-            raise NoLawError(f"whether the coefficient of h^{n} in ΔJ vanishes is not decided")
+            raise NoLawError(
+                read_prose(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
+            )
         if n < 2:
-            raise NoLawError(f"ΔJ begins with h^{n}: the map is not consistent with the flow")
+            raise NoLawError(
+                read_prose(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
+            )
         return GrowthLaw(n - 1, (ring, x), None, None)
-    raise NoLawError(f"the coefficients of ΔJ vanish up to h^{_MOST_ORDERS}")
+    raise NoLawError(read_prose(f"the coefficients of ΔJ vanish up to `h^{_MOST_ORDERS}`"))

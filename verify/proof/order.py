@@ -16,6 +16,7 @@ from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.hamiltonian import VectorField
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
+from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
@@ -30,7 +31,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     leading = leading_of(step_map, series)
     verdict, reason = _verdict(convergence, leading, scheme)
     if leading.decision.zero is True and step_map.conditions:
-        reason = f"{reason}, {_by_conditions(step_map.conditions)}"
+        reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -45,11 +46,13 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     )
 
 
-def _by_conditions(conditions: Sequence[Condition]) -> str:
-    first = conditions[0].name
+def _by_conditions(conditions: Sequence[Condition]) -> Prose:
+    first = Formula(conditions[0].name)
     if len(conditions) == 1:
-        return f"as {first} holds exactly, for every H"
-    return f"as {len(conditions)} conditions on its coefficients hold exactly ({first}, …)"
+        return prose("as ", first, " holds exactly, for every H")
+    return prose(
+        f"as {len(conditions)} conditions on its coefficients hold exactly (", first, ", …)"
+    )
 
 
 class _BySeries:
@@ -184,16 +187,30 @@ def _agrees(expansion: Expansion, n: int, ring: Ring, flow: Poly) -> bool | None
 
 def _verdict(
     convergence: Convergence, leading: Leading, scheme: Scheme | None
+) -> tuple[Verdict, Prose]:
+    """The verdict, and the reason for it."""
+    verdict, reason = _reasoned(convergence, leading, scheme)
+    return verdict, read_prose(reason)
+
+
+def _called(scheme: Scheme) -> str:
+    """Its name, quoted where that is the formulas of a user's scheme."""
+    return f"`{scheme.name}`" if "=" in scheme.name else scheme.name
+
+
+def _reasoned(
+    convergence: Convergence, leading: Leading, scheme: Scheme | None
 ) -> tuple[Verdict, str]:
     claimed = scheme.order if scheme else 1
     if convergence.misses(claimed):
-        known = f"agrees with the exact flow up to h^{convergence.order}"
+        known = f"agrees with the exact flow up to `h^{convergence.order}`"
         if convergence.order == -1:
             known = "agrees with the exact flow not even at h = 0"
         if not convergence.decided:
             return Verdict.UNDECIDED, f"the map {known}; whether further is not decided"
         if scheme:
-            return Verdict.REFUTED, f"{scheme.name} claims order {claimed}; the map {known} only"
+            claims = f"{_called(scheme)} claims order {claimed}"
+            return Verdict.REFUTED, f"{claims}; the map {known} only"
         only = " only" if convergence.order is not None and convergence.order >= 0 else ""
         return Verdict.REFUTED, f"not a scheme for this H: the map {known}{only}"
     match leading.decision.zero:
@@ -201,15 +218,16 @@ def _verdict(
             return Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1"
         case False if leading.power is None and not (scheme and scheme.area_preserving):
             return Verdict.PROVED, (
-                f"ΔJ is not the zero function, and its coefficients up to h^{MOST_ORDERS} vanish"
+                f"ΔJ is not the zero function, and its coefficients up to `h^{MOST_ORDERS}` vanish"
             )
         case None:
             return Verdict.UNDECIDED, (
-                f"the coefficient of h^{leading.power} in ΔJ is neither shown to vanish nor not to"
+                f"the coefficient of `h^{leading.power}` in ΔJ is neither shown to vanish nor not "
+                "to"
             )
     if scheme is not None and scheme.area_preserving:
-        return Verdict.REFUTED, f"{scheme.name} claims det J ≡ 1; ΔJ has order {leading.power}"
+        return Verdict.REFUTED, f"{_called(scheme)} claims det J ≡ 1; ΔJ has order {leading.power}"
     return Verdict.PROVED, (
-        f"the coefficients of ΔJ below h^{leading.power} vanish identically, that of "
-        f"h^{leading.power} does not"
+        f"the coefficients of ΔJ below `h^{leading.power}` vanish identically, that of "
+        f"`h^{leading.power}` does not"
     )

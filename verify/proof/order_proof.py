@@ -8,6 +8,7 @@ import sympy
 from verify.arithmetic.exact import text
 from verify.notebook import aligned_latex, cut, html_table, short_latex
 from verify.proof.expansion import Leading
+from verify.prose import Prose
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
@@ -26,7 +27,7 @@ class Proof:
     """
 
     verdict: Verdict
-    reason: str
+    reason: Prose
     order: int | None
     first: Leading
     area_preserving: bool | None

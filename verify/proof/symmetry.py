@@ -17,6 +17,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import first_wrong, shown
+from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
@@ -33,7 +34,7 @@ class Symmetry:
     Φ_(−h) ∘ Φ_h − id that does not vanish; None where none is known."""
 
     verdict: Verdict
-    reason: str
+    reason: Prose
     power: int | None = None
     conditions: tuple[Condition, ...] = ()
 
@@ -44,17 +45,19 @@ def prove_symmetry(scheme: Scheme) -> Symmetry:
     conditions = every_h.symmetry_conditions() if isinstance(every_h, WithSymmetry) else ()
     wrong = first_wrong(conditions)
     if conditions and wrong is None:
-        return Symmetry(Verdict.PROVED, "its coefficients are a palindrome", None, conditions)
+        mirrored = prose("its coefficients are a palindrome")
+        return Symmetry(Verdict.PROVED, mirrored, None, conditions)
     if isinstance(every_h, StageEquations) and palindromic(every_h):
-        return Symmetry(Verdict.PROVED, "its stages, in reverse, undo its step")
+        return Symmetry(Verdict.PROVED, prose("its stages, in reverse, undo its step"))
     try:
         step_map = scheme.step_map(Hamiltonian.parse(WITNESS))
     except InputError:
-        return Symmetry(Verdict.UNDECIDED, f"it does not take {WITNESS}", None, conditions)
+        reason = prose("it does not take ", Formula(WITNESS))
+        return Symmetry(Verdict.UNDECIDED, reason, None, conditions)
     found = by_series(step_map, scheme.order + _MORE)
     if wrong is None:
         return found
-    reason = f"{found.reason}; of its coefficients, {shown(wrong)} does not hold"
+    reason = prose(found.reason, "; of its coefficients, ", shown(wrong), " does not hold")
     return Symmetry(found.verdict, reason, found.power, conditions)
 
 
@@ -71,19 +74,22 @@ def by_series(step_map: StepMap, most: int) -> Symmetry:
     for reach in dict.fromkeys([*range(2, most, 2), most]):  # terms multiply with every order
         expanded = step_map.taylor(reach)
         if expanded is None:
-            return Symmetry(Verdict.UNDECIDED, "the map's Taylor series is not at hand")
+            return Symmetry(Verdict.UNDECIDED, prose("the map's Taylor series is not at hand"))
         field, *step = expanded
         gaps = [undone(field.ring, x, *step) for x in step]
         for n in range(seen + 1, reach + 1):
             zero = [field.ring.decide(x.coefficients[n]).zero for x in gaps]
             if False in zero:
-                shown_h = step_map.hamiltonian.expression
-                reason = f"for H = {shown_h} Φ_(−h) ∘ Φ_h differs from the identity by O(h^{n})"
+                shown_h = Formula(str(step_map.hamiltonian.expression))
+                differs = f" `Φ_(−h)` ∘ `Φ_h` differs from the identity by O(`h^{n}`)"
+                reason = prose("for H = ", shown_h, read_prose(differs))
                 return Symmetry(Verdict.REFUTED, reason, n)
             if None in zero:
-                return Symmetry(Verdict.UNDECIDED, f"the coefficient of h^{n} is not decided")
+                undecided = read_prose(f"the coefficient of `h^{n}` is not decided")
+                return Symmetry(Verdict.UNDECIDED, undecided)
         seen = reach
-    return Symmetry(Verdict.UNDECIDED, f"Φ_(−h) ∘ Φ_h is the identity up to h^{most} at least")
+    alike = read_prose(f"`Φ_(−h)` ∘ `Φ_h` is the identity up to `h^{most}` at least")
+    return Symmetry(Verdict.UNDECIDED, alike)
 
 
 def undone(ring: Ring, x: Series, p: Series, q: Series) -> Series:

@@ -24,6 +24,7 @@ import flint
 from verify.algebra.generator import terms_of
 from verify.algebra.jets import Jets, Poly, shown
 from verify.algebra.linear_combination import combination
+from verify.prose import Formula, Prose, prose, read_prose
 
 
 class Derivation(Protocol):
@@ -55,7 +56,7 @@ class Telescoping:
     """`holds`: L = X·G for every H with `potential` G; False: not for every H, as `reason` says."""
 
     holds: bool
-    reason: str
+    reason: Prose
     potential: Poly | None = None
 
 
@@ -69,7 +70,10 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
     if not at_rest.is_zero():
         return Telescoping(
             False,
-            f"X·G vanishes where H_p = H_q = 0, for any smooth G; there L is {shown(at_rest)}",
+            prose(
+                read_prose("X·G vanishes where `H_p` = `H_q` = 0, for any smooth G; there L is "),
+                Formula(shown(at_rest)),
+            ),
         )
     graded: dict[tuple[int, int, int], dict[tuple[int, ...], flint.fmpq]] = {}
     for monomial, coefficient in terms_of(leading):
@@ -81,11 +85,13 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
         if found is None:
             return Telescoping(
                 False,
-                f"of the {unknowns} monomials that a G of that degree may have, X makes a space of "
-                f"dimension {rank}; with L it has dimension {rank + 1}",
+                prose(
+                    f"of the {unknowns} monomials that a G of that degree may have, X makes a "
+                    f"space of dimension {rank}; with L it has dimension {rank + 1}"
+                ),
             )
         total += found
-    return Telescoping(True, "X·G = L, solved for G by linear algebra", total)
+    return Telescoping(True, prose("X·G = L, solved for G by linear algebra"), total)
 
 
 def telescopes_of_lie(jets: Jets, leading: Poly, eta: int) -> Telescoping:
@@ -93,8 +99,11 @@ def telescopes_of_lie(jets: Jets, leading: Poly, eta: int) -> Telescoping:
     if eta % 2 == 0:
         potential = potential_of_lie(jets, eta)
         if jets.derive(potential) == leading:
-            reason = f"G = −1/{eta + 1}! Σ_k (−1)^k ∂(X^({eta}−k) p, X^k q)/∂(p, q), k = 0 … {eta}"
-            return Telescoping(True, reason, potential)
+            reason = (
+                f"G = −1/{eta + 1}! `Σ_k` `(−1)^k` ∂(`X^({eta}−k)` p, `X^k` q)/∂(p, q), "
+                f"k = 0 … {eta}"
+            )
+            return Telescoping(True, read_prose(reason), potential)
     return telescopes(jets, leading)
 
 

@@ -7,6 +7,7 @@ from pydantic import (
     ConfigDict,
     PlainSerializer,
     PlainValidator,
+    SerializationInfo,
     SerializerFunctionWrapHandler,
     WithJsonSchema,
     model_serializer,
@@ -17,6 +18,7 @@ from verify.prose import Prose
 
 Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no exact value
 Seconds = Real
+PLAIN = {"parts": False}  # a context of `model_dump`
 _BESIDE = "_parts"  # the key of a prose's parts is its own and this
 
 
@@ -39,15 +41,19 @@ class WithProse(Frozen):
     """A model with fields that are `Said`: each is its plain text in data.
 
     Where one is more than text, `NAME_parts` stands beside it; what is read may leave that out.
-    Raises ValueError where the parts are not those of the text.
+    With `context=PLAIN` it is left out, as in what commands print. Raises ValueError where the
+    parts are not those of the text.
     """
 
     @model_serializer(mode="wrap")
-    def _parts_beside(self, shown: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _parts_beside(
+        self, shown: SerializerFunctionWrapHandler, info: SerializationInfo
+    ) -> dict[str, Any]:
         data: dict[str, Any] = {}
         for name, value in shown(self).items():
             data[name] = value
-            if name in _prose_fields(type(self)) and _more_than_text(getattr(self, name)):
+            said = name in _prose_fields(type(self)) and info.context != PLAIN
+            if said and _more_than_text(getattr(self, name)):
                 data[name + _BESIDE] = _data_of(getattr(self, name))
         return data
 

@@ -17,6 +17,7 @@ from math import log10
 
 from verify.arithmetic.arb import ball, precision, slope
 from verify.proof.expansion import MOST_ORDERS
+from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import CriterionResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
@@ -40,7 +41,7 @@ def judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> Criteri
     return CriterionResult(number=number, scheme=proof.scheme, verdict=verdict, evidence=evidence)
 
 
-def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
+def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[Verdict, Prose]:
     agreement = proof.convergence_order
     if agreement is not None and agreement < 1:
         if proof.verdict is Verdict.REFUTED:
@@ -49,62 +50,68 @@ def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[
             return Verdict.UNDECIDED, proof.reason
         return _measured(number, runs)
     if proof.area_preserving:
-        return Verdict.PROVED, "ΔJ ≡ 0 is proved, so ΔJ, MSE and Λ are exactly 0"
+        return Verdict.PROVED, prose("ΔJ ≡ 0 is proved, so ΔJ, MSE and Λ are exactly 0")
     if proof.order is not None:
-        at = ", ".join(f"{name} = {value}" for name, value in proof.witness.items())
-        where = f"; at {at} its coefficient is {proof.enclosure}" if at else ""
+        at = joined(", ", (prose(f"{n} = ", Number(x)) for n, x in proof.witness.items()))
+        value = prose("; at ", at, " its coefficient is ", Formula(proof.enclosure))
+        where = value if at else Prose()
         if number == 1:
-            return Verdict.REFUTED, f"ΔJ has order exactly h^{proof.order}{where}"
-        return _from_order(number, proof.order, f", exactly of that order{where}", runs)
+            exact = Formula(f"h^{proof.order}")
+            return Verdict.REFUTED, prose("ΔJ has order exactly ", exact, where)
+        return _from_order(number, proof.order, prose(", exactly of that order", where), runs)
     if number == 1:
         open_ = proof.area_preserving is None
         return Verdict.UNDECIDED if open_ else Verdict.REFUTED, proof.reason
     least = (MOST_ORDERS if agreement is None else agreement) + 1
-    return _from_order(number, least, ", as the map agrees with the exact flow so far", runs)
+    so_far = prose(", as the map agrees with the exact flow so far")
+    return _from_order(number, least, so_far, runs)
 
 
-def _from_order(number: int, r: int, how: str, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
+def _from_order(
+    number: int, r: int, how: Prose, runs: Sequence[RunResult]
+) -> tuple[Verdict, Prose]:
     """Criteria 2–4 from ΔJ = O(h^r) with r ≥ 2, which every consistent map has."""
     if number == 2:
-        return Verdict.PROVED, f"ΔJ = O(h^{r}){how}"
+        return Verdict.PROVED, prose("ΔJ = O(", Formula(f"h^{r}"), ")", how)
     name, order = ("mse", 2 * r) if number == 3 else ("lambda", r - 1)
-    bound = f"{'MSE' if number == 3 else 'Λ'} = O(h^{order}), an upper bound"
+    quantity = "MSE" if number == 3 else "Λ"
+    bound = read_prose(f"{quantity} = O(`h^{order}`), an upper bound")
     left = [run for run in runs if run.status == "left range"]
     if left:
-        return Verdict.UNDECIDED, (
-            f"{bound} on every [0, T] on which the exact solution exists; whether it does on the "
-            f"scene's is open, as {len(left)} of {len(runs)} runs leave the range"
+        return Verdict.UNDECIDED, prose(
+            bound,
+            " on every [0, T] on which the exact solution exists; whether it does on the "
+            f"scene's is open, as {len(left)} of {len(runs)} runs leave the range",
         )
-    where = "on every fixed [0, T] on which the exact solution exists"
-    return Verdict.PROVED, f"{bound} {where}{_slopes_sentence(name, runs)}"
+    where = " on every fixed [0, T] on which the exact solution exists"
+    return Verdict.PROVED, prose(bound, where, _slopes_sentence(name, runs))
 
 
-def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, str]:
+def _measured(number: int, runs: Sequence[RunResult]) -> tuple[Verdict, Prose]:
     """By the slopes: criterion 3 asks for more than 1, criterion 4 for more than 0."""
     name, least = ("mse", 1) if number == 3 else ("lambda", 0)
     slopes = measured_slopes(name, runs)
     if not slopes:
-        return Verdict.UNDECIDED, (
+        return Verdict.UNDECIDED, prose(
             f"no proof, and fewer than {_MIN_POINTS} step sizes above the rounding plateau"
         )
-    text = f"measured slope {_range(slopes)} over the step sizes"
+    text = prose("measured slope ", _range(slopes), " over the step sizes")
     if all(s - 2 * e > least + _MARGIN for s, e in slopes):
         return Verdict.MEASURED, text
     if any(s + 2 * e <= least + _NOISE for s, e in slopes):
-        return Verdict.REFUTED, f"{text}, where more than {least} is asked for"
-    return Verdict.UNDECIDED, f"{text}, too close to {least} to tell"
+        return Verdict.REFUTED, prose(text, f", where more than {least} is asked for")
+    return Verdict.UNDECIDED, prose(text, f", too close to {least} to tell")
 
 
-def _slopes_sentence(name: str, runs: Sequence[RunResult]) -> str:
+def _slopes_sentence(name: str, runs: Sequence[RunResult]) -> Prose:
     slopes = measured_slopes(name, runs)
-    return f"; measured slope {_range(slopes)} over the grid" if slopes else ""
+    return prose("; measured slope ", _range(slopes), " over the grid") if slopes else Prose()
 
 
-def _range(slopes: Sequence[tuple[float, float]]) -> str:
+def _range(slopes: Sequence[tuple[float, float]]) -> Prose:
     low, high = min(slopes), max(slopes)
-    if len(slopes) == 1:
-        return f"{low[0]:.2f} ± {low[1]:.2f}"
-    return f"{low[0]:.2f} … {high[0]:.2f}"
+    end, between = (low[1], " ± ") if len(slopes) == 1 else (high[0], " … ")
+    return prose(Number(f"{low[0]:.2f}"), between, Number(f"{end:.2f}"))
 
 
 def measured_slopes(name: str, runs: Sequence[RunResult]) -> list[tuple[float, float]]:

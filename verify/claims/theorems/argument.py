@@ -4,12 +4,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from verify.prose import Prose, read_prose
 from verify.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class Check:
-    """One exact fact that an argument rests on; `shown` is its value in a few words."""
+    """One exact fact that an argument rests on; `shown` is its value in a few words.
+
+    Both are written as `read_prose` takes them, with formulas quoted.
+    """
 
     what: str
     holds: bool
@@ -20,17 +24,17 @@ class Check:
 class Argument:
     """A statement with its verdict and the argument for it.
 
-    `evidence` is one line; `proof` a paragraph that can be quoted, in the page's plain text;
-    `details` a table of texts, whose first row is its head: the facts that were computed.
+    `evidence` is one line; `proof` a paragraph that can be quoted; `details` a table, whose first
+    row is its head: the facts that were computed.
     """
 
     id: str
     source: str
-    statement: str
+    statement: Prose
     verdict: Verdict
-    evidence: str
-    proof: str
-    details: tuple[tuple[str, ...], ...]
+    evidence: Prose
+    proof: Prose
+    details: tuple[tuple[Prose, ...], ...]
 
 
 HEAD = ("what the argument rests on", "value", "checked")
@@ -47,7 +51,8 @@ def concluded(
 ) -> Argument:
     """The argument, where every check holds; else it shows nothing, and is UNDECIDED.
 
-    A wrong counterexample refutes nothing, and a proof with a wrong step proves nothing.
+    A wrong counterexample refutes nothing, and a proof with a wrong step proves nothing. All texts
+    are written as `read_prose` takes them, with formulas quoted.
     """
     found = tuple(checks)
     rows = [(c.what, c.shown, "holds" if c.holds else "does not hold") for c in found]
@@ -59,11 +64,11 @@ def concluded(
     return Argument(
         id=name,
         source=source,
-        statement=statement,
+        statement=read_prose(statement),
         verdict=verdict,
-        evidence=evidence,
-        proof=" ".join(proof.split()),
-        details=(HEAD, *rows),
+        evidence=read_prose(evidence),
+        proof=read_prose(" ".join(proof.split())),
+        details=tuple(tuple(map(read_prose, row)) for row in (HEAD, *rows)),
     )
 
 

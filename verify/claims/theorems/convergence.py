@@ -29,27 +29,28 @@ def convergence(shift: int = 0) -> Argument:
     return concluded(
         "convergence",
         "Eq. 8–11, Section 2.2",
-        "The global error of the scheme of order η on [t₀, t_end] is O(h^η), so that the scheme "
-        "converges.",
+        "The global error of the scheme of order η on [t₀, `t_end`] is O(`h^η`), so that the "
+        "scheme converges.",
         Verdict.PROVED,
-        "the conclusion holds for every H of class C^(η+1), with one Lipschitz constant for (p, q) "
-        "together in place of Eq. 9's two; the printed Eq. 9 and 10 do not prove it",
-        """Let H be of class C^(η+1) near the exact solution z̄(t), t₀ ≤ t ≤ t_end, and let K be
-        the closed tube of some radius r around it in which this holds; T = t_end − t₀. Write Φ for
-        the step and z̄_k for the exact solution at t₀ + kh. Local error: Φ is the Taylor
-        polynomial of degree η of the exact flow, so by Taylor's remainder |z̄_{k+1} − Φ(z̄_k)| ≤ M
-        h^(η+1)/(η+1)! with M the maximum of |X^(η+1) z| over the solution (η + 1 derivatives of
-        H). Stability: Φ(z) = z + h ψ(z) with ψ = Σ h^(n−1)/n! Xⁿz, n = 1 … η, which is of class
-        C¹; let L be the maximum of the norm of ψ' over K for 0 < h ≤ h₀. For a z within r of z̄_k
-        the segment from z̄_k to z lies in K, so |Φ(z̄_k) − Φ(z)| ≤ (1 + hL) |z̄_k − z|. This is
-        Eq. 9 in a norm of the plane, for both components together. The triangle inequality, Eq. 8,
-        gives for E_k = |z̄_k − z_k|, E_0 = 0: E_{k+1} ≤ (1 + hL) E_k + M h^(η+1)/(η+1)! as long as
-        E_k ≤ r, and by induction E_k ≤ M h^η/(η+1)! · (e^(LT) − 1)/L for all kh ≤ T. Where h is so
-        small that the right side is at most r, the numerical solution never leaves K before T, and
-        the induction closes. Hence |p̄_k − p_k| and |q̄_k − q_k| are O(h^η) on [t₀, t_end]. What
-        fails on the way as it is printed: Eq. 7 calls |p̃ − p| the global error, which is |p̄ −
-        p|; Eq. 9 has the p-difference alone on its right side; Eq. 10 has e_n for e_k; and n in
-        the exponents of Eq. 10 and 11 is η. ∎""",
+        "the conclusion holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, "
+        "q) together in place of Eq. 9's two; the printed Eq. 9 and 10 do not prove it",
+        """Let H be of class `C^(η+1)` near the exact solution z̄(t), t₀ ≤ t ≤ `t_end`, and let K be
+        the closed tube of some radius r around it in which this holds; T = `t_end` − t₀. Write Φ
+        for the step and `z̄_k` for the exact solution at t₀ + kh. Local error: Φ is the Taylor
+        polynomial of degree η of the exact flow, so by Taylor's remainder |`z̄_{k+1}` − Φ(`z̄_k`)|
+        ≤ M `h^(η+1)`/(η+1)! with M the maximum of |`X^(η+1)` z| over the solution (η + 1
+        derivatives of H). Stability: Φ(z) = z + h ψ(z) with ψ = Σ `h^(n−1)`/n! Xⁿz, n = 1 … η,
+        which is of class C¹; let L be the maximum of the norm of ψ' over K for 0 < h ≤ h₀. For a z
+        within r of `z̄_k` the segment from `z̄_k` to z lies in K, so |Φ(`z̄_k`) − Φ(z)| ≤ (1 + hL)
+        |`z̄_k` − z|. This is Eq. 9 in a norm of the plane, for both components together. The
+        triangle inequality, Eq. 8, gives for `E_k` = |`z̄_k` − `z_k`|, `E_0` = 0: `E_{k+1}` ≤ (1 +
+        hL) `E_k` + M `h^(η+1)`/(η+1)! as long as `E_k` ≤ r, and by induction `E_k` ≤ M `h^η`/(η+1)!
+        · (`e^(LT)` − 1)/L for all kh ≤ T. Where h is so small that the right side is at most r, the
+        numerical solution never leaves K before T, and the induction closes. Hence |`p̄_k` − `p_k`|
+        and |`q̄_k` − `q_k`| are O(`h^η`) on [t₀, `t_end`]. What fails on the way as it is printed:
+        Eq. 7 calls |p̃ − p| the global error, which is |p̄ − p|; Eq. 9 has the p-difference alone
+        on its right side; Eq. 10 has `e_n` for `e_k`; and n in the exponents of Eq. 10 and 11 is η.
+        ∎""",
         checks,
     )
 
@@ -58,9 +59,9 @@ def _local_order(name: str, eta: int, claimed: int) -> Check:
     hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
     found = convergence_of(lie_map(hamiltonian, eta))
     return Check(
-        f"{name}, lie{eta}: the local error is of order h^{claimed + 1} exactly",
+        f"{name}, lie{eta}: the local error is of order `h^{claimed + 1}` exactly",
         found.decided and found.order == claimed,
-        f"agrees with the exact flow up to h^{found.order}",
+        f"agrees with the exact flow up to `h^{found.order}`",
     )
 
 
@@ -74,9 +75,9 @@ def _within_the_bound(eta: int, order: int) -> Check:
             lipschitz = (h.exp() - 1) / h
             bound = h**order / math.factorial(order + 1) * (lipschitz.exp() - 1) / lipschitz
             holds = holds and bool(error <= bound)
-            shown.append(f"{(error / h**order).mid().str(5, radius=False)}")
+            shown.append(f"`{(error / h**order).mid().str(5, radius=False)}`")
     return Check(
-        f"oscillator, lie{eta}, T = 1: |error|/h^{order} for N = {_listed(STEPS)} lies below the "
+        f"oscillator, lie{eta}, T = 1: |error|/`h^{order}` for N = {_listed(STEPS)} lies below the "
         f"proof's bound",
         holds,
         ", ".join(shown),
@@ -97,11 +98,12 @@ def eq_10(fixed: bool = True) -> Argument:
             before = abs(errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
             ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
     grows = all(bool(b > 5 * a) for a, b in pairwise(ratios))
-    shown = ", ".join(r.mid().str(4, radius=False) for r in ratios)
+    shown = ", ".join(f"`{r.mid().str(4, radius=False)}`" for r in ratios)
     checks = [
         Check(
-            f"oscillator, lie{eta}, T = 1: (e_N − e^h e_{eta if fixed else 'N−1'})/h^{eta + 1}, "
-            f"which C must exceed, for N = {_listed(STEPS)}",
+            f"oscillator, lie{eta}, T = 1: (`e_N` − `e^h` "
+            f"`e_{eta if fixed else 'N−1'}`)/`h^{eta + 1}`, which C must exceed, for N = "
+            f"{_listed(STEPS)}",
             grows,
             f"{shown}: {'grows like N' if grows else 'stays bounded'}",
         )
@@ -109,20 +111,21 @@ def eq_10(fixed: bool = True) -> Argument:
     return concluded(
         "eq-10",
         "Eq. 10",
-        "e_{k+1} ≤ (1 + hL) e_k + C h^(n+1) ≤ e^(hL) e_n + C h^(n+1), n the order of the truncated "
-        "exponential (as printed).",
+        "`e_{k+1}` ≤ (1 + hL) `e_k` + C `h^(n+1)` ≤ `e^(hL)` `e_n` + C `h^(n+1)`, n the order of "
+        "the truncated exponential (as printed).",
         Verdict.REFUTED,
-        "with e_n in place of e_k the error would be O(h^(η+1)) after any number of steps; for "
-        f"the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be {shown} "
-        f"for N = {_listed(STEPS)})",
-        """In Eq. 10 n is the order η of the truncated exponential, as its exponent h^(n+1) and the
-        text below it say. Then e_n is the error after η steps, which is O(h^(η+1)) whatever k is,
-        and Eq. 10 would bound e_{k+1} by O(h^(η+1)) for all k: one order better than Eq. 11, and
-        false. For H = (p² + q²)/2 and η = 1, |z_k| = (1 + h²)^(k/2) |z_0|, while the exact
-        solution keeps |z|; so at T = 1 the norm of the error is at least (1 + h²)^(1/(2h)) − 1 ≥
-        h/3 for h ≤ 1/2, and one of its two components at least h/5, which no C h² bounds. It is a
-        misprint: with e_k for e_n the second inequality of Eq. 10 is 1 + hL ≤ e^(hL), and Eq. 11
-        follows by iteration for any sequence with e_{k+1} ≤ (1 + hL) e_k + C h^(η+1). ∎""",
+        "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
+        f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "
+        f"{shown} for N = {_listed(STEPS)})",
+        """In Eq. 10 n is the order η of the truncated exponential, as its exponent `h^(n+1)` and
+        the text below it say. Then `e_n` is the error after η steps, which is O(`h^(η+1)`) whatever
+        k is, and Eq. 10 would bound `e_{k+1}` by O(`h^(η+1)`) for all k: one order better than Eq.
+        11, and false. For H = (p² + q²)/2 and η = 1, |`z_k`| = `(1 + h²)^(k/2)` |`z_0`|, while the
+        exact solution keeps |z|; so at T = 1 the norm of the error is at least `(1 + h²)^(1/(2h))`
+        − 1 ≥ h/3 for h ≤ 1/2, and one of its two components at least h/5, which no C h² bounds. It
+        is a misprint: with `e_k` for `e_n` the second inequality of Eq. 10 is 1 + hL ≤ `e^(hL)`,
+        and Eq. 11 follows by iteration for any sequence with `e_{k+1}` ≤ (1 + hL) `e_k` + C
+        `h^(η+1)`. ∎""",
         checks,
     )
 

@@ -19,16 +19,16 @@ from verify.claims.theorems.criteria_examples import (
 from verify.claims.theorems.exact_maps import Areas
 from verify.verdict import Verdict
 
-_SETTING = """Fix T, let h = T/N, and write x_k = ΔJ_k, k = 0 … N − 1, m = max |x_k|. Criterion 2
-is m = o(h), criterion 3 is MSE = (1/N) Σ x_k² = o(h), criterion 4 is Λ = Π (1 + x_k) − 1 = o(1), h
-→ 0."""
+_SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
+Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
+`x_k`) − 1 = o(1), h → 0."""
 
 
 def _inequalities(example: ExampleMap) -> Check:
     """MSE ≤ m² and |log| bounds, in Fractions: |Λ| ≤ Π(1 + |x|) − 1, (Σ|x|)² ≤ N² MSE."""
     holds = all(map(inequalities_hold, (example.run(n) for n in example.steps)))
     return Check(
-        f"MSE ≤ m², |Λ| ≤ Π(1 + |x_k|) − 1 and (Σ |x_k|)² ≤ N² MSE for “{example.name}”",
+        f"MSE ≤ m², |Λ| ≤ Π(1 + |`x_k`|) − 1 and (Σ |`x_k`|)² ≤ N² MSE for “{example.name}”",
         holds,
         f"N = {', '.join(map(str, example.steps))}, exactly",
     )
@@ -53,16 +53,16 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
         "Section 3, after Criterion 4",
         "Criterion 2 is a sufficient condition for criterion 3.",
         Verdict.PROVED,
-        "MSE ≤ (max |ΔJ_k|)², so criterion 2 gives even MSE = o(h²); “higher-order infinitesimal” "
-        "must be meant uniformly in k, else it fails",
+        "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
+        "infinitesimal” must be meant uniformly in k, else it fails",
         f"""{_SETTING} A mean is at most the greatest of its terms, so MSE ≤ m² = o(h²), which is
-        more than criterion 3 asks for. Criterion 2 must be read uniformly in k, as its maximum
-        over [0, T]: for the map p' = p(1 + q²), q' = q + h from (0, 0) one has ΔJ_k = (kh)² =
-        O(h²) for each fixed k, but MSE → T⁴/5. For a scheme whose step depends smoothly on (p, q,
-        h) the uniform reading is no restriction: if ΔJ = o(h) at every point of a compact set,
-        then its Taylor coefficients of h⁰ and h¹ vanish on it, and ΔJ = O(h²) uniformly. The
-        converse is false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), q' = q + hp,
-        where ΔJ = −h + h². ∎""",
+        more than criterion 3 asks for. Criterion 2 must be read uniformly in k, as its maximum over
+        [0, T]: for the map p' = p(1 + q²), q' = q + h from (0, 0) one has `ΔJ_k` = (kh)² = O(h²)
+        for each fixed k, but MSE → T⁴/5. For a scheme whose step depends smoothly on (p, q, h) the
+        uniform reading is no restriction: if ΔJ = o(h) at every point of a compact set, then its
+        Taylor coefficients of h⁰ and h¹ vanish on it, and ΔJ = O(h²) uniformly. The converse is
+        false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), q' = q + hp, where ΔJ = −h
+        + h². ∎""",
         [
             _inequalities(FRICTION),
             _inequalities(not_uniform),
@@ -83,19 +83,19 @@ def connection(
         "Section 3, after Criterion 4",
         "There is no definite connection between criterion 4 and criteria 2 and 3.",
         Verdict.REFUTED,
-        "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|ΔJ_k|/h) − 1; so does MSE = o(h²), by "
-        "|Λ| ≤ exp(T √MSE/h) − 1; only for criterion 3 as stated, MSE = o(h), is there none",
-        f"""{_SETTING} For all real x_k, |Π(1 + x_k) − 1| ≤ Π(1 + |x_k|) − 1 ≤ exp(Σ |x_k|) − 1.
-        Since Σ |x_k| ≤ N m = T m/h, criterion 2 gives |Λ| ≤ exp(T m/h) − 1 → 0: criterion 2
-        implies criterion 4. By Cauchy and Schwarz Σ |x_k| ≤ N √MSE = T √MSE/h, so MSE = o(h²)
+        "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1; so does MSE = o(h²), "
+        "by |Λ| ≤ exp(T √MSE/h) − 1; only for criterion 3 as stated, MSE = o(h), is there none",
+        f"""{_SETTING} For all real `x_k`, |Π(1 + `x_k`) − 1| ≤ Π(1 + |`x_k`|) − 1 ≤ exp(Σ |`x_k`|)
+        − 1. Since Σ |`x_k`| ≤ N m = T m/h, criterion 2 gives |Λ| ≤ exp(T m/h) − 1 → 0: criterion 2
+        implies criterion 4. By Cauchy and Schwarz Σ |`x_k`| ≤ N √MSE = T √MSE/h, so MSE = o(h²)
         implies criterion 4 as well, and this is the right scale for criterion 3: MSE = o(h) does
         not imply criterion 4, nor does MSE = O(h²). The explicit Euler step of an oscillator with
         friction, p' = p − h(q + p), q' = q + hp, has ΔJ = −h + h² at every point, so MSE = h²(1 −
-        h)² = o(h), and Λ = (1 − h + h²)^(T/h) − 1 → e^(−T) − 1: criterion 3 calls a map nearly
-        area-preserving that shrinks every area to a fraction e^(−T). In the other direction
+        h)² = o(h), and Λ = `(1 − h + h²)^(T/h)` − 1 → `e^(−T)` − 1: criterion 3 calls a map nearly
+        area-preserving that shrinks every area to a fraction `e^(−T)`. In the other direction
         criterion 4 implies neither 2 nor 3: for p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1,
         det J is (1 − √h)/(1 + √h) and its reciprocal in turn, so Λ is 0 or −2√h/(1 + √h), which
-        tends to 0, while max |ΔJ_k| > 2√h and MSE > 4h for even N. ∎""",
+        tends to 0, while max |`ΔJ_k`| > 2√h and MSE > 4h for even N. ∎""",
         [example.check() for example in examples] + [_inequalities(e) for e in examples],
     )
 
@@ -115,18 +115,18 @@ def stronger(
         "the "
         "two; criteria 3 and 4 imply each other in neither direction",
         f"""{_SETTING} Criterion 2 implies 4, by |Λ| ≤ exp(T m/h) − 1, and 4 does not imply 2: so
-        criterion 4 is strictly weaker than criterion 2. A global number can vanish by
-        cancellation. It does so for a smooth map near the identity: p' = p(1 + h(1/2 − q)), q' = q
-        + h from (0, 0) on [0, 1] has ΔJ_k = h(1/2 − kh), hence max |ΔJ_k| = h/2, which is not
-        o(h), but Σ ΔJ_k = h/2, 0 < Λ < h, so Λ → 0. And it does so far from the identity, where
-        criterion 3 fails as well: p' = −p (1 − √h q)/(1 + √h q), q' = −q. Criterion 3 does not
-        imply 4 (friction: ΔJ = −h + h²), so 3 and 4 cannot be ordered. What can be said in favour
-        of criterion 4: let the step be Φ(z) = z + hg(z) + h²r(z, h) with smooth g and r, and let
-        the orbit of z' = g(z) exist on [0, T]. Then ΔJ = h div g + O(h²), Σ log(1 + ΔJ_k) = Σ h
-        div g(z_k) + O(h), and, since Φ converges to the orbit, Λ → exp(∫₀ᵀ div g dt) − 1 along it.
-        So if criterion 4 holds on [0, t] for every t ≤ T, then div g = 0 along the orbit, div
-        g(z_k) = O(h), and criterion 2 follows: for such maps, and for all times, criteria 2 and 4
-        are equivalent, and criterion 3, which then always holds (MSE = O(h²)), says nothing. ∎""",
+        criterion 4 is strictly weaker than criterion 2. A global number can vanish by cancellation.
+        It does so for a smooth map near the identity: p' = p(1 + h(1/2 − q)), q' = q + h from (0,
+        0) on [0, 1] has `ΔJ_k` = h(1/2 − kh), hence max |`ΔJ_k`| = h/2, which is not o(h), but Σ
+        `ΔJ_k` = h/2, 0 < Λ < h, so Λ → 0. And it does so far from the identity, where criterion 3
+        fails as well: p' = −p (1 − √h q)/(1 + √h q), q' = −q. Criterion 3 does not imply 4
+        (friction: ΔJ = −h + h²), so 3 and 4 cannot be ordered. What can be said in favour of
+        criterion 4: let the step be Φ(z) = z + hg(z) + h²r(z, h) with smooth g and r, and let the
+        orbit of z' = g(z) exist on [0, T]. Then ΔJ = h div g + O(h²), Σ log(1 + `ΔJ_k`) = Σ h div
+        g(`z_k`) + O(h), and, since Φ converges to the orbit, Λ → exp(∫₀ᵀ div g dt) − 1 along it. So
+        if criterion 4 holds on [0, t] for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`)
+        = O(h), and criterion 2 follows: for such maps, and for all times, criteria 2 and 4 are
+        equivalent, and criterion 3, which then always holds (MSE = O(h²)), says nothing. ∎""",
         [
             compensated.check(),
             Check("0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes"),

@@ -65,13 +65,13 @@ def empty(hamiltonian: bool = True) -> Argument:
         """Let a step agree with the exact flow φ of Eq. 1 up to h¹: Φ(z) = φ(z) + h²ρ(z, h), where
         ρ has continuous first derivatives in z up to h = 0. Since det φ' = 1 (Liouville), det Φ' =
         1 + O(h²) uniformly on compact sets. On every [0, T] on which the exact solution exists the
-        run stays in a compact set for small h, so ΔJ_k = O(h²) = o(h), MSE = O(h⁴) = o(h) and |Λ|
+        run stays in a compact set for small h, so `ΔJ_k` = O(h²) = o(h), MSE = O(h⁴) = o(h) and |Λ|
         ≤ exp(T O(h)) − 1 → 0: criteria 2, 3 and 4 hold for every consistent scheme, whatever it
         does to areas otherwise, and say no more than consistency does. (They are asymptotic in h,
         and for a given h they say nothing.) The explicit Euler scheme, lie1, for H = (p² + q²)/2
-        has ΔJ = h² at every point, so 1 + Λ = (1 + h²)^(T/h), and for h = 0.01 and T = 20000 every
-        area has grown by a factor of 7.15·10⁸⁶; yet Λ → 0 as h → 0, and criteria 2 to 4 are
-        satisfied. What tells schemes apart is the order r of ΔJ = O(h^r), the growth of Λ with T,
+        has ΔJ = h² at every point, so 1 + Λ = `(1 + h²)^(T/h)`, and for h = 0.01 and T = 20000
+        every area has grown by a factor of 7.15·10⁸⁶; yet Λ → 0 as h → 0, and criteria 2 to 4 are
+        satisfied. What tells schemes apart is the order r of ΔJ = O(`h^r`), the growth of Λ with T,
         and criterion 1. ∎""",
         checks,
     )
@@ -80,7 +80,7 @@ def empty(hamiltonian: bool = True) -> Argument:
 def _euler() -> Check:
     one = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
     delta_j = lie_map(one, 1).delta_j
-    return Check("ΔJ of lie1 for H = (p² + q²)/2 is h²", str(delta_j) == "h**2", str(delta_j))
+    return Check("ΔJ of lie1 for H = (p² + q²)/2 is h²", str(delta_j) == "h**2", f"`{delta_j}`")
 
 
 def _over_time(h: Fraction) -> Check:
@@ -93,7 +93,9 @@ def _over_time(h: Fraction) -> Check:
         holds = bool(log <= TIME * size)
         shown = lam.mid().str(6, radius=False)
     return Check(
-        f"lie1, oscillator, h = {text(h)}, T = {TIME}: Λ, and 1 + Λ ≤ e^(Th)", holds, f"Λ = {shown}"
+        f"lie1, oscillator, h = {text(h)}, T = {TIME}: Λ, and 1 + Λ ≤ `e^(Th)`",
+        holds,
+        f"Λ = `{shown}`",
     )
 
 
@@ -105,6 +107,7 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
     duffing = systems.get("duffing").hamiltonian().with_values({"delta": 1})
     found = areas(lie_map(duffing, 2), start, h, steps).delta_j
     totals = [abs(Areas(found[:n]).lam) for n in range(1, steps + 1)]
+    shown = ", ".join(f"`{decimal(x, 4)}`" for x in totals)
     flow = flow_of_every_hamiltonian(4)
     leading = flow.delta_j(*flow.lie(2))[3]
     checks = [
@@ -112,7 +115,7 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
             f"Duffing, δ = 1, lie2, h = {text(h)}, from (p, q) = {start}: |Λ| after n steps falls, "
             f"n = 1 … {steps}",
             any(later < earlier for earlier, later in pairwise(totals)),
-            ", ".join(decimal(x, 4) for x in totals),
+            shown,
         ),
         vanishes(
             "the coefficient of h³ in ΔJ of lie2 is X·G for a generic H, with G = det Hess H/2",
@@ -127,17 +130,17 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
         "will keep increasing.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
-        f"1, 2, … steps is {', '.join(decimal(x, 4) for x in totals)}, exact but for the "
+        f"1, 2, … steps is {shown}, exact but for the "
         "rounding of what is shown; the "
         "leading "
         "part of Λ is a boundary term that does not grow",
-        """ΔJ_k has both signs, so its product need not grow: from (p, q) = (1, −1/20) the Duffing
-        oscillator crosses q = 0, where pq changes its sign and with it 3h³δpq, and |Λ| falls
-        within two steps. It is not a matter of a few steps. For lie2 and every smooth H the
-        leading term of ΔJ is (h³/2) X(det Hess H), a derivative along the flow. On a fixed [0, T]
-        its sum is therefore a boundary term, Λ = (h²/2) [det Hess H](z(T)) − (h²/2) [det Hess
-        H](z(0)) + O(h³), which on a periodic orbit returns to O(h³) after every period. It is the
-        next order that may grow with T. ∎""",
+        """`ΔJ_k` has both signs, so its product need not grow: from (p, q) = (1, −1/20) the Duffing
+        oscillator crosses q = 0, where pq changes its sign and with it 3h³δpq, and |Λ| falls within
+        two steps. It is not a matter of a few steps. For lie2 and every smooth H the leading term
+        of ΔJ is (h³/2) X(det Hess H), a derivative along the flow. On a fixed [0, T] its sum is
+        therefore a boundary term, Λ = (h²/2) [det Hess H](z(T)) − (h²/2) [det Hess H](z(0)) +
+        O(h³), which on a periodic orbit returns to O(h³) after every period. It is the next order
+        that may grow with T. ∎""",
         checks,
     )
 

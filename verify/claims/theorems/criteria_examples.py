@@ -43,7 +43,7 @@ class ExampleMap:
                 f"N = {n}: max |ΔJ| = {_short(found.largest)}, MSE = {_short(found.mse)}, "
                 f"Λ = {_short(found.lam)}"
             )
-        what = f"{self.name}: p' = {self.p_next}, q' = {self.q_next}, from {self.start}, T = 1"
+        what = f"{self.name}: p' = `{self.p_next}`, q' = `{self.q_next}`, from {self.start}, T = 1"
         return Check(f"{what}: {self.says}", holds, "; ".join(shown))
 
 
@@ -53,7 +53,7 @@ def _run(p_next: str, q_next: str, start: Point, steps: int) -> Areas:
 
 
 def _short(x: Fraction) -> str:
-    return decimal(x, 3)
+    return f"`{decimal(x, 3)}`"
 
 
 def _root(h: Fraction) -> Fraction:
@@ -151,5 +151,5 @@ NOT_UNIFORM = ExampleMap(
     _ORIGIN,
     (4, 16, 64),
     _not_uniform,
-    "ΔJ_k = (kh)², which is O(h²) for each fixed k, while MSE → 1/5",
+    "`ΔJ_k` = (kh)², which is O(h²) for each fixed k, while MSE → 1/5",
 )

@@ -16,7 +16,8 @@ class Point:
     q: Fraction
 
     def __str__(self) -> str:
-        return f"({text(self.p)}, {text(self.q)})"
+        """With its numbers quoted, as `read_prose` takes them."""
+        return f"(`{text(self.p)}`, `{text(self.q)}`)"
 
 
 @dataclass(frozen=True)

@@ -53,17 +53,18 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
         "The discretization scheme is the series Σ hⁿ/n! Lⁿ, n = 0 … η: the Lie exponential "
         "expansion of order η.",
         Verdict.PROVED,
-        "with L p = −H_q and L q = H_p to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. 2 "
-        f"is exp(hX) cut off after h^η; checked for a generic H up to X^{MOST}",
-        """By Eq. 5 the two operators are L_{H_p} = H_p ∂_q and L_{−H_q} = −H_q ∂_p; their sum is
-        the Lie derivative X = H_p ∂_q − H_q ∂_p of the Hamiltonian vector field. Eq. 4 applies
-        this same sum in both of its lines, Lⁿ = X Lⁿ⁻¹. Starting from L¹ = H_p = X q in the line
-        of q and from L¹ = −H_q = X p in the line of p, induction gives Lⁿ_{H_p} = Xⁿ q and
-        Lⁿ_{−H_q} = Xⁿ p for every n ≥ 1. Along a solution d/dt y(z(t)) = (X y)(z(t)), so that Xⁿ p
-        and Xⁿ q are the n-th time derivatives of p and q, and Eq. 2 is the Taylor polynomial of
-        degree η of the exact flow: exp(hX) applied to the two coordinates and cut off after h^η.
-        Nothing in this uses that H is separable. (Lⁿ_{H_p} is not the n-th power of the operator
-        L_{H_p} of Eq. 5, although it is written so: Eq. 4 mixes the two operators.) ∎""",
+        "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
+        f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
+        """By Eq. 5 the two operators are `L_{H_p}` = `H_p` `∂_q` and `L_{−H_q}` = −`H_q` `∂_p`;
+        their sum is the Lie derivative X = `H_p` `∂_q` − `H_q` `∂_p` of the Hamiltonian vector
+        field. Eq. 4 applies this same sum in both of its lines, Lⁿ = X Lⁿ⁻¹. Starting from L¹ =
+        `H_p` = X q in the line of q and from L¹ = −`H_q` = X p in the line of p, induction gives
+        `Lⁿ_{H_p}` = Xⁿ q and `Lⁿ_{−H_q}` = Xⁿ p for every n ≥ 1. Along a solution d/dt y(z(t)) = (X
+        y)(z(t)), so that Xⁿ p and Xⁿ q are the n-th time derivatives of p and q, and Eq. 2 is the
+        Taylor polynomial of degree η of the exact flow: exp(hX) applied to the two coordinates and
+        cut off after `h^η`. Nothing in this uses that H is separable. (`Lⁿ_{H_p}` is not the n-th
+        power of the operator `L_{H_p}` of Eq. 5, although it is written so: Eq. 4 mixes the two
+        operators.) ∎""",
         checks,
     )
 
@@ -95,32 +96,34 @@ def eq_3(coordinate: str = "p") -> Argument:
     by_eq_5 = h_p * ring.diff(ring[coordinate], "q")
     checks = [
         Check(
-            f"H_p ∂q/∂{coordinate} is not H_p, p and q being independent",
+            f"`H_p` ∂q/∂{coordinate} is not `H_p`, p and q being independent",
             literal != h_p,
-            str(literal),
+            f"`{literal}`",
         ),
         Check(
-            f"by Eq. 5, L_{{H_p}}({coordinate}) = H_p ∂{coordinate}/∂q is not H_p",
+            f"by Eq. 5, `L_{{H_p}}`({coordinate}) = `H_p` ∂{coordinate}/∂q is not `H_p`",
             by_eq_5 != h_p,
-            str(by_eq_5),
+            f"`{by_eq_5}`",
         ),
-        vanishes("by Eq. 5, L_{H_p}(q) = H_p ∂q/∂q is H_p", h_p * ring.diff(ring["q"], "q") - h_p),
+        vanishes(
+            "by Eq. 5, `L_{H_p}`(q) = `H_p` ∂q/∂q is `H_p`", h_p * ring.diff(ring["q"], "q") - h_p
+        ),
         _example(),
     ]
     return concluded(
         "eq-3",
         "Eq. 3",
-        "L_{H_p}(p_k) = H_p ∂q/∂p = H_p (as printed).",
+        "`L_{H_p}`(`p_k`) = `H_p` ∂q/∂p = `H_p` (as printed).",
         Verdict.REFUTED,
-        "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not H_p; with "
-        "q for p, L_{H_p}(q_k) = H_p ∂q/∂q = H_p, it is what Eq. 2 needs",
+        "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
+        "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",
         """In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 and
-        H_p ∂q/∂p = 0. By Eq. 5, too, L_{H_p}(p) = H_p ∂p/∂q = 0. The printed equality therefore
-        holds only where H_p = 0. Taken at its word it would give L_{H_p} = 0, and with Eq. 2
-        q_{k+1} = q_k: no scheme for Eq. 1. What is meant is L_{H_p}(q_k) = H_p ∂q/∂q = H_p; so
-        read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and nothing that
-        follows in the paper is affected. The second line, L_{−H_q}(p_k) = −H_q ∂p/∂p = −H_q, is
-        right. ∎""",
+        `H_p` ∂q/∂p = 0. By Eq. 5, too, `L_{H_p}`(p) = `H_p` ∂p/∂q = 0. The printed equality
+        therefore holds only where `H_p` = 0. Taken at its word it would give `L_{H_p}` = 0, and
+        with Eq. 2 `q_{k+1}` = `q_k`: no scheme for Eq. 1. What is meant is `L_{H_p}`(`q_k`) = `H_p`
+        ∂q/∂q = `H_p`; so read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and
+        nothing that follows in the paper is affected. The second line, `L_{−H_q}`(`p_k`) = −`H_q`
+        ∂p/∂p = −`H_q`, is right. ∎""",
         checks,
     )
 
@@ -132,7 +135,7 @@ def _example() -> Check:
     left = (sympy.diff(energy, P) * sympy.diff(Q, P)).subs(at)
     right = sympy.diff(energy, P).subs(at)
     return Check(
-        "H = (p² + q²)/2 at (p, q) = (1, 0): H_p ∂q/∂p against H_p",
+        "H = (p² + q²)/2 at (p, q) = (1, 0): `H_p` ∂q/∂p against `H_p`",
         left != right,
         f"{left} against {right}",
     )

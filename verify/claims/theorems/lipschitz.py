@@ -43,31 +43,32 @@ def eq_9(pair: tuple[Point, Point] = PAIR) -> Argument:
     return concluded(
         "eq-9",
         "Eq. 9",
-        "|p̃_{k+1} − p_{k+1}| ≤ (1 + hL_p) |p̃_k − p_k| and the same for q, with constants L_p, L_q.",
+        "|`p̃_{k+1}` − `p_{k+1}`| ≤ (1 + `hL_p`) |`p̃_k` − `p_k`| and the same for q, with "
+        "constants `L_p`, `L_q`.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, h = 0.1) two points with equal p and q = "
         f"{text(pair[0].q)}, {text(pair[1].q)} have |p̃ − p| = {text(left)} after one step, "
         "where the "
-        "right side is 0 for every L_p; it holds for lieη, any H and all small h only if H_pp = 0 "
-        "and H_qq = 0",
-        """The right side has the p-difference alone, while p_{k+1} depends on q_k as well. Take
-        two points with the same p and different q: the right side is 0 whatever L_p is, and the
-        left side is |p'(p, q₁) − p'(p, q₂)|. For the Duffing oscillator with δ = 1 and lie2, p' =
-        p − h(q + q³) − (h²/2) p (1 + 3q²), and from (p, q) = (0, 0) and (0, 1) the left side is 2h
-        > 0. For a general H: if Eq. 9 holds for all pairs of points of a rectangle and for all
-        small h, with whatever constants, then p' does not depend on q there, for every h; p' is a
-        polynomial in h whose coefficient of h is −H_q, so H_qq = 0; and likewise H_pp = 0 from the
-        line of q. Thus H = a pq + b p + c q + d. Conversely both components decouple for such an
-        H, and Eq. 9 holds with L_p = L_q = (e^(|a|h₀) − 1)/h₀ for h ≤ h₀. It is no way out that
-        z̄_k and z_k are not any two points but belong to an exact solution and to the run that
-        starts on it. For the oscillator H = (p² + q²)/2 from (q, p) = (1, 0) the error of lie2 at
-        time t is (t h²/6) (sin t, cos t) + O(h³) in (q, p): it turns with the solution, by an
-        angle h in a step. In the step after its p-component has changed sign near t = π/2 that
-        component grows by a factor of 2 − O(h) at least, so that L_p ≥ (1 − O(h))/h: no constant
-        will do (see the table; with p̄_k on the right, which Eq. 8 and 10 need, and with p̃_k as
-        printed). What holds is the inequality in a norm of the plane: |Φ(z̄) − Φ(z)| ≤ (1 + hL)
-        |z̄ − z|, or by components |p̃_{k+1} − p_{k+1}| ≤ (1 + hL) |p̄_k − p_k| + hL |q̄_k − q_k|;
-        with either, the conclusion of Section 2.2 stands. ∎""",
+        "right side is 0 for every `L_p`; it holds for lieη, any H and all small h only if `H_pp` "
+        "= 0 and `H_qq` = 0",
+        """The right side has the p-difference alone, while `p_{k+1}` depends on `q_k` as well. Take
+        two points with the same p and different q: the right side is 0 whatever `L_p` is, and the
+        left side is |p'(p, q₁) − p'(p, q₂)|. For the Duffing oscillator with δ = 1 and lie2, p' = p
+        − h(q + q³) − (h²/2) p (1 + 3q²), and from (p, q) = (0, 0) and (0, 1) the left side is 2h >
+        0. For a general H: if Eq. 9 holds for all pairs of points of a rectangle and for all small
+        h, with whatever constants, then p' does not depend on q there, for every h; p' is a
+        polynomial in h whose coefficient of h is −`H_q`, so `H_qq` = 0; and likewise `H_pp` = 0
+        from the line of q. Thus H = a pq + b p + c q + d. Conversely both components decouple for
+        such an H, and Eq. 9 holds with `L_p` = `L_q` = (`e^(|a|h₀)` − 1)/h₀ for h ≤ h₀. It is no
+        way out that `z̄_k` and `z_k` are not any two points but belong to an exact solution and to
+        the run that starts on it. For the oscillator H = (p² + q²)/2 from (q, p) = (1, 0) the error
+        of lie2 at time t is (t h²/6) (sin t, cos t) + O(h³) in (q, p): it turns with the solution,
+        by an angle h in a step. In the step after its p-component has changed sign near t = π/2
+        that component grows by a factor of 2 − O(h) at least, so that `L_p` ≥ (1 − O(h))/h: no
+        constant will do (see the table; with `p̄_k` on the right, which Eq. 8 and 10 need, and with
+        `p̃_k` as printed). What holds is the inequality in a norm of the plane: |Φ(z̄) − Φ(z)| ≤ (1
+        + hL) |z̄ − z|, or by components |`p̃_{k+1}` − `p_{k+1}`| ≤ (1 + hL) |`p̄_k` − `p_k`| + hL
+        |`q̄_k` − `q_k`|; with either, the conclusion of Section 2.2 stands. ∎""",
         checks,
     )
 
@@ -82,10 +83,10 @@ def _along_a_run(h: Fraction) -> Check:
         stepped = [(scheme * e).imag for e in error]
         literal = _largest(stepped[1:], stepped[:-1], size)
     return Check(
-        f"oscillator from (q, p) = (1, 0), lie2, h = {text(h)}, t ≤ {LATEST}: the L_p that a step "
-        "of the run asks for, with p̄_k and with p̃_k on the right, is above 1/h",
+        f"oscillator from (q, p) = (1, 0), lie2, h = {text(h)}, t ≤ {LATEST}: the `L_p` that a "
+        "step of the run asks for, with `p̄_k` and with `p̃_k` on the right, is above 1/h",
         min(barred, literal) > size,
-        f"{barred:.3g} and {literal:.3g}",
+        f"`{barred:.3g}` and `{literal:.3g}`",
     )
 
 
@@ -114,8 +115,8 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
     return concluded(
         "two-norm",
         "Section 4.1, after Eq. 20",
-        "Since Eq. 20 is a matrix, the 2-norm is adopted as the Lipschitz condition: L_p = ‖J_k‖₂ "
-        "(in Eq. 9).",
+        "Since Eq. 20 is a matrix, the 2-norm is adopted as the Lipschitz condition: `L_p` = "
+        "‖`J_k`‖₂ (in Eq. 9).",
         Verdict.REFUTED,
         f"a map with ‖J‖₂ > 1 + h‖J‖₂ has no Lipschitz constant 1 + h‖J‖₂, and the Duffing step is "
         f"one: at (p, q) = {point}, h = {text(h)}, (1 − h)² ‖J‖₂² ≥ {text(stretch * (1 - h) ** 2)}",
@@ -123,11 +124,11 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
         1 + hL. To put L = ‖J‖₂ counts it twice, and is not even an upper bound: the inequality
         |Φ(z̄) − Φ(z)| ≤ (1 + h‖J‖₂) |z̄ − z| for z̄ near z needs ‖J‖₂ ≤ 1 + h‖J‖₂. Now J = 1 + hf'
         + O(h²), so ‖J‖₂ = 1 + hs + O(h²) with s the greatest eigenvalue of the symmetric part of
-        f', s² = H_pq² + (H_pp − H_qq)²/4, whereas 1 + h‖J‖₂ = 1 + h + O(h²). Wherever s > 1 the
-        inequality fails for all small h: for the Duffing oscillator s = 3|δ|q²/2, so it fails
-        where |δ|q² > 2/3. (For the pendulum s = (1 − cos q)/2 ≤ 1.) What Eq. 9 needs in a norm is
-        L = max (‖J‖₂ − 1)/h, or any bound of ‖ψ'‖, Φ = z + hψ, which stays bounded as h → 0; with
-        it the conclusion of Section 2.2 stands. ∎""",
+        f', s² = `H_pq²` + (`H_pp` − `H_qq`)²/4, whereas 1 + h‖J‖₂ = 1 + h + O(h²). Wherever s > 1
+        the inequality fails for all small h: for the Duffing oscillator s = 3|δ|q²/2, so it fails
+        where |δ|q² > 2/3. (For the pendulum s = (1 − cos q)/2 ≤ 1.) What Eq. 9 needs in a norm is L
+        = max (‖J‖₂ − 1)/h, or any bound of ‖ψ'‖, Φ = z + hψ, which stays bounded as h → 0; with it
+        the conclusion of Section 2.2 stands. ∎""",
         [check],
     )
 

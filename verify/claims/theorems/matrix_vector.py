@@ -37,7 +37,8 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
     return concluded(
         "eq-12",
         "Eq. 12",
-        "The scheme can be rewritten as z_{k+1} = J_k z_k, z = (p, q), J_k its Jacobian matrix.",
+        "The scheme can be rewritten as `z_{k+1}` = `J_k` `z_k`, z = (p, q), `J_k` its Jacobian "
+        "matrix.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point}, J z = {product} "
         "but "
@@ -45,13 +46,13 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
         """By Euler's theorem on homogeneous functions J(z) z = Φ(z) for all z means that Φ is
         homogeneous of degree 1: d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² = 0. If it holds for all
         small h on a disc around the origin, then the coefficient of h in Φ(z) = z + hf(z) + …, f =
-        (−H_q, H_p), is homogeneous of degree 1 too; being differentiable at the origin it is
-        linear, f(z) = lim f(sz)/s = f'(0) z, and H is a quadratic form plus a constant.
-        Conversely, for such an H every Xⁿ z is linear and Eq. 12 is an identity. So for every
-        other H that is smooth around the origin, the Duffing oscillator with δ ≠ 0 and the
-        pendulum among them, Eq. 12 is false as a product of a matrix and a vector. What holds is
-        its tangent form, δz_{k+1} = J_k δz_k for infinitesimal differences, and that is all that
-        Eq. 13–16 use: they need det J_k only. ∎""",
+        (−`H_q`, `H_p`), is homogeneous of degree 1 too; being differentiable at the origin it is
+        linear, f(z) = lim f(sz)/s = f'(0) z, and H is a quadratic form plus a constant. Conversely,
+        for such an H every Xⁿ z is linear and Eq. 12 is an identity. So for every other H that is
+        smooth around the origin, the Duffing oscillator with δ ≠ 0 and the pendulum among them, Eq.
+        12 is false as a product of a matrix and a vector. What holds is its tangent form,
+        `δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences, and that is all that Eq. 13–16 use:
+        they need det `J_k` only. ∎""",
         checks,
     )
 
@@ -80,7 +81,7 @@ def near_identity(p_next: str = "-q", q_next: str = "p") -> Argument:
     far = [abs(z.p - POINT.p) + abs(z.q - POINT.q) for z in moved]
     checks = [
         Check(
-            f"p' = {p_next}, q' = {q_next}: the largest |ΔJ| for h = 0.1 and 0.001",
+            f"p' = `{p_next}`, q' = `{q_next}`: the largest |ΔJ| for h = 0.1 and 0.001",
             all(x == 0 for x in delta_j),
             ", ".join(map(text, delta_j)),
         ),
@@ -93,11 +94,10 @@ def near_identity(p_next: str = "-q", q_next: str = "p") -> Argument:
     return concluded(
         "near-identity",
         "Section 3, Criterion 2",
-        "ΔJ_k → 0, when h → 0. Thus, the discretization Eq. 12 is a near-identity mapping.",
+        "`ΔJ_k` → 0, when h → 0. Thus, the discretization Eq. 12 is a near-identity mapping.",
         Verdict.REFUTED,
-        f"the inference fails: p' = {p_next}, q' = {q_next} has ΔJ ≡ 0 for all h and is not near "
-        "the "
-        "identity; the scheme is near-identity, but because Eq. 2 is z + O(h)",
+        f"the inference fails: p' = `{p_next}`, q' = `{q_next}` has ΔJ ≡ 0 for all h and is not "
+        "near the identity; the scheme is near-identity, but because Eq. 2 is z + O(h)",
         """A determinant near 1 says that areas are nearly kept, not that points are nearly kept:
         the rotation by a right angle, p' = −q, q' = p, has det J = 1 for every h and moves (0, 1)
         to (−1, 0). The conclusion is true of lieη for another reason: by Eq. 2 Φ(z) = z + hf(z) +

@@ -1,17 +1,17 @@
 """What can be said of a claim, and of the paper's criteria: a verdict with its evidence."""
 
 from verify.prose import Prose
-from verify.scenes.frozen import Frozen, Said, WithProse
+from verify.scenes.frozen import Said, WithProse
 from verify.verdict import Verdict
 
 
-class CriterionResult(Frozen):
+class CriterionResult(WithProse):
     """One of the paper's four criteria for one scheme in one scene."""
 
     number: int
     scheme: str
     verdict: Verdict
-    evidence: str
+    evidence: Said
 
 
 class ClaimResult(WithProse):

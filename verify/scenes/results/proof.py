@@ -1,18 +1,18 @@
 """What was proved of a scheme, for one H and for every H."""
 
 from verify.algebra.conditions import Condition
-from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.frozen import Said, Seconds, WithProse
 from verify.verdict import Verdict
 
 
-class ProofResult(Frozen):
+class ProofResult(WithProse):
     """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for."""
 
     hamiltonian: str
     parameters: dict[str, str]
     scheme: str
     verdict: Verdict
-    reason: str
+    reason: Said
     order: int | None
     leading: str
     delta_j: str | None
@@ -26,13 +26,13 @@ class ProofResult(Frozen):
     seconds: Seconds
 
 
-class EveryResult(Frozen):
+class EveryResult(WithProse):
     """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it."""
 
     scheme: str
     quantifier: str
     verdict: Verdict
-    reason: str
+    reason: Said
     order: int | None
     area_preserving: bool | None
     convergence_order: int | None
@@ -40,7 +40,7 @@ class EveryResult(Frozen):
     leading: str
     telescopes: bool | None
     potential: str | None
-    why: str
-    checked: tuple[str, ...]
+    why: Said
+    checked: tuple[Said, ...]
     conditions: tuple[Condition, ...] = ()
-    argument: str
+    argument: Said

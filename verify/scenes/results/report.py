@@ -105,7 +105,7 @@ def _report_html(report: Report) -> str:
     """How many claims have which verdict, then each claim, the refuted ones first."""
     if not report.claims:
         rows = [
-            (scene.title, proof.scheme, str(proof.verdict), proof.reason)
+            (scene.title, proof.scheme, str(proof.verdict), str(proof.reason))
             for scene in report.scenes
             for proof in scene.proofs
         ]
