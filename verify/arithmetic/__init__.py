@@ -1,7 +1,7 @@
 """Arithmetic: exact rationals, balls; `systems/` has one number system a file.
 
-A file of `systems/` defines `NAME` and `make(digits)`, the arithmetic that works with at least that
-many decimal digits. Adding a number system is adding one file.
+A file of `systems/` defines `NUMBER_SYSTEM`, all that is asked of it before it computes; only then
+is its library imported. Adding a number system is adding one file.
 """
 
 from typing import TYPE_CHECKING
@@ -10,8 +10,9 @@ from verify.discovery import Catalogue
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.arithmetic.number_system import Arithmetic
+    from verify.arithmetic.number_system import Arithmetic, NumberSystem
 
+AUTO = "auto"  # the fastest number system that certifies the digits
 _FILES = Catalogue(f"{__name__}.systems", [f"{folder}/systems" for folder in __path__])
 
 
@@ -25,7 +26,29 @@ def get(name: str, digits: int) -> "Arithmetic":
 
     Raises InputError where there is none of that name.
     """
+    return about(name).make(digits)
+
+
+def about(name: str) -> "NumberSystem":
+    """What the number system of that name says of itself; no library is imported.
+
+    Raises InputError where there is none of that name.
+
+    >>> about("float64").digits, about("mpfr").digits
+    (17, None)
+    """
     if name not in _FILES:
         raise InputError("arithmetic", name, f"unknown; allowed: {', '.join(names())}")
-    arithmetic: Arithmetic = _FILES.module(name).make(digits)
-    return arithmetic
+    system: NumberSystem = _FILES.module(name).NUMBER_SYSTEM
+    return system
+
+
+def automatic() -> "tuple[NumberSystem, ...]":
+    """Those that `auto` tries, the fastest first; the last has every range and function."""
+    systems = (about(name) for name in names())
+    return tuple(sorted((x for x in systems if x.automatic), key=lambda x: x.cost))
+
+
+def step_cost(name: str) -> int:
+    """About how many float64 steps a step is worth; of `auto` in the one that it tries first."""
+    return (automatic()[0] if name == AUTO else about(name)).cost

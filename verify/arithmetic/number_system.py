@@ -1,4 +1,4 @@
-"""What a kernel needs of a number system."""
+"""A number system: what it says of itself, and what a kernel needs of it at one precision."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -7,7 +7,12 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from types import CodeType
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from verify.arithmetic.arb import Ball
+
+Rounding = Callable[[str, int, "Ball"], "Ball"]
 
 
 @dataclass(frozen=True)
@@ -24,7 +29,9 @@ class Arithmetic:
     interruption. `absolute`: numbers have so many bits after the point, not so many significant
     ones; a kernel then scales ΔJ and has limits of its own instead of a guard. `radius`, where a
     number is an enclosure: how far from `exact` the true value may be, and `minimum` and `maximum`
-    are then among the functions. Two arithmetics of one name and precision are equal.
+    are then among the functions. `rounding`: how far the result of an operation may be off, by its
+    kind in a program, its degree (of a root) and its size, a bound of |exact| and |computed|; None
+    where that is not known. Two arithmetics of one name and precision are equal.
     """
 
     name: str
@@ -40,14 +47,46 @@ class Arithmetic:
     chunk: int = field(compare=False)
     absolute: bool = field(default=False, compare=False)
     radius: Callable[[Any], Fraction] | None = field(default=None, compare=False)
+    rounding: Rounding | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True)
+class NumberSystem:
+    """A number system as it is known before its library is imported.
+
+    `make(digits)`: it with so many decimal digits at least. `about`: what it is, in words that
+    follow its name. `cost`: about how many float64 steps a step is worth. `digits`: those that it
+    has, whatever it is asked for. `compiles`: each kernel is compiled before its first step, which
+    takes 0.2–0.8 s. `most_digits`: beyond them others are the faster ones. `automatic`: `auto` may
+    take it; of those that it may, the one whose steps cost most has every range and function.
+    """
+
+    name: str
+    make: Callable[[int], Arithmetic]
+    about: str
+    cost: int
+    digits: int | None = None
+    compiles: bool = False
+    most_digits: float = math.inf
+    automatic: bool = False
 
 
 class UnsupportedError(Exception):
     """An arithmetic lacks a function that a kernel needs; the message says which."""
 
 
+_CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
 ESCAPE_BITS = 4000  # where exponents have no end of their own, an orbit is stopped at |z| = 2^4000
 MOST_EXPONENT = 1 << 20  # and of what is carried beside it: more takes time and says nothing
+
+
+def relative(bits: int, functions: int = 1) -> Rounding:
+    """That of so many significant bits, to nearest; functions are within so many times as much."""
+
+    def own(kind: str, _degree: int, size: "Ball") -> "Ball":
+        return size * type(size)(2) ** -bits * (1 if kind in _CORRECT else functions)
+
+    return own
 
 
 def bits_for(digits: int) -> int:

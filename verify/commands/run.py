@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from verify import arithmetic as number_systems
 from verify.commands import output as show
 from verify.commands.input import hamiltonian_of, keepable, with_system
 
@@ -17,8 +18,8 @@ from verify.commands.input import hamiltonian_of, keepable, with_system
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
 @click.option(
     "--arithmetic",
-    help="float64; auto, the fastest that certifies the digits; fixed (compiled), mpfr, mpmath or "
-    "ball. Without it: float64, or auto where --digits is given.",
+    help=f"{', '.join(number_systems.names())}; or auto, the fastest that certifies the digits. "
+    "Without it: float64, or auto where --digits is given.",
 )
 @click.option(
     "--keep",

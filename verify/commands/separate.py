@@ -24,7 +24,7 @@ from verify.commands.input import hamiltonian_of, with_system
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
 @click.option(
-    "--arithmetic", default="auto", help="What stands for exact: auto, fixed, mpfr, mpmath."
+    "--arithmetic", default="auto", help="What stands for exact: auto, or a number system of run."
 )
 def separate(
     system: str | None,

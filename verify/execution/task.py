@@ -6,16 +6,12 @@ A kind of task is one class, in a file of the study whose it is.
 import hashlib
 import json
 from abc import abstractmethod
-from collections.abc import Mapping
 from typing import ClassVar
 
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
-from verify.scenes.values import AUTO, Number
-
-# About how many float64 steps one step in a number system is worth.
-STEP_COST: Mapping[str, int] = {"float64": 1, "fixed": 40, AUTO: 40, "mpfr": 700, "mpmath": 3000}
+from verify.scenes.values import Number
 
 
 class Task(Frozen):

@@ -2,8 +2,9 @@
 
 from typing import Literal
 
+from verify.arithmetic import step_cost
 from verify.execution.keeping import Keeper
-from verify.execution.task import STEP_COST, Task
+from verify.execution.task import Task
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import ExploreResult, HuntResult, ShrunkResult
 
@@ -73,7 +74,7 @@ class HuntTask(_OnSamples):
 
     @property
     def cost(self) -> int:
-        runs = _RUNS_OF_A_MEASURE * self.steps * STEP_COST["mpfr"]
+        runs = _RUNS_OF_A_MEASURE * self.steps * step_cost("mpfr")
         return self.count * (_HUNTED_COST + runs)
 
     def compute(self, keeper: Keeper) -> HuntResult:

@@ -47,42 +47,19 @@ class Rounded:
 Rounding = Callable[[Op, Ball], Ball]  # an operation and its result's magnitude → its own error
 
 
-def is_finite(arithmetic: Arithmetic) -> bool:
-    """Whether the errors of the arithmetic's operations are known."""
-    return arithmetic.name in ("fixed", *_FUNCTIONS)
-
-
 def rounding_of(arithmetic: Arithmetic) -> Rounding:
     """The error of one operation of the arithmetic, which must be known."""
-    unit = flint.arb(2) ** -arithmetic.bits
+    rounding = arithmetic.rounding
+    assert rounding is not None, arithmetic.name  # noqa: S101 - the caller's condition
 
     def own(op: Op, size: Ball) -> Ball:
         if op.kind == "const":
             found = arithmetic.exact(arithmetic.number(op.value))
             return flint.arb(abs(_fmpq(found) - _fmpq(op.value)))
-        if arithmetic.absolute:
-            given = op.kind == "root" and op.degree != 2  # a number; there is no function for it
-            return unit * (_FIXED["pi" if given else op.kind](size))
-        return size * unit * (1 if op.kind in _CORRECT else _FUNCTIONS[arithmetic.name])
+        return rounding(op.kind, op.degree, size)
 
     return own
 
-
-# In units of the last place, by the size of the result; see `verify.arithmetic.wide.functions`.
-_FIXED: dict[str, Callable[[Ball], Ball]] = {
-    "add": lambda _: flint.arb(0), "sub": lambda _: flint.arb(0), "neg": lambda _: flint.arb(0),
-    "pi": lambda _: flint.arb("0.501"), "mul": lambda _: flint.arb("0.501"),
-    "sin": lambda _: flint.arb("0.6"), "cos": lambda _: flint.arb("0.6"),
-    "log": lambda _: flint.arb("0.6"), "exp": lambda y: 1 + y / 64,
-    # Half of what e^x and e^−x lose, and of a unit more.
-    "sinh": lambda y: flint.arb("1.04") + y / 64, "cosh": lambda y: flint.arb("1.54") + y / 64,
-    # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
-    "inverse": lambda y: flint.arb("0.51") * (1 + y), "root": lambda _: flint.arb(2**11 + 8),
-}  # fmt: skip
-# Of functions, in half units of the last place or less: MPFR's are all rounded right, mpmath's are
-# held to 4 units by the conformance suite.
-_FUNCTIONS = {"mpfr": 1, "mpmath": 8}
-_CORRECT = ("add", "sub", "mul", "neg", "inverse", "pi")
 
 _UNIT, _LEAST = flint.arb(2) ** -52, flint.arb(2) ** -1000
 FLOAT: Rounding = lambda op, size: size * _UNIT + _LEAST  # noqa: E731

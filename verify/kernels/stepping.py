@@ -41,7 +41,7 @@ class Outcome:
 
 _FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
 _NOWHERE = Outcome(
-    0, (), (), (), 0.0, None, {}, 0, "an operation of the first step may leave the range of fixed"
+    0, (), (), (), 0.0, None, {}, 0, "an operation of the first step may leave the range of "
 )
 
 
@@ -49,12 +49,13 @@ class KernelRun(RunInputs):
     """A run that can be done in any arithmetic."""
 
     def fits(self, arithmetic: Arithmetic) -> bool:
-        """Whether a step from the start stays in an arithmetic of limited range.
+        """Whether a step from the start stays in the arithmetic's range, where that is limited.
 
         Raises UnsupportedError where that lacks a function.
         """
         made = (self.hamiltonian, self.scheme, arithmetic, self.observables | {"tangent"}, False)
-        return any(True for _ in self._formats(kernel_for(*made)))
+        kernel = kernel_for(*made)
+        return not arithmetic.absolute or any(True for _ in self._formats(kernel))
 
     def run(
         self,
@@ -77,14 +78,14 @@ class KernelRun(RunInputs):
         kernel = kernel_for(*made)
         if not arithmetic.absolute:
             return self._loop(kernel, arithmetic, (), 0, progress, enough)
-        outcome = _NOWHERE
+        outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
         for shift, found in self._formats(kernel):
             outcome = self._loop(kernel, arithmetic, tuple(found), shift, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             reason = (
                 f"at step {outcome.done + 1} the orbit left |p| < {text(found.p)}, "
-                f"|q| < {text(found.q)}, or a value was too large for fixed"
+                f"|q| < {text(found.q)}, or a value was too large for {arithmetic.name}"
             )
             outcome = replace(outcome, reason=reason)
         return outcome

@@ -45,7 +45,7 @@ import flint
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, is_finite, rounding_of
+from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.derivatives import Derivatives
 
@@ -118,7 +118,7 @@ class _Certificate:
 
     def one_step(self) -> _Steps | None:
         kernel, program = self.kernel, self.kernel.lowering.program
-        if kernel.tangent is None or not is_finite(self.arithmetic):
+        if kernel.tangent is None or self.arithmetic.rounding is None:
             return None
         live = kernel.lowering.live(kernel.roots)
         found = analyse(program, live, self.inputs(), rounding_of(self.arithmetic))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.number_system import Arithmetic, NumberSystem, UnsupportedError
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import METHOD, certify, certify_at
@@ -19,13 +19,11 @@ from verify.runs.enclosed import enclosed
 from verify.runs.estimated import Bounds, missing_digits, resolved, working_digits
 
 _ATTEMPTS = 5
-WORTH_COMPILING = (
+_WORTH_COMPILING = (
     60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
 )
 _SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
 _MORE = 20  # digits that cost such a run nothing, and are there for an observable that is small
-_WIDEST = 1000  # digits beyond which mpfr's products are the faster ones
-_COMPILED, _INTERPRETED = "fixed", "mpfr"
 
 
 @dataclass(frozen=True)
@@ -43,15 +41,23 @@ def choose(kernel_run: KernelRun, digits: int) -> str:
 
     float64 is not among them: it is what is under test, and its bounds are estimates.
     """
-    if kernel_run.steps < WORTH_COMPILING or digits > _WIDEST:
-        return _INTERPRETED
-    return _COMPILED if _fits(kernel_run, digits) else _INTERPRETED
+    *faster, last = number_systems.automatic()
+    for system in faster:
+        worth = worth_compiling(system, kernel_run.steps) and digits <= system.most_digits
+        if worth and _fits(kernel_run, system.make(digits)):
+            return system.name
+    return last.name
 
 
-def _fits(kernel_run: KernelRun, digits: int) -> bool:
-    """Whether fixed has the functions, and a step from the start stays within its range."""
+def worth_compiling(system: NumberSystem, steps: int) -> bool:
+    """Whether so many steps repay what the number system takes to compile a kernel."""
+    return steps >= _WORTH_COMPILING or not system.compiles
+
+
+def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:
+    """Whether it has the functions, and a step from the start stays within its range."""
     try:
-        return kernel_run.fits(number_systems.get(_COMPILED, digits))
+        return kernel_run.fits(arithmetic)
     except UnsupportedError:
         return False
 
@@ -62,23 +68,25 @@ def measure(
     """The run's values to so many digits in the arithmetic of that name, or in its fallback.
 
     A fixed-point run that leaves its range, and where a function is missing, or equations cannot be
-    solved, goes to mpfr.
+    solved, goes to the one of every range.
     """
     try:
         if number_systems.get(name, digits).radius is not None:
-            own = number_systems.get(name, working_digits(digits, kernel_run.steps))
-            bounds, run = enclosed(kernel_run, own, digits, progress)
+            wider = number_systems.get(name, working_digits(digits, kernel_run.steps))
+            bounds, run = enclosed(kernel_run, wider, digits, progress)
             return Measured(bounds, name, run)
-        found = certified(kernel_run, name, digits, progress)
-        if isinstance(found, Measured):
-            return found
-        found = _estimated(kernel_run, found, digits, progress)
-        if name != _COMPILED or found.bounds.status == "finished":
+        own = certified(kernel_run, name, digits, progress)
+        if isinstance(own, Measured):
+            return own
+        found = _estimated(kernel_run, own, digits, progress)
+        if not own.absolute or found.bounds.status == "finished":
             return found
         reason = found.outcome.reason or found.bounds.method
     except UnsupportedError as error:
         reason = str(error)
-    return replace(measure(kernel_run, _INTERPRETED, digits, progress), fallback=reason)
+    return replace(
+        measure(kernel_run, number_systems.automatic()[-1].name, digits, progress), fallback=reason
+    )
 
 
 def certified(
@@ -118,7 +126,7 @@ def _estimated(
 
 
 def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
-    if name != _COMPILED:
+    if not number_systems.about(name).compiles:
         return working_digits(digits, kernel_run.steps) + (
             _MORE if kernel_run.steps <= _SHORT else 0
         )

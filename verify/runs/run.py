@@ -16,6 +16,7 @@ from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
 from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.systems import ball, float64
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -39,7 +40,7 @@ def run(
     p: Exact,
     step_size: Exact,
     steps: int,
-    arithmetic: str = "float64",
+    arithmetic: str = float64.NAME,
     digits: int = 17,
     observables: Sequence[str] = CLOSED_FORM,
     points: int = 0,
@@ -66,7 +67,7 @@ def run(
         arithmetic = choose(kernel_run, digits)
     done = _run(kernel_run, arithmetic, digits, known, progress)
     found = done.bounds
-    most = min(digits, 17) if done.arithmetic == "float64" else digits
+    most = min(digits, number_systems.about(done.arithmetic).digits or digits)
     values = {
         n: _printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
     }
@@ -112,7 +113,7 @@ def proved_run(
     return RunResult(
         **hamiltonian.texts,
         scheme=scheme,
-        arithmetic="ball",
+        arithmetic=ball.NAME,
         digits=digits,
         step_size=text(step_size),
         steps=steps,
@@ -132,7 +133,7 @@ def proved_run(
 def _run(
     kernel_run: KernelRun, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
 ) -> Measured:
-    if arithmetic != "float64":
+    if arithmetic != float64.NAME:
         return measure(kernel_run, arithmetic, digits, progress)
     first = kernel_run.run(number_systems.get(arithmetic, digits), progress=progress)
     return Measured(bounded(kernel_run, first, known), arithmetic, first)
@@ -173,10 +174,10 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
         return {}
     with working_precision(bits):
         lam = (1 + delta_j) ** steps - 1
-        balls = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
+        found = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
         if delta_j > -1:  # (1 + ΔJ)^k moves in one direction
-            balls["lambda_max"] = abs(lam)
-        return {name: middle_and_radius(ball) for name, ball in balls.items() if in_reach(ball)}
+            found["lambda_max"] = abs(lam)
+        return {name: middle_and_radius(x) for name, x in found.items() if in_reach(x)}
 
 
 def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:

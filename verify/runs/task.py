@@ -2,14 +2,14 @@
 
 from typing import Literal
 
+from verify.arithmetic import AUTO, step_cost
+from verify.arithmetic.systems import float64
 from verify.execution.keeping import Keeper
-from verify.execution.task import STEP_COST, InitialValueTask
+from verify.execution.task import InitialValueTask
 from verify.runs.float64 import DIRECT_STEPS
 from verify.runs.run import proved_run, run
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import AUTO, StepSize
-
-_UNLISTED = 500  # float64 steps that a step in any other arithmetic is taken to be worth
+from verify.scenes.values import StepSize
 
 
 class RunTask(InitialValueTask):
@@ -27,8 +27,8 @@ class RunTask(InitialValueTask):
     @property
     def cost(self) -> int:
         """Steps times what a step in this arithmetic costs."""
-        checked = self.arithmetic == "float64" and self.steps <= DIRECT_STEPS
-        return self.steps * STEP_COST.get(AUTO if checked else self.arithmetic, _UNLISTED)
+        checked = self.arithmetic == float64.NAME and self.steps <= DIRECT_STEPS
+        return self.steps * step_cost(AUTO if checked else self.arithmetic)
 
     def proved(self) -> RunResult | None:
         return proved_run(

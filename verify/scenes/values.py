@@ -13,7 +13,7 @@ from verify.scenes.frozen import Frozen
 
 MAX_STEPS = 10**12
 MAX_DIGITS = 10_000
-AUTO = "auto"  # the fastest number system that certifies the digits
+AUTO = number_systems.AUTO
 CLOSED_FORM = ("delta_j_max", "mse", "lambda")
 REPORTED = (*CLOSED_FORM, "lambda_plain")
 OBSERVABLES = (*REPORTED, "lambda_max")  # the last: the greatest |Λ| after any of the steps

@@ -12,11 +12,13 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-import flint
-
-from verify.arithmetic.arb import middle_and_radius, rational_ball
-from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.number_system import ESCAPE_BITS, Arithmetic, bits_for, interpreted
+from verify.arithmetic.number_system import (
+    ESCAPE_BITS,
+    Arithmetic,
+    NumberSystem,
+    bits_for,
+    interpreted,
+)
 
 NAME = "ball"
 
@@ -27,12 +29,22 @@ def make(digits: int) -> Arithmetic:
 
 
 def at_bits(bits: int) -> Arithmetic:
+    import flint
+
+    from verify.arithmetic.arb import middle_and_radius, rational_ball
+    from verify.arithmetic.flint_precision import working_precision
+
     context = partial(working_precision, bits)
 
     def number(value: Fraction) -> Any:
         with context():
             return rational_ball(value)
 
+    def in_range(x: Any) -> bool:
+        """In range, and not so wide that nothing is known of it: more precision helps then."""
+        return bool(abs(x) < escape and (x.rel_accuracy_bits() > 0 or x.rad() < 1))
+
+    escape = flint.arb(2) ** ESCAPE_BITS
     names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt", "root")
     with context():
         pi = flint.arb.pi()
@@ -42,7 +54,7 @@ def at_bits(bits: int) -> Arithmetic:
         number=number,
         exact=lambda x: middle_and_radius(x)[0],
         radius=lambda x: middle_and_radius(x)[1],
-        finite=_in_range,
+        finite=in_range,
         context=context,
         functions={
             **{f: getattr(flint.arb, f) for f in names},
@@ -59,9 +71,6 @@ def at_bits(bits: int) -> Arithmetic:
     )
 
 
-_ESCAPE = flint.arb(2) ** ESCAPE_BITS
-
-
-def _in_range(x: Any) -> bool:
-    """In range, and not so wide that nothing is known of it: more precision is what helps then."""
-    return bool(abs(x) < _ESCAPE and (x.rel_accuracy_bits() > 0 or x.rad() < 1))
+NUMBER_SYSTEM = NumberSystem(
+    NAME, make, "midpoints with radii, which enclose every result by themselves", cost=500
+)

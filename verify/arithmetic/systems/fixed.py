@@ -10,9 +10,13 @@ import math
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from fractions import Fraction
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
-from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.number_system import Arithmetic, NumberSystem
+
+if TYPE_CHECKING:
+    from verify.arithmetic.arb import Ball
 
 NAME = "fixed"
 INTEGER_BITS = 16
@@ -40,6 +44,10 @@ def at_bits(bits: int) -> Arithmetic:
 
         return compiled(source, width, bits, names)
 
+    def rounding(kind: str, degree: int, size: "Ball") -> "Ball":
+        given = kind == "root" and degree != 2  # a number; there is no function for it
+        return type(size)(2) ** -bits * _units()["pi" if given else kind](size)
+
     with_pi = {f: f for f in FUNCTIONS} | {"approx": "approx", "pi": number(_pi(bits))}
     return Arithmetic(
         name=NAME,
@@ -54,7 +62,39 @@ def at_bits(bits: int) -> Arithmetic:
         pipelined=False,
         chunk=1 << 19,
         absolute=True,
+        rounding=rounding,
     )
+
+
+NUMBER_SYSTEM = NumberSystem(
+    NAME,
+    make,
+    "fixed-point numbers of 128 bits and more, compiled for this one map",
+    cost=40,
+    compiles=True,
+    most_digits=1000,  # compilation takes ever longer, too
+    automatic=True,
+)
+
+
+@cache
+def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
+    """Each operation's error in units of the last place, by the size of its result.
+
+    See `verify.arithmetic.wide.functions`.
+    """
+    from flint import arb
+
+    return {
+        "add": lambda _: arb(0), "sub": lambda _: arb(0), "neg": lambda _: arb(0),
+        "pi": lambda _: arb("0.501"), "mul": lambda _: arb("0.501"),
+        "sin": lambda _: arb("0.6"), "cos": lambda _: arb("0.6"),
+        "log": lambda _: arb("0.6"), "exp": lambda y: 1 + y / 64,
+        # Half of what e^x and e^−x lose, and of a unit more.
+        "sinh": lambda y: arb("1.04") + y / 64, "cosh": lambda y: arb("1.54") + y / 64,
+        # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
+        "inverse": lambda y: arb("0.51") * (1 + y), "root": lambda _: arb(2**11 + 8),
+    }  # fmt: skip
 
 
 def _exact(x: Any) -> Fraction:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from verify.arithmetic.number_system import Arithmetic, interpreted
+from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
 
 NAME = "float64"
 _REPAID = 200_000  # steps: Python takes some 2 µs each, and numba's import and compilation 1 s
@@ -45,6 +45,15 @@ def make(digits: int) -> Arithmetic:
 def compiled_at_once() -> Arithmetic:
     """The same number system, each kernel compiled at its first call: for timing it."""
     return replace(make(17), compile=_compiled)
+
+
+NUMBER_SYSTEM = NumberSystem(
+    NAME,
+    make,
+    "the processor’s double precision, 53 bits, which is what is under test",
+    cost=1,
+    digits=17,
+)
 
 
 def _number(value: Fraction) -> float:

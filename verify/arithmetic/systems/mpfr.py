@@ -15,14 +15,14 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-import gmpy2
-
 from verify.arithmetic.number_system import (
     ESCAPE_BITS,
     MOST_EXPONENT,
     Arithmetic,
+    NumberSystem,
     bits_for,
     interpreted,
+    relative,
 )
 
 NAME = "mpfr"
@@ -34,6 +34,8 @@ def make(digits: int) -> Arithmetic:
 
 
 def at_bits(bits: int) -> Arithmetic:
+    import gmpy2
+
     # A new gmpy2.context for each use: one that is entered twice forgets what it is to restore.
     made = partial(
         gmpy2.context,
@@ -71,6 +73,7 @@ def at_bits(bits: int) -> Arithmetic:
         guard="minus_escape < {x} < escape",
         pipelined=False,
         chunk=1 << 14,
+        rounding=relative(bits),
     )
 
 
@@ -82,12 +85,19 @@ def _checked(made: Callable[[], Any]) -> Iterator[None]:
         raise ArithmeticError("an operation was undefined or left the range of exponents")
 
 
+def _root(x: Any, n: int) -> Any:
+    from gmpy2 import root
+
+    if x < 0:  # MPFR takes the real root where n is odd; here a root is of what is not negative
+        raise ValueError("the root of a negative number")
+    return root(x, n)
+
+
 def _exact(x: Any) -> Fraction:
     numerator, denominator = x.as_integer_ratio()
     return Fraction(int(numerator), int(denominator))
 
 
-def _root(x: Any, n: int) -> Any:
-    if x < 0:  # MPFR takes the real root where n is odd; here a root is of what is not negative
-        raise ValueError("the root of a negative number")
-    return gmpy2.root(x, n)
+NUMBER_SYSTEM = NumberSystem(
+    NAME, make, "floating point of any precision, correctly rounded", cost=700, automatic=True
+)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from markupsafe import Markup
 
+from verify import arithmetic as number_systems
 from verify.pages.text.typography import listed, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import KINDS, Kind
@@ -100,12 +101,11 @@ _RAN = {
         "within it. <em>Estimated</em>: from a rerun at higher precision, which certifies nothing "
         "by itself."
     ),
-    "Number systems": Markup(
-        "<code>float64</code>: the processor’s double precision, 53 bits, which is what is under "
-        "test. <code>fixed</code>: fixed-point numbers of 128 bits and more, compiled for this one "
-        "map. <code>mpfr</code>: floating point of any precision, correctly rounded. "
-        "<code>mpmath</code>: the same in Python, the reference. <code>ball</code>: midpoints with "
-        "radii, which enclose every result by themselves."
+    "Number systems": Markup(" ").join(
+        Markup("<code>{}</code>: {}.").format(system.name, system.about)
+        for system in sorted(
+            map(number_systems.about, number_systems.names()), key=lambda x: x.cost
+        )
     ),
 }
 

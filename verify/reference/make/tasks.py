@@ -2,8 +2,9 @@
 
 from typing import Literal
 
+from verify.arithmetic import automatic
 from verify.execution.keeping import Keeper
-from verify.execution.task import STEP_COST, HamiltonianTask, InitialValueTask
+from verify.execution.task import HamiltonianTask, InitialValueTask
 from verify.kernels.orbit import Orbit
 from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.values import Number, StepSize
@@ -24,7 +25,7 @@ class OrbitTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
-        return _ROW_COST * len(self.steps) + STEP_COST["mpfr"] * sum(self.steps)
+        return _ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
 
     def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal, known_digits, text, upper
 from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation import NoFlowError
@@ -30,7 +31,6 @@ from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
 from verify.studies.regions.hausdorff import FARTHEST, hausdorff
 from verify.studies.regions.mean_lambda import Mean, RegionMean
 from verify.studies.regions.point_carriers import (
-    WIDE,
     ExactFlowCarrier,
     FloatCarrier,
     SchemeCarrier,
@@ -146,11 +146,12 @@ def _measured(
                 return carried, floats
     digits = max(digits, _MORE_DIGITS)
     goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
-    for name in WIDE[:-1]:
+    *faster, last = (system.name for system in number_systems.automatic())
+    for name in faster:
         with contextlib.suppress(UnsupportedError, LeftRangeError):
             wide = WideCarrier(*given, name, digits, smaller)
             return _all(shape, wide, goal), wide
-    wide = WideCarrier(*given, WIDE[-1], digits, smaller)
+    wide = WideCarrier(*given, last, digits, smaller)
     return _all(shape, wide, goal), wide
 
 

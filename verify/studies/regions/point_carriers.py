@@ -25,7 +25,6 @@ from verify.scenes.shapes.outline import Outline
 _FLOAT_GRID = 80  # bits after the point that are kept of a float64
 _PRECISE = 2000  # bits with which the size of an outline is found
 _WIDER = 19  # digits that the finer arithmetic has more: one limb
-WIDE = ("fixed", "mpfr")  # the faster first; the last has every range
 _SAMPLED = 8  # panels of an outline that are carried in the finer arithmetic
 
 

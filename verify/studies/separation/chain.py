@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify.arithmetic import AUTO
 from verify.arithmetic.exact import magnitude
-from verify.arithmetic.number_system import UnsupportedError
+from verify.arithmetic.number_system import NumberSystem, UnsupportedError
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -38,7 +39,6 @@ from verify.studies.separation.working import (
     rounded_inputs,
 )
 
-AUTO = "auto"
 PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the chain's order
 _ENDS: dict[str, tuple[int | None, int]] = {  # between which links a quantity lies
     "lambda_working": (None, 4),
@@ -50,8 +50,6 @@ QUANTITIES = tuple(_ENDS)
 _CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
 _ATTEMPTS = 4
 _DOUBLINGS = 6
-_BESIDE_FLOAT64 = ("fixed", "mpfr", "mpmath")  # what a mixed kernel can be made in
-_INTERPRETED, _WIDEST = "mpfr", 1000
 
 
 @dataclass(frozen=True)
@@ -216,16 +214,17 @@ class _Links:
         return any(wanted.values())
 
     def _beside(self) -> Working:
-        """The float64 run with exact arithmetic beside it, in mpfr where another cannot follow."""
+        """The float64 run with exact arithmetic beside it, in what can follow it everywhere where
+        another cannot, or has no bound of its rounding."""
         run = WorkingRun(
             self.kernel_run, self.inputs, self.constant is None and self.kernel_run.steps > 1
         )
         digits = working_digits(self.digits["beside"], self.kernel_run.steps)
-        name = self._name(digits) if self.arithmetic in _BESIDE_FLOAT64 else _INTERPRETED
+        asked, last = number_systems.get(self._name(digits), digits), _last().make(digits)
         try:
-            return run.step_through(number_systems.get(name, digits), self.advance)
+            return run.step_through(asked if asked.rounding else last, self.advance)
         except UnsupportedError:
-            return run.step_through(number_systems.get(_INTERPRETED, digits), self.advance)
+            return run.step_through(last, self.advance)
 
     def _reference(self, kernel_run: KernelRun, name: str) -> Link:
         if name not in self.made:
@@ -234,8 +233,14 @@ class _Links:
         return self.made[name]
 
     def _name(self, digits: int) -> str:
-        """The arithmetic for so many digits: fixed takes ever longer to compile."""
-        return _INTERPRETED if self.arithmetic == "fixed" and digits > _WIDEST else self.arithmetic
+        """The arithmetic for so many digits: one that compiles takes ever longer to do it."""
+        asked = number_systems.about(self.arithmetic)
+        return asked.name if digits <= asked.most_digits else _last().name
+
+
+def _last() -> NumberSystem:
+    """The number system that has every range and function."""
+    return number_systems.automatic()[-1]
 
 
 def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Link | None:
@@ -298,5 +303,5 @@ def _reference(kernel_run: KernelRun, arithmetic: str, digits: int, advance: Adv
             kind: Kind = "enclosed" if found.rigorous else "estimated"
             return Link(trail, bound, kind, found.method)
         more *= 2
-        run = kernel_run.run(number_systems.get(_INTERPRETED, more))
+        run = kernel_run.run(_last().make(more))
     raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

@@ -28,8 +28,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import newton
 from verify.kernels.computation import step_map_of
@@ -80,13 +80,13 @@ def mixed_kernel(
     Raises UnsupportedError where the arithmetic lacks a function.
     """
     step_map = step_map_of(hamiltonian, scheme)
-    float64 = number_systems.get("float64", 17)
-    narrow = _uncompiled(step_map, float64, WORKING)
+    working = float64.make(17)
+    narrow = _uncompiled(step_map, working, WORKING)
     if arithmetic.absolute and narrow.lowering.solves(narrow.roots):
         raise UnsupportedError(f"{arithmetic.name} follows no float64 that solves equations")
     value = {name: f"f_v{index}" for name, index in narrow.outputs.items()}
     closed = not narrow.lowering.program.is_constant(narrow.outputs["dj"], 0)
-    before, inside = _lines(narrow, list(value), float64, "f_")
+    before, inside = _lines(narrow, list(value), working, "f_")
     inside += [f"f_det = {value['det']}", f"f_dj = {value['dj']}"]
 
     wide = _uncompiled(step_map, arithmetic, frozenset({"lambda"}))
@@ -112,7 +112,7 @@ def mixed_kernel(
     names = ("f_p", "f_q", *sides, *totals)
     limits = LIMITS if arithmetic.absolute else ()
     source = _assemble(len(narrow.parameters), limits, names, before, inside)
-    function = _compiled(source, arithmetic, _scope(narrow, float64, wide, arithmetic))
+    function = _compiled(source, arithmetic, _scope(narrow, working, wide, arithmetic))
     return MixedKernel(function, narrow.parameters, limits, names, totals, wide, closed, source)
 
 
@@ -127,7 +127,9 @@ def _check(wide: Kernel, arithmetic: Arithmetic) -> None:
     lowering = wide.lowering
     kinds = {lowering.program.ops[i].kind for i in lowering.live([wide.outputs["dj"]])}
     if arithmetic.absolute and kinds & set(PARTIAL):
-        raise UnsupportedError(f"{', '.join(kinds & set(PARTIAL))} may leave the range of fixed")
+        raise UnsupportedError(
+            f"{', '.join(kinds & set(PARTIAL))} may leave the range of {arithmetic.name}"
+        )
 
 
 def _lines(
@@ -147,10 +149,10 @@ def _lines(
 
 
 def _scope(
-    narrow: Kernel, float64: Arithmetic, wide: Kernel, arithmetic: Arithmetic
+    narrow: Kernel, working: Arithmetic, wide: Kernel, arithmetic: Arithmetic
 ) -> dict[str, Any]:
     """The constants and functions that the source names."""
-    floats = {**float64.functions, **_constants(narrow, float64)}
+    floats = {**working.functions, **_constants(narrow, working)}
     constants = _constants(wide, arithmetic)
     return {
         "wide": lambda x: arithmetic.number(Fraction(x)),

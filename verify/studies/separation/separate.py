@@ -35,7 +35,9 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify.arithmetic import AUTO
 from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
+from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -50,7 +52,7 @@ from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationResult,
 )
-from verify.studies.separation.chain import AUTO, PARTS, QUANTITIES, Chain, Chains, Separation
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, Separation
 from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
 from verify.studies.separation.working import Stopped
 
@@ -192,9 +194,9 @@ def grid(
 
 
 def _check_reference(arithmetic: str) -> None:
-    known = [AUTO, *(name for name in number_systems.names() if name != "float64")]
+    known = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
     if arithmetic not in known:
-        wrong = "is what is examined" if arithmetic == "float64" else "unknown"
+        wrong = "is what is examined" if arithmetic == float64.NAME else "unknown"
         raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(known)}")
 
 

@@ -2,10 +2,11 @@
 
 from typing import Literal
 
+from verify.arithmetic import AUTO, step_cost
 from verify.execution.keeping import Keeper
-from verify.execution.task import STEP_COST, InitialValueTask
+from verify.execution.task import InitialValueTask
 from verify.scenes.results.separation import SeparationResult
-from verify.scenes.values import AUTO, StepSize
+from verify.scenes.values import StepSize
 from verify.studies.separation.separate import separate
 
 _RUNS = 3  # of the chain, in wide numbers
@@ -23,7 +24,7 @@ class SeparationTask(InitialValueTask):
     @property
     def cost(self) -> int:
         """About how many float64 steps its runs are worth."""
-        return _RUNS * self.steps * STEP_COST[AUTO]
+        return _RUNS * self.steps * step_cost(AUTO)
 
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""

@@ -26,6 +26,7 @@ import flint
 from verify import arithmetic as number_systems
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.systems import float64
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.reach import limits
 from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
@@ -145,7 +146,7 @@ class WorkingRun:
                 count = min(arithmetic.chunk, mark - done)
                 after = _after(kernel, arithmetic, fixed, state, count)
                 if after is None and arithmetic.absolute:
-                    raise UnsupportedError("the orbit leaves the range of fixed")
+                    raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
                 if after is None:
                     done += _last_good(kernel, arithmetic, fixed, state, count)
                     raise Stopped("left range", done + 1, "float64 leaves its range")
@@ -184,7 +185,8 @@ class WorkingRun:
         inputs = {n: Fraction(x) for n, x in self._named(kernel).items()}
         found = limits(kernel.wide, inputs, {n: Fraction(self.inputs[n]) for n in ("p", "q")})
         if found is None:
-            raise UnsupportedError("a step from the start may leave the range of fixed")
+            name = arithmetic.name
+            raise UnsupportedError(f"a step from the start may leave the range of {name}")
         return [float(found.p), float(found.q), arithmetic.number(found.part)]
 
     def _named(self, kernel: MixedKernel) -> dict[str, float]:
@@ -240,7 +242,7 @@ def _exact(arithmetic: Arithmetic, x: Any) -> Fraction:
 def rounded_inputs(run: KernelRun) -> dict[str, float]:
     """h, p, q and the parameters that the kernel takes, as float64; Stopped where one is not."""
     exact = {**run.start, **{n: run.parameters[n] for n in run.hamiltonian.parameters}}
-    number = number_systems.get("float64", 17).number
+    number = float64.make(17).number
     found: dict[str, float] = {name: number(value) for name, value in exact.items()}
     for name, value in found.items():
         if not math.isfinite(value):

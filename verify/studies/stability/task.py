@@ -2,8 +2,9 @@
 
 from typing import Literal
 
+from verify.arithmetic import AUTO, step_cost
 from verify.execution.keeping import Keeper
-from verify.execution.task import STEP_COST, InitialValueTask
+from verify.execution.task import InitialValueTask
 from verify.scenes.results.stability import (
     LargestStepResult,
     StabilityMapResult,
@@ -26,7 +27,7 @@ class StabilityTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
-        return _RUN_COST + self.steps * STEP_COST["fixed"]
+        return _RUN_COST + self.steps * step_cost(AUTO)
 
     def compute(self, keeper: Keeper) -> StabilityResult:
         from verify.studies.stability.results import run_result

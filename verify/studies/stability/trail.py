@@ -16,7 +16,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
-from verify.runs.digits_on_demand import WORTH_COMPILING
+from verify.runs.digits_on_demand import worth_compiling
 
 _SECTIONS = 128, 512  # of a trail, at least and at most
 _BETWEEN = 64  # steps between two of them, where that makes so many
@@ -85,16 +85,17 @@ def follow_precisely(run: Run, digits: int) -> tuple[Trail, Arithmetic]:
 
     Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
     """
-    if run.steps >= WORTH_COMPILING:
-        compiled = number_systems.get("fixed", digits)
-        try:
-            trail = follow(run, compiled)
-        except UnsupportedError:
-            pass
-        else:
+    *faster, last = number_systems.automatic()
+    for system in faster:
+        if worth_compiling(system, run.steps):
+            compiled = system.make(digits)
+            try:
+                trail = follow(run, compiled)
+            except UnsupportedError:
+                continue
             if trail.finished:
                 return trail, compiled
-    wide = number_systems.get("mpfr", digits)
+    wide = last.make(digits)
     return follow(replace(run, steps=min(run.steps, MOST_INTERPRETED)), wide), wide
 
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 from statistics import median
 from time import perf_counter
 
+from verify import arithmetic as number_systems
 from verify.arithmetic.exact import text, upper
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
@@ -228,21 +229,22 @@ def _system_points(problem: Problem, asked: NumberSystems, repeats: int) -> list
             steps=int(problem.time / h), arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 
-    pairs = [
-        (name, digits)
-        for name in asked.names
-        for digits in (asked.digits if name != "float64" else (17,))
-    ]
+    pairs = [(name, digits) for name in asked.names for digits in _digits(name, asked.digits)]
     first = [go(*each) for each in pairs]
     rounds = [[go(*each) for each in pairs] for _ in range(repeats)]
     points = []
     for k, ((name, digits), result) in enumerate(zip(pairs, first, strict=True)):
         taken = [each[k].seconds for each in rounds]
         timed: Timed | None = Timed(min(taken), median(taken))
-        if name == "float64":  # compiled, as it is in the other figures
+        if name == float64.NAME:  # compiled, as it is in the other figures
             timed = _compiled_float(problem, asked, repeats)
         points.append(_system_point(name, digits, result, timed))
     return points
+
+
+def _digits(name: str, asked: Sequence[int]) -> Sequence[int]:
+    own = number_systems.about(name).digits
+    return asked if own is None else (own,)
 
 
 def _compiled_float(problem: Problem, asked: NumberSystems, repeats: int) -> Timed | None:

@@ -23,7 +23,7 @@ from verify.scenes.results.run import RunResult
 
 _IN, _AFTER = 2, 1  # one in so many samples, and not those that are taken apart
 _DIGITS = 30
-_COMPILED = 997  # of so many samples one is run in fixed point
+_COMPILED = 997  # of so many samples one is run in a number system that compiles
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
@@ -34,7 +34,7 @@ def holds(sample: Sample) -> bool:
     wanted = _enclosed(sample)
     if wanted is None:
         return False
-    found = _run(sample, name, 17 if name == "float64" else _DIGITS)
+    found = _run(sample, name, number_systems.about(name).digits or _DIGITS)
     if found is None:
         return False
     for quantity, value in found.values.items():
@@ -47,12 +47,10 @@ def holds(sample: Sample) -> bool:
 
 
 def _turn(sample: Sample) -> str:
-    """The number system that is looked at: fixed, which is compiled, in few samples."""
-    turn = sample.turn
-    if turn % _COMPILED == 0:
-        return "fixed"
-    names = [name for name in number_systems.names() if name != "fixed"]
-    return names[turn // _IN % len(names)]
+    """The number system that is looked at: one that compiles each kernel, in few samples."""
+    seldom = sample.turn % _COMPILED == 0
+    names = [n for n in number_systems.names() if number_systems.about(n).compiles == seldom]
+    return names[sample.turn // (_COMPILED if seldom else _IN) % len(names)]
 
 
 def _enclosed(sample: Sample) -> dict[str, Ball] | None:
