@@ -12,6 +12,7 @@ _CELL = "text-align: left; font-variant-numeric: tabular-nums"
 
 
 def cut(formula: str) -> str:
+    """A formula as it is, or its beginning where it is long."""
     if len(formula) <= _LONGEST:
         return formula
     return f"{formula[:_LONGEST].rsplit(' ', 2)[0]} …"
@@ -41,6 +42,11 @@ def short_latex(formula: str) -> str:
 
 
 def aligned_latex(lines: Iterable[str]) -> str:
+    r"""Equations one below the other, each with the & at which it is aligned.
+
+    >>> print(aligned_latex(["a &= b", "c &= d"]))
+    $$\begin{aligned} a &= b \\ c &= d \end{aligned}$$
+    """
     return r"$$\begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$$"
 
 

@@ -31,6 +31,7 @@ class Findings:
     results: Mapping[str, Frozen] = field(default_factory=dict)
 
     def scene(self, name: str) -> Scene:
+        """The scene of that name. InputError where there is none."""
         if name not in self.scenes:
             raise InputError("claim.scene", name, f"unknown; allowed: {', '.join(self.scenes)}")
         return self.scenes[name]
@@ -42,6 +43,7 @@ class Findings:
         return scene
 
     def proof(self, scene: Scene, scheme: str) -> ProofResult:
+        """What was proved of the scheme for the scene's H. InputError where the scene has no such scheme."""
         _has_scheme(scene, scheme)
         result = self.results[proof_task(scene, scheme).key]
         assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's

@@ -52,6 +52,7 @@ class Store:
         return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
 
     def get(self, name: str, task: Task) -> Frozen | None:
+        """The kept result of the task; None where there is none, or a damaged one."""
         path = self.path(name)
         if path is None or not path.exists():
             return None
@@ -66,6 +67,7 @@ class Store:
         return found
 
     def put(self, name: str, result: Frozen) -> None:
+        """Keeps the result; the checkpoints of its runs are done with."""
         path = self.path(name)
         if path is not None:
             write_atomically(path, sealed(KEPT, result.model_dump_json(indent=1)))

@@ -137,6 +137,7 @@ class Keeper:
         return self._folder is not None and time.monotonic() - last >= _SECONDS
 
     def save(self, label: str, data: dict[str, Any]) -> None:
+        """Keeps the run under the label, in place of what was kept before."""
         path = self._path(label)
         if path is not None:
             content = json.dumps({"label": label, "data": data})

@@ -15,6 +15,7 @@ class Plan:
     left_out: list[tuple[str, str]] = field(default_factory=list)
 
     def need(self, task: Task, reason: str) -> None:
+        """Adds the task, once, and the reason for it."""
         name = task.key
         self.tasks.setdefault(name, task)
         reasons = self.reasons.setdefault(name, [])
@@ -22,6 +23,7 @@ class Plan:
             reasons.append(reason)
 
     def leave_out(self, what: str, why: str) -> None:
+        """Says what is not computed, and why."""
         if (what, why) not in self.left_out:
             self.left_out.append((what, why))
 

@@ -297,6 +297,7 @@ def _shallow(data: Any) -> bool:
 
 
 def one_line(error: ValidationError, source: str) -> InputError:
+    """The first of pydantic's errors in one line, which names the key and its value."""
     errors = error.errors(include_url=False)
     # A mistyped key is also a missing one: name what was typed.
     first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])

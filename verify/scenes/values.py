@@ -41,5 +41,7 @@ ArithmeticName = Annotated[str, AfterValidator(_known_arithmetic)]
 
 @drawn_by("initial_values")
 class InitialValue(Frozen):
+    """Where a run starts, exactly."""
+
     q: Number
     p: Number

@@ -74,6 +74,8 @@ class LargestStepResult(Frozen):
 
 
 class MapCell(Frozen):
+    """One run of a map: its verdict, and the step that it belongs to."""
+
     kind: Kind
     step: int | None = None
 
