@@ -43,7 +43,7 @@ class Findings:
         return scene
 
     def proof(self, scene: Scene, scheme: str) -> ProofResult:
-        """What was proved of the scheme for the scene's H. InputError where the scene has no such scheme."""
+        """What was proved for the scene's H. InputError where the scene has not this scheme."""
         _has_scheme(scene, scheme)
         result = self.results[proof_task(scene, scheme).key]
         assert isinstance(result, ProofResult)  # noqa: S101 - the key is a proof's

@@ -44,7 +44,9 @@ def test_auto_tries_the_faster_first_and_at_last_one_without_limits() -> None:
     *faster, last = arithmetic.automatic()
     assert [x.cost for x in faster] == sorted(x.cost for x in faster)
     assert all(x.cost < last.cost for x in faster)
-    assert not last.compiles and last.most_digits == float("inf") and not last.make(20).absolute
+    assert not last.compiles
+    assert last.most_digits == float("inf")
+    assert not last.make(20).absolute
     assert arithmetic.step_cost(arithmetic.AUTO) == arithmetic.automatic()[0].cost
     for system in arithmetic.automatic():  # bounds are rigorous only where rounding is known
         assert system.make(20).rounding is not None
