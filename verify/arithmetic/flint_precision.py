@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import RLock
-from typing import Any
 
 import flint
 
@@ -17,7 +16,7 @@ def working_precision(bits: int) -> Iterator[None]:
         yield
 
 
-def sign_of(value: Callable[[], Any]) -> int:
+def sign_of(value: Callable[[], flint.arb]) -> int:
     """The sign, 1 or −1, of a real number that is known not to be 0.
 
     `value` gives an enclosure in flint's precision, which is raised until it excludes 0.

@@ -1,8 +1,7 @@
 """Whether our numbers make of a user's step what his floats make of it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
 
 from verify.integrators.probe import Point, dual_step
 from verify.integrators.step import Step
@@ -11,14 +10,15 @@ from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order
 
+Lifted = Callable[[Dual, Dual, Dual], Sequence[Dual]]  # (p, q, h) ↦ p', q'
 _SIZES = Fraction(1, 8), Fraction(1, 64)
 _AGREES = 1e-10
 _ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may with duals
 
 
-def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Any:
-    def at(p: Dual, q: Dual, h: Dual) -> tuple[Any, Any]:
-        made: dict[int, Any] = {}
+def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Lifted:
+    def at(p: Dual, q: Dual, h: Dual) -> tuple[Dual, Dual]:
+        made: dict[int, Dual] = {}
         start = {"p": p, "q": q, "h": h}
         for node in in_order(p_next, q_next):
             x = [made[one.number] for one in node.inputs]
@@ -40,15 +40,15 @@ def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Any:
     return at
 
 
-def by_duals(step: Step) -> Any:
-    def made(kind: Duals) -> Any:
+def by_duals(step: Step) -> Callable[[Duals], Lifted]:
+    def made(kind: Duals) -> Lifted:
         function = copied(step.function, kind)
         return lambda p, q, h: dual_step(step, function, p, q, h)
 
     return made
 
 
-def must_agree(step: Step, points: Sequence[Point], made: Any) -> None:
+def must_agree(step: Step, points: Sequence[Point], made: Callable[[Duals], Lifted]) -> None:
     """UntraceableError where our numbers and the user's floats part at a point.
 
     So it is where the code keeps a state, or takes another branch with floats.

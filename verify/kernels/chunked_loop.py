@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import decimal
+from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels import tangent_map
@@ -14,7 +15,7 @@ from verify.kernels.run_inputs import RunInputs
 from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
-State = tuple[Any, ...]
+State = tuple[Number, ...]
 _ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
                  "lambda_plain": "plain"}  # fmt: skip
 _SCALED = {
@@ -40,7 +41,7 @@ class ChunkedLoop:
     ) -> None:
         self.run, self.kernel, self.arithmetic, self.shift = run, kernel, arithmetic, shift
         number = arithmetic.number
-        self.fixed: list[Any] = [number(x) for x in run.inputs(kernel, shift).values()]
+        self.fixed: list[Number] = [number(x) for x in run.inputs(kernel, shift).values()]
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
@@ -98,7 +99,7 @@ class ChunkedLoop:
             return None
         return tuple(after)
 
-    def _finite(self, x: Any) -> bool:
+    def _finite(self, x: Number) -> bool:
         return x - x == 0 if isinstance(x, float) else self.arithmetic.finite(x)
 
     def _last_good(self, count: int) -> int:
@@ -133,7 +134,7 @@ class ChunkedLoop:
             self.series.append(self._point(first))
             self._seen = {}
 
-    def _exact(self, x: Any) -> Fraction:
+    def _exact(self, x: Number) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
     def _unscaled(self, name: str, value: Fraction) -> Fraction:
@@ -195,7 +196,7 @@ class ChunkedLoop:
         notes = len(self.trail), len(self.tangents), len(self.series)
         return self.done, self.seconds, self.state, dict(self._seen), notes
 
-    def _restore(self, kept: dict[str, Any] | None) -> None:
+    def _restore(self, kept: Mapping[str, Any] | None) -> None:
         if kept is None:
             return
         self.done, self.seconds = kept["done"], kept["seconds"]

@@ -21,8 +21,8 @@ about h. Its difference from the plain kernel estimates the plain kernel's round
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
+from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import newton, tangent_map
@@ -52,7 +52,7 @@ class Kernel:
     indices of its results; `names` what the source's names stand for.
     """
 
-    function: Callable[..., tuple[Any, ...]]
+    function: Callable[..., tuple[int, *tuple[Number, ...]]]
     parameters: tuple[str, ...]
     scales: tuple[str, ...]
     limits: tuple[str, ...]
@@ -64,7 +64,7 @@ class Kernel:
     outputs: Mapping[str, int]
     tangent: tangent_map.Tangent | None
     source: str
-    names: Mapping[str, Any]
+    names: Mapping[str, Number]
 
     @property
     def roots(self) -> list[int]:
@@ -159,7 +159,7 @@ class Writer:
         if self.lowering.solves(needed) and not rounded:
             raise UnsupportedError(f"{self.arithmetic.name} solves no equations")
 
-    def constants_of_tangent(self) -> dict[str, Any]:
+    def constants_of_tangent(self) -> dict[str, Number]:
         """The constants of the tangent map's lines, as doubles by their names."""
         made = self.tangent
         return (

@@ -1,12 +1,12 @@
 """A program's operations → lines of source, those before the loop apart from those in it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
 import gmpy2
 
+from verify.arithmetic.number import Number
 from verify.kernels import newton
 from verify.kernels.operations import Loop, Program
 
@@ -157,12 +157,14 @@ class Lowering:
         """The rational constants, by their operations."""
         return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
 
-    def named_constants(self, number: Any, roots: Sequence[int] | None = None) -> dict[str, Any]:
+    def named_constants(
+        self, number: Callable[[Fraction], Number], roots: Sequence[int] | None = None
+    ) -> dict[str, Number]:
         """The constants, and roots that are given, as numbers by their names in the source.
 
         `roots`: those alone that these need.
         """
-        program, found = self.program, {}
+        program, found = self.program, dict[str, Number]()
         live = range(len(program.ops)) if roots is None else self.live(roots)
         for index in live:
             op = program.ops[index]

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -22,7 +23,9 @@ from verify.kernels.stepping import KernelRun
 
 _LANES = 64  # points whose states stay in the nearest cache
 _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
-Values = Mapping[str, Any]  # by name: "p", "q" and what else is carried; sequences of numbers
+Values = Mapping[
+    str, Any
+]  # arrays or lists, by name: "p", "q" and what else is carried; sequences of numbers
 
 
 class LeftRangeError(Exception):
@@ -63,7 +66,7 @@ class PointMap:
             return dict(zip(self.kernel.state_names, found, strict=True))
         return dict(zip(self.kernel.state_names, self._one_by_one(p, q), strict=True))
 
-    def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Any]:
+    def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Number]:
         given = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
         return [self.arithmetic.number(x) for x in given]
 
@@ -83,11 +86,11 @@ class PointMap:
             raise _points_out_of_range(p[lost[0]], q[lost[0]], self.arithmetic.name)
         return carried
 
-    def _one_by_one(self, p: Sequence[Any], q: Sequence[Any]) -> list[list[Any]]:
+    def _one_by_one(self, p: Sequence[Number], q: Sequence[Number]) -> list[list[Number]]:
         inputs = self._inputs(self._limits(p, q))
         rest = [self.arithmetic.number(Fraction(x)) for x in self.kernel.start]
 
-        def advance(z: tuple[Any, Any]) -> tuple[Any, ...]:
+        def advance(z: tuple[Number, Number]) -> tuple[Number, ...]:
             try:
                 done, *after = self.kernel.function(self.steps, *inputs, *z, *rest)
             except (ArithmeticError, ValueError):
@@ -105,7 +108,7 @@ class PointMap:
                     found = list(threads.map(advance, zip(p, q, strict=True)))
         return [list(column) for column in zip(*found, strict=True)]
 
-    def _limits(self, p: Sequence[Any], q: Sequence[Any]) -> tuple[Fraction, ...]:
+    def _limits(self, p: Sequence[Number], q: Sequence[Number]) -> tuple[Fraction, ...]:
         """Those of a fixed-point kernel, for all points together."""
         if not self.kernel.limits:
             return ()

@@ -14,16 +14,17 @@ too the unknowns are set to 0/0, by which the run ends at that step. (Where h is
 are several solutions with a positive determinant, it may be any of them.)
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+
+from verify.arithmetic.number import Number
 
 MOST_UPDATES = 25  # where h is small 2 … 4 are needed for 17 digits, 5 … 8 for 200
 _ATTEMPTS = 2
 
 
-def constants(bits: int, number: Any) -> dict[str, Any]:
+def constants(bits: int, number: Callable[[Fraction], Number]) -> dict[str, Number]:
     """What the loops compare with, by its names in the source, for numbers of so many bits."""
     return {
         "newton_zero": number(Fraction(0)),
@@ -100,7 +101,9 @@ class Source:
             f"{last} = {size}",
         ]
 
-    def _by_component(self) -> Any:
+    def _by_component(
+        self,
+    ) -> tuple[list[tuple[str, str]], list[tuple[str, str]], Callable[[str], str]]:
         """Of p and of q: names and sums of the updates' sizes, and of what they are added to; and
         the condition that all sizes, times a factor, are small."""
         sizes, widths = [], []

@@ -11,7 +11,7 @@ it was. So a trial costs what it adds, however long the program is.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 _LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
 _FUNCTION_LATENCY = 20
@@ -52,6 +52,9 @@ class Loop:
     determinants: tuple[int, ...]
 
 
+Key = tuple[object, ...]  # what a result is of: its operation, and indices, numbers or texts
+
+
 class Mark(NamedTuple):
     """How long a program was: its operations, what is known of them, its loops, and their cost."""
 
@@ -67,7 +70,7 @@ class Tail(NamedTuple):
     ops: list[Op]
     static: list[bool]
     depth: list[int]
-    keys: list[Any]
+    keys: list[Key]
     known: list[int]
     loops: list[Loop]
     cost: int
@@ -86,8 +89,8 @@ class Program:
         self.depth: list[int] = []
         self.cost = 0
         # Results by what they are of: numbers and texts, as the hash of a Fraction takes long.
-        self._known: dict[Any, int] = {}
-        self._keys: list[Any] = []  # of `_known`, in their order
+        self._known: dict[Key, int] = {}
+        self._keys: list[Key] = []  # of `_known`, in their order
         self._special: dict[int, int] = {}  # which constants are 0, 1 and −1
         self._live: dict[tuple[int, ...], tuple[int, list[int]]] = {}
 
@@ -148,7 +151,7 @@ class Program:
 
     # -- operations ---------------------------------------------------------------------------
 
-    def _new(self, key: Any, op: Op, static: bool) -> int:
+    def _new(self, key: Key, op: Op, static: bool) -> int:
         index = len(self.ops)
         self._known[key] = index
         self._keys.append(key)

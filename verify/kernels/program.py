@@ -9,6 +9,8 @@ from fractions import Fraction
 from itertools import permutations
 from typing import Any, TypeVar
 
+import flint
+
 from verify.algebra.generator import Generator, System, terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.kernels.operations import Loop, Tail
@@ -19,7 +21,7 @@ _MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 
 Term = tuple[tuple[int, ...], int]  # exponents of the dynamic generators, index of coefficient
 # A polynomial by the exponents of its variables, one after the other: its coefficients' indices.
-Nest = dict[int, Any]  # down to indices
+Nest = dict[int, Any]  # of nests of one variable less, or of indices
 Cost = tuple[int, int]
 T = TypeVar("T")
 
@@ -137,11 +139,11 @@ class Evaluator:
         """x by monomials in the dynamic generators, the static coefficients evaluated."""
         parts: dict[tuple[int, ...], int] = {}
         program, at = self.program, [(i, self._at[i]) for i in sorted(static)]
-        by_outer: dict[tuple[int, ...], list[tuple[Any, Any]]] = {}
+        by_outer: dict[tuple[int, ...], list[tuple[tuple[int, ...], flint.fmpq]]] = {}
         for monomial, c in terms_of(x):
             outer = tuple([int(monomial[i]) for i in dynamic])
             by_outer.setdefault(outer, []).append((monomial, c))
-        zero, powers = Fraction(0), dict[tuple[int, Any], int]()
+        zero, powers = Fraction(0), dict[tuple[int, int], int]()
         for outer, terms in by_outer.items():
             total = program.constant(zero)
             for monomial, c in terms:
@@ -226,7 +228,7 @@ class Evaluator:
 def _nest(terms: Sequence[Term], order: Sequence[int]) -> Nest:
     """The terms by the exponents of the variables in this order."""
     *outer, last = order
-    nest: dict[int, Any] = {}
+    nest: Nest = {}
     for exponents, coefficient in terms:
         inner = nest
         for k in outer:

@@ -7,7 +7,8 @@ those in `methods/user/` answer to texts of the users' own. Adding a scheme is a
 
 from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
 from verify.errors import InputError
@@ -37,7 +38,7 @@ def get(name: str) -> "Scheme":
     raise InputError("scheme", name, f"unknown; allowed: {', '.join(names())}, …")
 
 
-def _candidates(name: str) -> Iterator[Any]:
+def _candidates(name: str) -> Iterator[ModuleType]:
     """The files that may answer to the name: `lie2` imports `lie.py` and no other."""
     users = [file for file in _FILES.names if _FILES.folder(file) == _USERS]
     for file in (*(f for f in _FILES.names if name.startswith(f) and f not in users), *users):

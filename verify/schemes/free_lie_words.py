@@ -19,14 +19,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import gcd
-from typing import Any
 
 import flint
+
+from verify.arithmetic.number import E
 
 KINDS = ("splitting", "nystrom", "composition")
 # Of nystrom steps fewer conditions would do from weight 8 on: forces of two kinds commute too.
 MOST_ORDER = {"splitting": 8, "nystrom": 7, "composition": 10}
-Part = Mapping[str, Any]  # letter to coefficient
 _ODD = "13579"
 
 
@@ -96,7 +96,7 @@ def lyndon(kind: str, weight: int) -> tuple[str, ...]:
 # -- the step -------------------------------------------------------------------------------------
 
 
-def step(kind: str, parts: Sequence[Part], most: int, one: Any) -> dict[str, Any]:
+def step(kind: str, parts: Sequence[Mapping[str, E]], most: int, one: E) -> dict[str, E]:
     """The coefficients of all words up to weight `most` in Π exp(part), in the ring of `one`."""
     all_words = words(kind, most)
     shares = [one / n for n in range(1, most + 1)]
@@ -119,9 +119,11 @@ def step(kind: str, parts: Sequence[Part], most: int, one: Any) -> dict[str, Any
     return {word: series.get(word, one * 0) for word in all_words}
 
 
-def _exponential(part: Part, all_words: Sequence[str], shares: Sequence[Any]) -> dict[str, Any]:
+def _exponential(
+    part: Mapping[str, E], all_words: Sequence[str], shares: Sequence[E]
+) -> dict[str, E]:
     """The coefficients of exp(part) but for that of no letter, 1: Π c_l / n! of n letters."""
-    found: dict[str, Any] = {}
+    found: dict[str, E] = {}
     for word in all_words:
         if word and word[-1] in part:
             before = found.get(word[:-1])
@@ -132,21 +134,21 @@ def _exponential(part: Part, all_words: Sequence[str], shares: Sequence[Any]) ->
     return found
 
 
-def of_logarithm(series: Mapping[str, Any], word: str, sign: int = -1) -> Any:
+def of_logarithm(series: Mapping[str, E], word: str, sign: int = -1) -> E:
     """The word's coefficient in log S: Σ (−1)^(k+1)/k over its cuts into k pieces.
 
     With `sign` 1 all signs are plus, as of a majorant.
     """
     size = len(word)
-    reached: list[Any] = [series[""], *[None] * size]
+    reached: list[E | None] = [series[""], *[None] * size]
     total = series[""] * 0
     for pieces in range(1, size + 1):
-        after: list[Any] = [None] * (size + 1)
+        after: list[E | None] = [None] * (size + 1)
         for end in range(pieces, size + 1):
             cuts = [
-                reached[begin] * series[word[begin:end]]
-                for begin in range(end)
-                if reached[begin] is not None
+                before * series[word[begin:end]]
+                for begin, before in enumerate(reached[:end])
+                if before is not None
             ]
             after[end] = sum(cuts[1:], cuts[0]) if cuts else None
         reached = after
@@ -155,7 +157,7 @@ def of_logarithm(series: Mapping[str, Any], word: str, sign: int = -1) -> Any:
     return total
 
 
-def residue(series: Mapping[str, Any], condition: LogCondition) -> Any:
+def residue(series: Mapping[str, E], condition: LogCondition) -> E:
     """Left side − right side of the condition."""
     total = series[""] * -condition.value
     for n, word in condition.terms:

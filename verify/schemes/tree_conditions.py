@@ -24,17 +24,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from typing import Any, Protocol
+from typing import Generic, Protocol, TypeVar
 
 from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
 from verify.algebra.jets import Jets
 from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
 
 Tree = tuple["Tree", ...]  # the trees that are left without the root, in descending order
 Vector = tuple[Poly, ...]
+E_co = TypeVar("E_co", covariant=True)
 MOST_ORDER = 10
 
 
@@ -176,7 +178,7 @@ def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
     independent: each of them has to have the coefficient 0.
     """
     differentials = Differentials(jets)
-    found: dict[tuple[int, Any], Poly] = {}
+    found: dict[tuple[int, tuple[int, ...]], Poly] = {}
     for tree, gap in gaps.items():
         share = gap / symmetry(tree)
         for part, x in enumerate(differentials.of(tree)):
@@ -187,30 +189,30 @@ def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
     return False if False in zeros else None if None in zeros else True
 
 
-class Derivatives(Protocol):
+class Derivatives(Protocol[E_co]):
     """H_ij, and 0, in some ring."""
 
     @property
-    def zero(self) -> Any: ...
+    def zero(self) -> E_co: ...
 
-    def h(self, i: int, j: int) -> Any: ...
+    def h(self, i: int, j: int) -> E_co: ...
 
 
-class Differentials:
+class Differentials(Generic[E]):
     """Elementary differentials F(t) of f = (−H_q, H_p), over the jets or what stands for them:
     F(τ) = f, and F([t_1 … t_m]) = f⁽ᵐ⁾(F(t_1), …, F(t_m))."""
 
-    def __init__(self, jets: Derivatives) -> None:
+    def __init__(self, jets: Derivatives[E]) -> None:
         self.jets = jets
-        self._known: dict[Tree, tuple[Any, Any]] = {}
+        self._known: dict[Tree, tuple[E, E]] = {}
 
-    def of(self, tree: Tree) -> tuple[Any, Any]:
+    def of(self, tree: Tree) -> tuple[E, E]:
         if tree not in self._known:
             inner = [self.of(child) for child in tree]
             self._known[tree] = -self._derived(0, 1, inner), self._derived(1, 0, inner)
         return self._known[tree]
 
-    def _derived(self, i: int, j: int, along: Sequence[tuple[Any, Any]]) -> Any:
+    def _derived(self, i: int, j: int, along: Sequence[tuple[E, E]]) -> E:
         """The derivative of H_ij along these vectors."""
         total = self.jets.zero
         for parts in product((0, 1), repeat=len(along)):

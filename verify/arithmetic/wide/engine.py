@@ -13,7 +13,7 @@ from llvmlite import ir
 from verify.arithmetic.wide.translate import Translator
 
 _LOCK = threading.Lock()  # LLVM's set-up is not made for threads
-_ENGINES: list[Any] = []  # what runs must not be freed
+_ENGINES: list[llvm.ExecutionEngine] = []  # what runs must not be freed
 
 
 class Fixed:
@@ -43,9 +43,12 @@ class Fixed:
         return self.raw > other.raw
 
 
+Word = Fixed | float | int  # by the kind of an argument, or of a result
+
+
 def compiled(
     source: str, width: int, fraction: int, names: Mapping[str, Any]
-) -> Callable[..., Any]:
+) -> Callable[..., object]:
     """The function that the source defines (see `verify.arithmetic.wide.translate`).
 
     It is compiled once, when it is first called, since not every kernel that is made is run. It
@@ -58,7 +61,7 @@ def compiled(
 @lru_cache(maxsize=256)
 def _compiled(
     source: str, width: int, fraction: int, names: tuple[tuple[str, Any], ...]
-) -> Callable[..., Any]:
+) -> Callable[..., object]:
     translator = Translator(source, width, fraction, dict(names))
     module = translator.translate()
     native = cache(lambda: _native(module))
@@ -66,7 +69,7 @@ def _compiled(
     kinds = [kind for _, kind in translator.arguments]
     room = 8 * (sum(sizes[kind] for kind in translator.results) + 1)
 
-    def call(*arguments: Any) -> tuple[Any, ...]:
+    def call(*arguments: Word) -> object:
         given = b"".join(map(_packed, arguments, kinds, (sizes[k] for k in kinds)))
         result = ctypes.create_string_buffer(room)
         native()(given, result)
@@ -89,14 +92,14 @@ def _packed(value: Any, kind: str, size: int) -> bytes:
     return int(raw).to_bytes(8 * size, "little", signed=True)  # OverflowError beyond the format
 
 
-def _unpacked(words: bytes, kind: str, fraction: int) -> Any:
+def _unpacked(words: bytes, kind: str, fraction: int) -> Word:
     if kind == "float":
         return ctypes.c_double.from_buffer_copy(words).value
     number = int.from_bytes(words, "little", signed=True)
     return number if kind == "int" else Fixed(number, fraction)
 
 
-def _native(module: ir.Module) -> Callable[[bytes, Any], None]:
+def _native(module: ir.Module) -> Callable[[bytes, ctypes.Array[ctypes.c_char]], None]:
     with _LOCK:
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
@@ -114,7 +117,7 @@ def _native(module: ir.Module) -> Callable[[bytes, Any], None]:
     return ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
 
 
-def _optimise(module: Any, target: Any) -> None:
+def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
     """Registers for variables, and common subexpressions.
 
     The rest of LLVM's pipeline makes these kernels no faster, and takes ten times as long.

@@ -14,7 +14,6 @@ leading limbs are zero, and they are not computed. log: from float64's logarithm
 from collections.abc import Sequence
 from fractions import Fraction
 from math import factorial
-from typing import Any
 
 import flint
 from llvmlite import ir
@@ -31,7 +30,7 @@ _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
 _DOUBLE = ir.DoubleType()
 
 
-def arb_integer(value: Any, shift: int) -> int:
+def arb_integer(value: flint.arb, shift: int) -> int:
     """An arb's middle times 2^shift, to the nearest integer."""
     mantissa, exponent = value.mid().man_exp()
     return round(Fraction(int(mantissa)) * Fraction(2) ** (int(exponent) + shift))
@@ -89,7 +88,7 @@ class Functions:
         return value
 
     def _multiple(
-        self, b: ir.IRBuilder, x: Value, unit: Any, offset: Fraction
+        self, b: ir.IRBuilder, x: Value, unit: flint.arb, offset: Fraction
     ) -> tuple[Value, Value]:
         """(k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W fraction
         bits.

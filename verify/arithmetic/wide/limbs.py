@@ -10,14 +10,14 @@ of limbs; each routine says what that means for its result.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TypeAlias
 
 from llvmlite import ir
 
 I64 = ir.IntType(64)
 I128 = ir.IntType(128)
 
-Value = Any  # an LLVM value
+Value: TypeAlias = ir.Value
 
 
 def bits(count: int) -> ir.IntType:

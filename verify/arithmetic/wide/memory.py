@@ -1,7 +1,5 @@
 """Numbers in memory, 64-bit words from the lowest, as LLVM IR."""
 
-from typing import Any
-
 from llvmlite import ir
 
 from verify.arithmetic.wide import limbs
@@ -10,7 +8,7 @@ from verify.arithmetic.wide.limbs import I64, Value, constant
 DOUBLE = ir.DoubleType()
 
 
-def read(b: ir.IRBuilder, memory: Value, offset: int, kind: Any) -> tuple[Value, int]:
+def read(b: ir.IRBuilder, memory: Value, offset: int, kind: ir.Type) -> tuple[Value, int]:
     """The number of that type at a word offset, and the offset behind it."""
     count = 1 if kind == DOUBLE else kind.width // 64
     words = [b.load(b.gep(memory, [constant(offset + i, 64)]), typ=I64) for i in range(count)]

@@ -1,7 +1,5 @@
 """log, sqrt and 1/x of fixed-point numbers, as LLVM functions: by iteration from float64."""
 
-from typing import Any
-
 import flint
 from llvmlite import ir
 
@@ -117,7 +115,7 @@ class MoreFunctions(Functions):
         total = b.ashr(b.add(total, constant(1 << (by - 1), wide)), constant(by, wide))
         return self._result(b, valid, resized(b, total, width))
 
-    def _log1p(self, b: ir.IRBuilder, delta: Any) -> Value:
+    def _log1p(self, b: ir.IRBuilder, delta: Value) -> Value:
         """log(1 + δ) by its series, δ below 2^−44, all in W − 2 fraction bits."""
         width, places, high = self.width, self.width - 2, self.products.high
         stretched = limbs.shifted_up(b, delta, 40)

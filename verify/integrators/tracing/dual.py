@@ -7,13 +7,13 @@ comes out has the derivatives of the operations that were done. gmpy2's context 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
-from typing import Any
+from typing import TypeAlias
 
 import gmpy2
 
 from verify.integrators.tracing.number import TracedNumber, UntraceableError
 
-Number = Any  # gmpy2.mpfr, which has no type stubs
+Number: TypeAlias = gmpy2.mpfr
 BITS = 200
 
 
@@ -76,7 +76,7 @@ class Dual(TracedNumber):
             return 2 if gmpy2.is_nan(self.value) else -2
         return int(self.value > other.value) - int(self.value < other.value)
 
-    def combined(self, name: str, other: Any) -> "Dual":
+    def combined(self, name: str, other: "Dual") -> "Dual":
         x, y = self.value, other.value
         match name:
             case "add":

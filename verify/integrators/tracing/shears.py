@@ -6,19 +6,18 @@ are left. No closed form of the composition is written down, and f and g may be 
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import sympy
 
 from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.linear_sums import Linear, Scalars, added, scaled
+from verify.integrators.tracing.linear_sums import Linear, Scalar, Scalars, added, scaled
 from verify.integrators.tracing.trace import Node, expressions, in_order
 from verify.schemes.step_map import Substep
 
 _MOST_NODES, _MOST_SHEARS = 2000, 200
-Terms = list[tuple[Any, Node]]  # (coefficient, node): a sum
+Terms = list[tuple[Scalar, Node]]  # (coefficient, node): a sum
 
 
 @dataclass(frozen=True)

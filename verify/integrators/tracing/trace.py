@@ -39,7 +39,7 @@ class Tape:
         self.rounded: set[float] = set()
         self.refused: list[str] = []
         self.positive = False  # whether it was asked for the sign of h
-        self._nodes: dict[tuple[Any, ...], Node] = {}
+        self._nodes: dict[tuple[object, ...], Node] = {}
 
     def symbol(self, name: str) -> "Traced":
         return Traced(self, self.node(_SYMBOLS, (), name))
@@ -74,7 +74,7 @@ class Traced(TracedNumber):
     def known(self) -> Fraction | None:
         return self.node.value if self.node.operation == "number" else None
 
-    def compared(self, other: Any) -> int:
+    def compared(self, other: "Traced") -> int:
         """h > 0, and nothing is known of the sign of anything else."""
         known = other.known()
         is_h = (self.node.operation, self.node.value) == (_SYMBOLS, "h")
@@ -83,7 +83,7 @@ class Traced(TracedNumber):
             return 1
         self.refuse("it compares numbers")
 
-    def combined(self, name: str, other: Any) -> "Traced":
+    def combined(self, name: str, other: "Traced") -> "Traced":
         x, y = self.known(), other.known()
         if x is not None and y is not None:
             if name == "divide" and y == 0:
@@ -92,11 +92,11 @@ class Traced(TracedNumber):
         if y == (0 if name in ("add", "subtract") else 1):
             return self
         if name == "multiply" and x is not None and y is None:
-            return other if x == 1 else other._times(x)  # type: ignore[no-any-return]
+            return other if x == 1 else other._times(x)
         if name == "multiply" and y is not None:
             return self._times(y)
         if name == "add" and x == 0:
-            return other  # type: ignore[no-any-return]
+            return other
         return Traced(self.kind, self.kind.node(name, (self.node, other.node)))
 
     def _times(self, x: Fraction) -> "Traced":

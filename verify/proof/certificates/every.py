@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from verify.algebra.generator import terms_of
-from verify.algebra.jets import Jets
+from verify.algebra.jets import Jets, Series
 from verify.algebra.ring import Poly
 from verify.arithmetic.exact import text
 from verify.errors import InputError
@@ -68,7 +68,11 @@ def _potential(jets: Jets, every_h: BySeries, leading: Poly) -> Poly | None:
 
 
 def map_of(
-    order: int | None, agreed: int, leading: Poly, series: tuple[Any, Any], names: dict[int, str]
+    order: int | None,
+    agreed: int,
+    leading: Poly,
+    series: tuple[Series, Series],
+    names: dict[int, str],
 ) -> dict[str, Any]:
     return {
         "order": order,
