@@ -12,7 +12,6 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
-from typing import Any
 
 import sympy
 from sympy.printing.str import StrPrinter
@@ -27,7 +26,7 @@ MAX_DEPTH = 60
 MAX_EXPONENT = 64
 MAX_NUMBER_BITS = 4000
 
-FUNCTIONS: dict[str, Callable[[Any], Any]] = {
+FUNCTIONS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
     "sin": sympy.sin,
     "cos": sympy.cos,
     "tan": sympy.tan,
@@ -47,7 +46,7 @@ RESERVED = frozenset({"p", "q", "h", "t", "pi", *FUNCTIONS, *NOT_SMOOTH, *_NOT_N
 _INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
 _NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
 _CHAINS = ((ast.Add, ast.Sub), (ast.Mult, ast.Div))
-_APPLY: dict[type, Callable[[Any, Any], Any]] = {
+_APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
@@ -137,7 +136,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     return result
 
 
-def _by_kind(expression: sympy.Expr) -> tuple[list[Any], list[Any], list[Any]]:
+def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:
     """The rational numbers, the powers, and what is no sum, product or name, within it."""
     numbers, powers, others = [], [], []
     waiting = [expression]

@@ -101,7 +101,7 @@ class Hamiltonian:
         return to_text(self.expression)
 
     @property
-    def texts(self) -> dict[str, Any]:
+    def texts(self) -> dict[str, Any]:  # Any: arguments of models, which check them
         """Its formula and parameter values as text, by the names that results give them."""
         return {
             "hamiltonian": self.formula,

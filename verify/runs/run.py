@@ -7,9 +7,8 @@ What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exac
 depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import enclose
@@ -151,7 +150,7 @@ def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequen
             raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
 
 
-def _series_needs(known: dict[str, Any], points: int) -> frozenset[str]:
+def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
     return frozenset({"extremes"}) if points and "lambda" not in known else frozenset()
 
 

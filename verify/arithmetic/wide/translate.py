@@ -97,7 +97,7 @@ class Translator:
         else:
             self._assign(target.id, self._expression(statement.value))
 
-    def _if(self, statement: Any) -> None:
+    def _if(self, statement: ast.If) -> None:
         test = self._condition(statement.test)
         inside = self.b.append_basic_block("then")
         after = self.b.append_basic_block("after")
@@ -126,7 +126,7 @@ class Translator:
     def _return(self, statement: Any) -> None:
         value = statement.value
         values = [self._expression(e) for e in value.elts] if isinstance(value, ast.Tuple) else (
-            self._call(value) if _is_call(value) else [self._expression(value)]
+            self._call(value) if isinstance(value, ast.Call) else [self._expression(value)]
         )  # fmt: skip
         self.returns_tuple = len(values) > 1 or isinstance(value, ast.Tuple)
         kinds = {str(kind_type): kind for kind, kind_type in self.types.items()}
@@ -144,7 +144,7 @@ class Translator:
 
     # -- expressions --------------------------------------------------------------------------
 
-    def _expression(self, node: Any) -> Value:
+    def _expression(self, node: ast.expr) -> Value:
         match node:
             case ast.Name():
                 return self._name(node.id)
@@ -201,7 +201,7 @@ class Translator:
         target = max((x.type, y.type), key=rank.index)
         return self._to(x, target), self._to(y, target)
 
-    def _to(self, value: Value, target: Any) -> Value:
+    def _to(self, value: Value, target: ir.Type) -> Value:
         if value.type == target:
             return value
         if value.type == I64 and target == DOUBLE:
@@ -261,7 +261,7 @@ class Translator:
             ir.Function(self.module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
         return self.b.call(self.module.globals[plain], [x])
 
-    def _condition(self, node: Any) -> Value:
+    def _condition(self, node: ast.expr) -> Value:
         match node:
             case ast.Name():
                 return self._load(node.id)
@@ -291,7 +291,7 @@ class Translator:
 
     def _comparison(self, node: ast.Compare) -> Value:
         values = [self._expression(e) for e in (node.left, *node.comparators)]
-        total: Value = None
+        total: Value | None = None
         for op, x, y in zip(node.ops, values, values[1:], strict=False):
             x, y = self._alike(x, y)
             compare = self.b.fcmp_ordered if x.type == DOUBLE else self.b.icmp_signed
@@ -303,7 +303,3 @@ class Translator:
 def _annotation(argument: ast.arg) -> str:
     note = argument.annotation
     return str(note.value) if isinstance(note, ast.Constant) else "wide"
-
-
-def _is_call(node: Any) -> bool:
-    return isinstance(node, ast.Call)

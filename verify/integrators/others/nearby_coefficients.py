@@ -4,11 +4,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 import flint
 
-from verify.arithmetic.arb import middle_and_radius
+from verify.arithmetic.arb import Ball, middle_and_radius
 from verify.integrators.others.printed_table import PrintedTable, evaluated
 from verify.schemes.free_lie_words import LogCondition, of_logarithm, residue, step
 
@@ -40,13 +39,13 @@ class NearbyCoefficients:
         self.at_print = [middle_and_radius(x)[0] for x in self.value]
         self.slope = self._slopes(self.start, self.value)  # [condition][number]
 
-    def _residues(self, at: Sequence[Any]) -> list[Any]:
+    def _residues(self, at: Sequence[Ball]) -> list[Ball]:
         point = dict(zip(self.names, at, strict=True))
         sizes = [evaluated(size, point, _ball) for size in self.table.sizes]
         series = step(self.table.kind, self.table.letters(sizes), self.most, flint.arb(1))
         return [residue(series, c) for c in self.asked]
 
-    def _slopes(self, at: Sequence[Any], value: Sequence[Any]) -> list[list[Any]]:
+    def _slopes(self, at: Sequence[Ball], value: Sequence[Ball]) -> list[list[Ball]]:
         small = flint.arb(2) ** -_STEP
         columns = []
         for k in range(len(at)):
@@ -60,7 +59,7 @@ class NearbyCoefficients:
             )
         return [list(row) for row in zip(*columns, strict=True)]
 
-    def _second(self) -> list[Any]:
+    def _second(self) -> list[Ball]:
         """Bounds of each residue's second derivatives within half the polydisc's radius."""
         radius = _ball(_RADIUS)
         reach = {n: abs(x) + radius for n, x in zip(self.names, self.start, strict=True)}
@@ -72,7 +71,7 @@ class NearbyCoefficients:
             bounds.append((sum(terms, flint.arb(1)) * 8 / radius**2).abs_upper())
         return bounds
 
-    def _excludes(self, weights: Mapping[int, Any], units: int) -> bool:
+    def _excludes(self, weights: Mapping[int, Ball], units: int) -> bool:
         """Whether Σ weight · residue is not 0 at any numbers within so many units."""
         radius = [u * units for u in self.unit]
         total = sum((w * self.value[k] for k, w in weights.items()), flint.arb(0))
@@ -103,7 +102,7 @@ class NearbyCoefficients:
         return any(self._excludes_by(weights, slopes, units) for weights in combined)
 
     def _excludes_by(
-        self, weights: Mapping[int, Any], slopes: Sequence[Sequence[Any]], units: int
+        self, weights: Mapping[int, Ball], slopes: Sequence[Sequence[Ball]], units: int
     ) -> bool:
         """As `_excludes`, with the derivatives over the whole box, by the mean value theorem."""
         total = sum((w * self.value[k] for k, w in weights.items()), flint.arb(0))
@@ -113,7 +112,7 @@ class NearbyCoefficients:
             spread += abs(slope) * u * units
         return bool(abs(total) > spread)
 
-    def _over_box(self, units: int) -> list[list[Any]]:
+    def _over_box(self, units: int) -> list[list[Ball]]:
         """The derivatives over the box: slower than `_slopes`, and sharper than their bound."""
         box = [x + _around(u * units) for x, u in zip(self.start, self.unit, strict=True)]
         columns = []
@@ -129,7 +128,9 @@ class NearbyCoefficients:
                 columns.append([residue(series, c)[1] for c in self.asked])
         return [list(row) for row in zip(*columns, strict=True)]
 
-    def _inverse(self, rows: Sequence[int], slope: Sequence[Sequence[Any]] | None = None) -> Any:
+    def _inverse(
+        self, rows: Sequence[int], slope: Sequence[Sequence[Ball]] | None = None
+    ) -> flint.arb_mat | None:
         """U Jᵀ(J U Jᵀ)⁻¹, nearly."""
         if len(rows) > len(self.names):
             return None
@@ -167,7 +168,7 @@ class NearbyCoefficients:
         off = max(_upper(y - x) / self.table.units[n] for n, x, y in triples)
         return off, {n: middle_and_radius(y)[0] for n, _, y in triples}
 
-    def _solution(self, rows: Sequence[int], at: Sequence[Any]) -> list[Any] | None:
+    def _solution(self, rows: Sequence[int], at: Sequence[Ball]) -> list[Ball] | None:
         """Balls around `at` in which a solution lies; None where that is not shown."""
         value = self._residues(at)
         slope = self._slopes(at, value)
@@ -222,21 +223,21 @@ class NearbyCoefficients:
         return Misprint(name, self.table.numbers[name], middle_and_radius(at[k])[0])
 
 
-def _around(radius: Any) -> Any:
+def _around(radius: Ball) -> Ball:
     """[−radius, radius]."""
     return radius.abs_upper() * flint.arb(0, 1)  # a tiny radius given as such may become infinite
 
 
-def _ball(x: Fraction) -> Any:
+def _ball(x: Fraction) -> Ball:
     return flint.arb(flint.fmpq(x.numerator, x.denominator))
 
 
-def _upper(x: Any) -> Fraction:
+def _upper(x: Ball) -> Fraction:
     middle, radius = middle_and_radius(x)
     return abs(middle) + radius
 
 
-def _constant(x: Fraction) -> Any:
+def _constant(x: Fraction) -> flint.arb_series:
     return flint.arb_series([_ball(x)], prec=2)
 
 
@@ -250,5 +251,5 @@ def series_of_two_terms() -> Iterator[None]:
         flint.ctx.cap = before
 
 
-def _size(x: Fraction) -> Any:
+def _size(x: Fraction) -> Ball:
     return _ball(abs(x))

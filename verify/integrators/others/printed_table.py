@@ -19,11 +19,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Any
 
 import sympy
 
 from verify.algebra.formula import parse, symbol
+from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.schemes.free_lie_words import KINDS, LogCondition, conditions
 from verify.schemes.splitting_conditions import LETTERS
@@ -84,7 +84,7 @@ class PrintedTable:
         names = [name for name, _ in self.parts]
         return names == names[::-1] and self.sizes == self.sizes[::-1]
 
-    def letters(self, sizes: Sequence[Any]) -> list[Mapping[str, Any]]:
+    def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
         """The parts for `verify.schemes.free_lie_words.step`, with these sizes."""
         if self.kind == "composition":
             return [{str(n): power(x, n) for n in _ODD} for x in sizes]
@@ -107,7 +107,7 @@ class PrintedTable:
         )
 
 
-def power(x: Any, n: int) -> Any:
+def power(x: E, n: int) -> E:
     """xⁿ, n ≥ 1, by products: of a ball with 0 in it, powers may be undefined."""
     result = x
     for _ in range(n - 1):
@@ -123,9 +123,7 @@ def _unit(text: str) -> Fraction | None:
     return Fraction(10) ** (int(exponent or 0) - len(decimals))
 
 
-def evaluated(
-    expression: sympy.Expr, at: Mapping[str, Any], number: Callable[[Fraction], Any]
-) -> Any:
+def evaluated(expression: sympy.Expr, at: Mapping[str, E], number: Callable[[Fraction], E]) -> E:
     """A polynomial in the numbers, at `at`; `number` makes what its coefficients are there."""
     total = number(Fraction(0))
     for powers, coefficient in _terms(expression):

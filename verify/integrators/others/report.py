@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
-from typing import Any
+from types import ModuleType
 
 from sympy import S
 
@@ -68,7 +68,7 @@ def make_integrators_report(command: str, on_library: _OnLibrary | None = None) 
     )
 
 
-def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[str, str]]]:
+def _claims(module: ModuleType, section: str) -> tuple[list[ClaimResult], list[tuple[str, str]]]:
     """The claims of one file; and what of it could not be looked at since the library fails, each
     with its error: that refutes nothing, and does not end the report."""
     prefix = str(module.TITLE).replace(" ", "-")
@@ -86,7 +86,7 @@ def _claims(module: Any, section: str) -> tuple[list[ClaimResult], list[tuple[st
     return claims, failed
 
 
-def _integrators(module: Any, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
+def _integrators(module: ModuleType, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
     """Its integrators, up to where the library fails: most fail when they are imported."""
     try:
         if module.LIBRARY is not None:

@@ -11,17 +11,18 @@ trees, u∘v being u with v as one more branch of its root (Calvo, Sanz-Serna, N
 it fails, a pair of trees that fails shows that the method is not symplectic.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
-from typing import Any
 
 import sympy
 
+from verify.algebra.ring import Poly
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
 from verify.schemes.tree_conditions import (
     MOST_ORDER,
+    Tree,
     Weights,
     condition_text,
     density,
@@ -69,7 +70,7 @@ def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> Tabl
     )
 
 
-def value(numbers: Numbers, x: Any) -> float:
+def value(numbers: Numbers, x: Poly) -> float:
     """A number of the ring as a float; 0 only where it is exactly 0."""
     if numbers.ring.decide(x).zero:
         return 0.0
@@ -83,7 +84,7 @@ def _simple(numbers: Numbers) -> TableauOrder | None:
     powers = [[one] * len(b)]
     c = [ring.reduce(sum(row, ring.zero)) for row in a]
 
-    def power(k: int) -> list[Any]:
+    def power(k: int) -> list[Poly]:
         while len(powers) <= k:
             powers.append([ring.multiply(x, y) for x, y in zip(powers[-1], c, strict=True)])
         return powers[k]
@@ -107,7 +108,7 @@ def _simple(numbers: Numbers) -> TableauOrder | None:
                 return False
         return True
 
-    def count(holds: Any, most: int) -> int:
+    def count(holds: Callable[[int], bool], most: int) -> int:
         n = 0
         while n < most and holds(n + 1):
             n += 1
@@ -149,7 +150,7 @@ def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplectic
     return Symplecticity(None, "no pair of trees that was looked at fails")
 
 
-def _pairs() -> Iterator[tuple[Any, Any]]:
+def _pairs() -> Iterator[tuple[Tree, Tree]]:
     for n in range(2, _MOST_PAIR + 1):
         for k in range(1, n // 2 + 1):
             for u in trees(k):

@@ -13,7 +13,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol
+
+if TYPE_CHECKING:
+    import numpy
 
 _SIMPLE = 10_000  # the largest denominator that is read into a float: the chance is 10⁻⁸ a float
 _DECIMALS = 12  # significant digits of a decimal that is read into a float
@@ -112,7 +115,7 @@ class TracedNumber(ABC):
     # -- what a subclass says -----------------------------------------------------------------
 
     @abstractmethod
-    def combined(self, name: str, other: Any) -> "TracedNumber":
+    def combined(self, name: str, other: Any) -> "TracedNumber":  # Any: of the subclass itself
         """self + other for "add", and so "subtract", "multiply", "divide"; of the same kind."""
 
     @abstractmethod
@@ -136,43 +139,44 @@ class TracedNumber(ABC):
 
     # -- arithmetic ---------------------------------------------------------------------------
 
-    def _with(self, name: str, other: Any, swapped: bool = False) -> Any:
+    def _with(self, name: str, other: object, swapped: bool = False) -> "TracedNumber":
         lifted = constant(self.kind, other)
         if lifted is None:
-            return NotImplemented
+            unknown: TracedNumber = NotImplemented  # Python then asks the other one
+            return unknown
         return lifted.combined(name, self) if swapped else self.combined(name, lifted)
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: object) -> "TracedNumber":
         return self._with("add", other)
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: object) -> "TracedNumber":
         return self._with("add", other, True)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: object) -> "TracedNumber":
         return self._with("subtract", other)
 
-    def __rsub__(self, other: Any) -> Any:
+    def __rsub__(self, other: object) -> "TracedNumber":
         return self._with("subtract", other, True)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: object) -> "TracedNumber":
         return self._with("multiply", other)
 
-    def __rmul__(self, other: Any) -> Any:
+    def __rmul__(self, other: object) -> "TracedNumber":
         return self._with("multiply", other, True)
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: object) -> "TracedNumber":
         return self._with("divide", other)
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: object) -> "TracedNumber":
         return self._with("divide", other, True)
 
-    def __neg__(self) -> Any:
+    def __neg__(self) -> "TracedNumber":
         return self._with("multiply", -1)
 
-    def __pos__(self) -> Any:
+    def __pos__(self) -> "TracedNumber":
         return self
 
-    def __pow__(self, other: Any, modulus: Any = None) -> Any:
+    def __pow__(self, other: object, modulus: object = None) -> "TracedNumber":
         exponent = constant(self.kind, other)
         if exponent is None or modulus is not None:
             return NotImplemented
@@ -181,20 +185,20 @@ class TracedNumber(ABC):
             return self.raised(known)
         return (exponent * self.applied("log")).applied("exp")
 
-    def __rpow__(self, other: Any) -> Any:
+    def __rpow__(self, other: object) -> "TracedNumber":
         base = constant(self.kind, other)
         return NotImplemented if base is None else base**self
 
-    def conjugate(self) -> Any:
+    def conjugate(self) -> "TracedNumber":
         return self
 
     @property
-    def real(self) -> Any:
+    def real(self) -> "TracedNumber":
         return self
 
     # -- comparisons and other types ----------------------------------------------------------
 
-    def _order(self, other: Any) -> int:
+    def _order(self, other: object) -> int:
         lifted = constant(self.kind, other)
         if lifted is None:
             self.refuse("it compares a number with what is none")
@@ -203,16 +207,16 @@ class TracedNumber(ABC):
             return (mine > others) - (mine < others)
         return self.compared(lifted)
 
-    def __lt__(self, other: Any) -> bool:
+    def __lt__(self, other: object) -> bool:
         return self._order(other) < 0
 
-    def __le__(self, other: Any) -> bool:
+    def __le__(self, other: object) -> bool:
         return self._order(other) <= 0
 
-    def __gt__(self, other: Any) -> bool:
+    def __gt__(self, other: object) -> bool:
         return self._order(other) > 0
 
-    def __ge__(self, other: Any) -> bool:
+    def __ge__(self, other: object) -> bool:
         return self._order(other) >= 0
 
     def __eq__(self, other: object) -> bool:
@@ -224,7 +228,7 @@ class TracedNumber(ABC):
     def __bool__(self) -> bool:
         return self._order(0) != 0
 
-    def __abs__(self) -> Any:
+    def __abs__(self) -> "TracedNumber":
         return -self if self._order(0) < 0 else self
 
     def _number(self, problem: str = "it turns numbers into floats or integers") -> Fraction:
@@ -233,7 +237,7 @@ class TracedNumber(ABC):
             self.refuse(problem)
         return known
 
-    def __round__(self, digits: int | None = None) -> Any:
+    def __round__(self, digits: int | None = None) -> int | Fraction:
         return round(self._number("it rounds numbers"), digits)
 
     def __floor__(self) -> int:
@@ -245,7 +249,7 @@ class TracedNumber(ABC):
     def __trunc__(self) -> int:
         return int(self._number("it rounds numbers"))
 
-    def _remainder(self, *_: Any) -> NoReturn:
+    def _remainder(self, *_: object) -> NoReturn:
         self.refuse("it takes remainders")
 
     __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __rdivmod__ = _remainder
@@ -265,7 +269,7 @@ class TracedNumber(ABC):
 
     # -- numpy --------------------------------------------------------------------------------
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> "Callable[[], TracedNumber]":
         """`sin`, `arctan`, …: what numpy calls of the objects in an array."""
         if name in FUNCTIONS:
             return lambda: self.applied(FUNCTIONS[name])
@@ -288,7 +292,7 @@ class TracedNumber(ABC):
         self.refuse(f"it calls numpy's {ufunc.__name__}")
 
 
-def _objects(x: Any) -> Any:
+def _objects(x: object) -> "numpy.ndarray":
     import numpy as np
 
     if isinstance(x, np.ndarray):

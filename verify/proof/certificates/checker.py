@@ -1,6 +1,7 @@
 """Checks a certificate (see `verify.proof.certificates.every`) with dicts and fractions alone."""
 
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import factorial
 from typing import Any
@@ -20,7 +21,7 @@ def single(*names: str) -> Poly:
     return {names: ONE}
 
 
-def collected(terms: Any) -> Poly:
+def collected(terms: Iterable[tuple[Sequence[str], Fraction]]) -> Poly:
     total: Poly = {}
     for monomial, c in terms:
         key = tuple(sorted(monomial))
@@ -28,7 +29,7 @@ def collected(terms: Any) -> Poly:
     return {m: c for m, c in total.items() if c}
 
 
-def poly(data: Any) -> Poly:
+def poly(data: Iterable[Sequence[str]]) -> Poly:
     need(not any("h" in names for _, *names in data), "coefficients are free of h")
     return collected((tuple(names), Fraction(c)) for c, *names in data)
 
@@ -87,7 +88,9 @@ class Algebra:
     def lie_derivatives(self, x: Poly) -> Poly:
         return add(mul(self.h_p, self.diff(x, "q")), mul(self.h_q, self.diff(x, "p")), -1)
 
-    def zero(self, x: Poly, cofactors: Any, what: str) -> None:
+    def zero(
+        self, x: Poly, cofactors: Mapping[str, Mapping[str, Iterable[Sequence[str]]]], what: str
+    ) -> None:
         for name, cofactor in cofactors.get(what, {}).items():
             x = add(x, mul(poly(cofactor), self.relations[name]), -1)
         need(not x, f"{what} is not zero")

@@ -26,8 +26,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
 
+from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -61,7 +61,7 @@ class MixedKernel:
     0.
     """
 
-    function: Callable[..., tuple[Any, ...]]
+    function: Callable[..., tuple[int, *tuple[Number, ...]]]
     parameters: tuple[str, ...]
     limits: tuple[str, ...]
     state_names: tuple[str, ...]
@@ -150,7 +150,7 @@ def _lines(
 
 def _scope(
     narrow: Kernel, working: Arithmetic, wide: Kernel, arithmetic: Arithmetic
-) -> dict[str, Any]:
+) -> dict[str, Number]:
     """The constants and functions that the source names."""
     floats = {**working.functions, **_constants(narrow, working)}
     constants = _constants(wide, arithmetic)
@@ -164,7 +164,7 @@ def _scope(
     }
 
 
-def _constants(kernel: Kernel, arithmetic: Arithmetic) -> dict[str, Any]:
+def _constants(kernel: Kernel, arithmetic: Arithmetic) -> dict[str, Number]:
     return {
         **kernel.lowering.named_constants(arithmetic.number),
         **newton.constants(arithmetic.bits, arithmetic.number),
@@ -221,7 +221,9 @@ def _assemble(
     )
 
 
-def _compiled(source: str, arithmetic: Arithmetic, scope: dict[str, Any]) -> Callable[..., Any]:
+def _compiled(
+    source: str, arithmetic: Arithmetic, scope: dict[str, Number]
+) -> Callable[..., tuple[int, *tuple[Number, ...]]]:
     try:
         return arithmetic.compile(source, "kernel", scope)
     except NotImplementedError as missing:

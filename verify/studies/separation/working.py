@@ -25,6 +25,7 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
+from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.execution.keeping import fraction_of, fraction_text
@@ -178,7 +179,7 @@ class WorkingRun:
             for state in kept["found"]
         ]
 
-    def _limits(self, kernel: MixedKernel, arithmetic: Arithmetic) -> list[Any]:
+    def _limits(self, kernel: MixedKernel, arithmetic: Arithmetic) -> list[Number]:
         """What the kernel compares p, q and Λ with; UnsupportedError where they start beyond it."""
         if not kernel.limits:
             return []
@@ -230,12 +231,12 @@ class WorkingRun:
             return None if error is None or not in_reach(error) else bounds(error)[1]
 
 
-def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Any:
+def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:
     """What a name that begins with f or with w holds: a float64 or a wide number."""
     return float(value) if name[0] == "f" else arithmetic.number(value)
 
 
-def _exact(arithmetic: Arithmetic, x: Any) -> Fraction:
+def _exact(arithmetic: Arithmetic, x: Number) -> Fraction:
     return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
 
 
@@ -251,7 +252,7 @@ def rounded_inputs(run: KernelRun) -> dict[str, float]:
 
 
 def _after(
-    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
+    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number], state: State, count: int
 ) -> State | None:
     """The state after `count` steps, or None where float64 leaves its range on the way."""
     try:
@@ -268,7 +269,7 @@ def _after(
 
 
 def _last_good(
-    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Any], state: State, count: int
+    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number], state: State, count: int
 ) -> int:
     """The greatest number of steps below `count` that stays in range, by bisection."""
     good, bad = 0, count

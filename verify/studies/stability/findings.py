@@ -18,7 +18,7 @@ class StabilityFindings:
     largest_steps: tuple[LargestStepResult, ...]
     maps: tuple[StabilityMapResult, ...]
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, list[dict[str, Any]]]:
         """As a report's JSON has them, under `cases`, `largest_steps` and `maps`."""
         return {
             "cases": [

@@ -16,6 +16,7 @@ from math import isqrt
 from typing import Any
 
 from verify.algebra.enclosure import enclose
+from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import decimal, known_digits, text
 from verify.arithmetic.number_system import Arithmetic
@@ -51,7 +52,7 @@ class Problem:
     solution: Solution
 
     @cached_property
-    def _energy(self) -> tuple[Any, Any]:
+    def _energy(self) -> tuple[Ring, Poly]:
         field, _ = self.hamiltonian.field()
         return field.ring, field.energy
 
@@ -196,6 +197,7 @@ def limited_by(error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fract
     return "truncation" if most <= ROUNDING_SHARE * least else "rounding"
 
 
+# Any: keyword arguments of a model, which checks them.
 _NOTHING: dict[str, Any] = dict.fromkeys(
     ("step_size", "tolerance", "steps", "error", "truncation", "rounding", "energy", "lam",
      "lam_plain", "lambda_limited_by", "failed_step", "seconds_min", "seconds_median",

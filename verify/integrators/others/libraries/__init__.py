@@ -10,7 +10,7 @@ verified (see `verify.integrators.others.integrator`). Adding a library is addin
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
-from typing import Any
+from types import ModuleType
 
 from verify.discovery import Catalogue
 
@@ -23,9 +23,10 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(_FILES.names, key=lambda name: (get(name).LIBRARY is None, name)))
 
 
-def get(name: str) -> Any:
+def get(name: str) -> ModuleType:
     """The module of that name."""
-    return _FILES.module(name)
+    found: ModuleType = _FILES.module(name)
+    return found
 
 
 def installed(name: str) -> str | None:

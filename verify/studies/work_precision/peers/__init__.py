@@ -7,7 +7,7 @@ A file defines `NAME`, `LIBRARY`, the package that it needs and imports only whe
 """
 
 from functools import cache
-from typing import Any
+from types import ModuleType
 
 from verify.discovery import Catalogue
 
@@ -15,7 +15,7 @@ _FILES = Catalogue(__name__, __path__)
 
 
 @cache
-def _modules() -> dict[str, Any]:
+def _modules() -> dict[str, ModuleType]:
     modules = (_FILES.module(file) for file in _FILES.names)
     return {module.NAME: module for module in modules}
 
@@ -25,6 +25,6 @@ def libraries() -> dict[str, str]:
     return {name: module.LIBRARY for name, module in _modules().items()}
 
 
-def get(name: str) -> Any:
+def get(name: str) -> ModuleType:
     """The module of that name."""
     return _modules()[name]
