@@ -98,7 +98,8 @@ class Monomials:
 
 @lru_cache(maxsize=1024)
 def _names(powers: Powers) -> tuple[sympy.Expr, ...]:
-    return sympy.Mul.make_args(sympy.Mul(*(symbol**n for symbol, n in powers)))  # type: ignore[no-any-return]
+    found: tuple[sympy.Expr, ...] = sympy.Mul.make_args(sympy.Mul(*(x**n for x, n in powers)))
+    return found
 
 
 def is_of_name(x: sympy.Expr) -> bool:

@@ -11,10 +11,9 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 from verify.errors import InputError
-from verify.integrators.step import TIME_LIMIT, Step, last_line, quiet
+from verify.integrators.step import TIME_LIMIT, Step, Theirs, last_line, quiet
 
 _NAMES = {
     **dict.fromkeys(("p", "v", "p0", "momentum", "velocity", "mom", "vel"), "p"),
@@ -25,7 +24,7 @@ _MOST_SECONDS = 86_400
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
 
-def load(target: str) -> Callable[..., Any]:
+def load(target: str) -> Callable[..., Theirs]:
     """The function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
 
     The current folder is searched first. Raises InputError where it does not import, has no such
@@ -36,7 +35,7 @@ def load(target: str) -> Callable[..., Any]:
         raise InputError("integrator", target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
     with quiet():
         module = _module(place, target)
-        found: Any = module
+        found: Theirs = module
         for part in name.split("."):
             if not hasattr(found, part):
                 known = sorted(n for n, x in vars(module).items() if inspect.isfunction(x))
@@ -45,7 +44,8 @@ def load(target: str) -> Callable[..., Any]:
             found = getattr(found, part)
     if not callable(found):
         raise InputError("integrator", target, f"{name} is no function but {type(found).__name__}")
-    return found  # type: ignore[no-any-return]
+    function: Callable[..., Theirs] = found
+    return function
 
 
 def _module(place: str, target: str) -> ModuleType:
@@ -74,7 +74,7 @@ def _module(place: str, target: str) -> ModuleType:
 
 
 def step_from(
-    function: Callable[..., Any],
+    function: Callable[..., Theirs],
     arguments: str | None = None,
     parameters: Mapping[str, Fraction] | None = None,
     time_limit: float = TIME_LIMIT,

@@ -9,15 +9,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import Fitted, fitted
-from verify.integrators.step import Step, StepError
+from verify.integrators.step import Step, StepError, Theirs
 from verify.integrators.tracing.dual import BITS, Duals
 from verify.integrators.tracing.functions import copied
+
+if TYPE_CHECKING:
+    import gmpy2
 
 Point = tuple[Fraction, Fraction]  # p, q
 _DIGITS = {"duals": 50, "floats": 20}
@@ -206,7 +209,9 @@ class _Duals:
     def rounded(self) -> bool:
         return bool(self.kind.rounded)
 
-    def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
+    def at(
+        self, point: Point, h: Fraction
+    ) -> tuple[tuple["gmpy2.mpfr", "gmpy2.mpfr"], float, float, float]:
         with self.kind.running():
             p, q = self.kind.state(*point)
             x, y = dual_step(self.step, self.function, p, q, self.kind.rational(h))
@@ -221,7 +226,9 @@ class _Duals:
             )
 
 
-def dual_step(step: Step, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
+def dual_step(
+    step: Step, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs
+) -> Theirs:
     """p' and q' of a copied function at numbers of ours."""
     with step.timed():
         if step.arrays:
@@ -247,7 +254,9 @@ class _Floats:
     def __init__(self, step: Step) -> None:
         self.step = step
 
-    def at(self, point: Point, h: Fraction) -> tuple[tuple[Any, Any], float, float, float]:
+    def at(
+        self, point: Point, h: Fraction
+    ) -> tuple[tuple["gmpy2.mpfr", "gmpy2.mpfr"], float, float, float]:
         z, size = (float(point[0]), float(point[1])), float(h)
         here = self.step.at(*z, size)
         width = _WIDTH * (1 + max(map(abs, z)))

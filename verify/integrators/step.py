@@ -10,10 +10,11 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 from verify.integrators.tracing.number import TracedNumber
 
+Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
 State = tuple[float, float]
 TIME_LIMIT = 60.0  # seconds for all of the user's code
 
@@ -48,13 +49,13 @@ class Step:
     arrays, and gets them with one entry each. `left`: seconds left for its calls.
     """
 
-    function: Callable[..., Any]
+    function: Callable[..., Theirs]
     order: tuple[str, str, str] = ("p", "q", "h")
     given: Mapping[str, float] = field(default_factory=dict)
     arrays: bool = False
     left: float = TIME_LIMIT
 
-    def raw(self, function: Callable[..., Any], p: Any, q: Any, h: Any) -> Any:
+    def raw(self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs) -> Theirs:
         """What the function, or a copy of it, returns."""
         by_name = {"p": p, "q": q, "h": h}
         return function(*(by_name[name] for name in self.order), **self.given)
@@ -73,7 +74,7 @@ class Step:
             raise StepError(f"it returns {x:g}, {y:g}{line_of_error(p, q, h)}")
         return x, y
 
-    def pair(self, result: Any) -> tuple[Any, Any]:
+    def pair(self, result: Theirs) -> tuple[Theirs, Theirs]:
         """p' and q' of what was returned, each a single number. Raises StepError."""
         parts = _parts(result)
         if self.order.index("p") > self.order.index("q"):
@@ -132,7 +133,7 @@ def line_of_error(p: float, q: float, h: float) -> str:
     return f" at p = {p:g}, q = {q:g}, h = {h:g}"
 
 
-def _parts(result: Any) -> list[Any]:
+def _parts(result: Theirs) -> list[Theirs]:
     if result is None:
         raise StepError("it returns None; wanted: p', q'")
     if isinstance(result, str | bytes):
@@ -147,7 +148,7 @@ def _parts(result: Any) -> list[Any]:
     return parts
 
 
-def _single(x: Any) -> Any:
+def _single(x: Theirs) -> Theirs:
     shape = getattr(x, "shape", ())
     if shape:
         if any(n != 1 for n in shape):
@@ -156,7 +157,7 @@ def _single(x: Any) -> Any:
     return x[()] if hasattr(x, "dtype") and hasattr(x, "reshape") else x
 
 
-def _real(x: Any) -> float:
+def _real(x: Theirs) -> float:
     if isinstance(x, str | bytes | bytearray) or x is None or isinstance(x, TracedNumber):
         raise StepError(f"it returns {'text' if isinstance(x, str) else type(x).__name__}")
     if isinstance(x, complex):

@@ -7,6 +7,7 @@ from math import factorial
 from typing import Any
 
 Poly = dict[tuple[str, ...], Fraction]  # sorted names → coefficient
+Data = Any  # JSON of strangers: what is not as it should be raises an exception
 Ball = tuple[Fraction, Fraction]  # middle, radius
 NOUGHT, ONE = Fraction(0), Fraction(1)
 SIGNS = {"sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0), "exp": (1,)}  # of their Taylor series
@@ -45,7 +46,7 @@ def mul(x: Poly, y: Poly) -> Poly:
 class Algebra:
     """∂/∂p and ∂/∂q of every name: the free derivatives of H, or functions of given arguments."""
 
-    def __init__(self, data: Any) -> None:
+    def __init__(self, data: Data) -> None:
         self.free, self.separable = data["hamiltonian"] == "every", data.get("separable")
         self.images = {"p": {"p": single()}, "q": {"q": single()}}
         self.relations: dict[str, Poly] = {}
@@ -122,7 +123,7 @@ def function(kind: str, x: Ball) -> Ball:
     return sum(terms, NOUGHT), x[1] * 3 ** int(size + 1) + 2 * size**last / factorial(last)
 
 
-def check(data: Any) -> None:
+def check(data: Data) -> None:
     """An exception unless every identity holds: a ValueError that names the one that does not."""
     if "stages" in data:  # (k, d, s, t): p' = p − h k H_q, q' = q + h d H_p at the shares s, t
         for k, d, s, t in (map(Fraction, row) for row in data["stages"]):

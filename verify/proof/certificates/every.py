@@ -19,14 +19,13 @@ A polynomial is a list of terms `[coefficient, name, name, …]`, a name once fo
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 from verify.algebra.generator import terms_of
 from verify.algebra.jets import Jets, Series
 from verify.algebra.ring import Poly
 from verify.arithmetic.exact import text
 from verify.errors import InputError
-from verify.proof.certificates.file import FORMAT
+from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.every import EveryProof
 from verify.proof.telescoping import telescopes, telescopes_of_lie
 from verify.schemes import get
@@ -35,13 +34,13 @@ from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 
-def of_every(proof: EveryProof) -> dict[str, Any]:
+def of_every(proof: EveryProof) -> Certificate:
     """The certificate of a proof for every H; InputError where nothing is proved."""
     scheme = get(proof.scheme)
     every_h = scheme.every_h
     if proof.verdict is not Verdict.PROVED or every_h is None or proof.convergence_order is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
-    data: dict[str, Any] = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
+    data: Certificate = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
     data["separable"] = proof.separable
     stages = every_h.stages if isinstance(every_h, Splitting) else every_h
     if isinstance(stages, StageEquations) and proof.area_preserving:
@@ -73,7 +72,7 @@ def map_of(
     leading: Poly,
     series: tuple[Series, Series],
     names: dict[int, str],
-) -> dict[str, Any]:
+) -> Certificate:
     return {
         "order": order,
         "convergence_order": agreed,

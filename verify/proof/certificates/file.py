@@ -7,6 +7,7 @@ from verify.formats import read_json
 from verify.proof.certificates.checker import check
 
 FORMAT = "areaproof certificate 1"
+Certificate = dict[str, Any]  # as JSON has it; who reads it takes nothing for granted
 
 
 def checked(path: Path) -> tuple[bool, str]:
@@ -26,7 +27,7 @@ def checked(path: Path) -> tuple[bool, str]:
         return False, "its functions are nested too deeply"
 
 
-def statement(data: dict[str, Any]) -> str:
+def statement(data: Certificate) -> str:
     """What the certificate says, from the entries that the checker looks at."""
     every = "every smooth H = T(p) + V(q)" if data.get("separable") else "every smooth H"
     where = every if data["hamiltonian"] == "every" else "the H that it holds"

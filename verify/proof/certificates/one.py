@@ -6,7 +6,6 @@ the same polynomial here and there.
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import sympy
 
@@ -15,7 +14,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.proof.certificates.every import map_of, terms
-from verify.proof.certificates.file import FORMAT
+from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential
 from verify.verdict import Verdict
@@ -23,7 +22,7 @@ from verify.verdict import Verdict
 _KINDS = ("sin", "cos", "exp", "inverse")
 
 
-def of_one(proof: Proof, potential: Potential) -> dict[str, Any]:
+def of_one(proof: Proof, potential: Potential) -> Certificate:
     """The certificate of a proof for one H.
 
     Raises InputError where nothing is proved, where the map is not a polynomial in h, and where H
@@ -130,8 +129,13 @@ class _Plain:
 
 
 def _cofactors(
-    plain: _Plain, data: Any, h: Poly, series: list[list[Poly]], leading: Poly, potential: Poly
-) -> Iterator[tuple[str, Any]]:
+    plain: _Plain,
+    data: Certificate,
+    h: Poly,
+    series: list[list[Poly]],
+    leading: Poly,
+    potential: Poly,
+) -> Iterator[tuple[str, dict[str, list[list[str]]]]]:
     """(what is zero, its cofactors), in the checker's words; what is zero as it stands has none."""
     for what, x in _zeros(plain, data, h, series, leading, potential):
         if not x.is_zero():
@@ -139,7 +143,12 @@ def _cofactors(
 
 
 def _zeros(
-    plain: _Plain, data: Any, h: Poly, series: list[list[Poly]], leading: Poly, potential: Poly
+    plain: _Plain,
+    data: Certificate,
+    h: Poly,
+    series: list[list[Poly]],
+    leading: Poly,
+    potential: Poly,
 ) -> Iterator[tuple[str, Poly]]:
     ring, order = plain.ring, data["order"]
     h_p, h_q = plain.diff(h, "p"), plain.diff(h, "q")

@@ -158,9 +158,9 @@ def as_grid(points: Sequence[SeparationResult]) -> SeparationGrid:
         for point in points:
             evaluation: EvaluationResult | None = getattr(point, name)
             if evaluation:
-                size = (Fraction(evaluation.largest[n]) for n in ("truncation", "total"))
-                found.append((Fraction(point.step_size), *size))
-        at = crossover(found)  # type: ignore[arg-type]
+                part, total = (Fraction(evaluation.largest[n]) for n in ("truncation", "total"))
+                found.append((Fraction(point.step_size), part, total))
+        at = crossover(found)
         return CrossoverResult(
             step_size=None if at.step_size is None else f"{at.step_size:.3e}",
             bracket=at.bracket and (text(at.bracket[0]), text(at.bracket[1])),
