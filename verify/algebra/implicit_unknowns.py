@@ -82,6 +82,7 @@ class Elimination:
         self.inverses: list[Matrix] = []
         self.determinants: Column = []
         self.factors: dict[tuple[int, int], Matrix] = {}
+        # Gauß by blocks without pivoting: diagonal blocks are 1 + O(h), which is never 0 at h = 0.
         for k in range(count):
             self.inverses.append(self._inverse(left[k][k]))
             for i in range(k + 1, count):
@@ -94,6 +95,7 @@ class Elimination:
         count, block = len(self.inverses), self.block
         parts: list[Matrix] = [[[x] for x in right[block * i : block * (i + 1)]]
                                for i in range(count)]  # fmt: skip
+        # Forwards by columns, in the order of the elimination; then backwards.
         for (i, k), factor in sorted(self.factors.items(), key=lambda at: at[0][1]):
             parts[i] = self._minus(parts[i], self._product(factor, parts[k]))
         for k in reversed(range(count)):

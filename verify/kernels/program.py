@@ -64,6 +64,8 @@ class Evaluator:
             return ways[0]()
         program, known, most, mark = self.program, self._at, self._most, self.program.mark()
         best: tuple[int, Tail, dict[int, int], T] | None = None
+        # Each way is written behind the mark, cut off, and the cheapest is put back; what costs
+        # more than the best so far gives up on its way.
         for way in ways:
             self._at = dict(known)
             try:
@@ -118,6 +120,7 @@ class Evaluator:
         unknown = system.unknowns
         for k, g in enumerate(unknown):
             own.set(g, inner.input(f"u{number}_{k}", static=False))
+        # What does not depend on the unknowns is made once, outside, and is an input of the loop.
         for g in ring.generators_in(*system.updates, inside_equations=False):
             inside = (
                 () if g.argument is None else ring.generators_in(g.argument, inside_equations=False)
@@ -143,6 +146,7 @@ class Evaluator:
         for monomial, c in terms_of(x):
             outer = tuple([int(monomial[i]) for i in dynamic])
             by_outer.setdefault(outer, []).append((monomial, c))
+        # Static parts are summed before the loop, whatever they cost; their powers are shared.
         zero, powers = Fraction(0), dict[tuple[int, int], int]()
         for outer, terms in by_outer.items():
             total = program.constant(zero)

@@ -128,6 +128,7 @@ class _Certificate:
         tangent = self.one_tangent(found)
         if tangent is None:
             return None
+        # ε is Euclid's norm of what both components lose.
         added = [self.adding(name, values[f"d{name}"]) for name in ("p", "q")]
         state = (added[0] * added[0] + added[1] * added[1]).sqrt().abs_upper()
         return _Steps(state, values["dj"].error, tangent, values["dj"].magnitude)
@@ -151,6 +152,7 @@ class _Certificate:
         """ρ: the error of one step of the tangent map, relative to ‖M‖."""
         tangent = self.kernel.tangent
         assert tangent is not None  # noqa: S101 - the caller's condition
+        # A's entries come from wide numbers turned into float64, each with an error of its own.
         unit = flint.arb(2) ** -52
         inputs = {}
         for at in tangent.needed:
@@ -177,15 +179,18 @@ class _Certificate:
         least = seen["det_low"] - flint.arb(2) ** -48 * seen["growth_top"]
         if not (growth.is_finite() and least > 0):
             return None
+        # Q: it multiplies every bound by e^Q, so that a large one says nothing.
         rate = steps.tangent * growth / least
         if not rate < _MOST_GROWTH:
             return None
         top = _square_of_norm(highest, least).sqrt()
         path = (count * (count + 1) * _square_of_norm(growth / (count + 1), least)).sqrt()
+        # X without its quadratic term. Twice the error that it gives is E*, over which B is taken.
         alone = rate.exp() * (self.first_error() + path / least * steps.state)
         error = (2 * top * alone).abs_upper()
         second = derivatives.second(self.values_of_inputs(), self.box(error))
         start = (alone + rate.exp() * path / least * second * error * error / 2).abs_upper()
+        # The bootstrap: with E* in the quadratic term the bound must stay within E*.
         if not top * start <= error:
             return None
         return (top * start).abs_upper(), (start * path).abs_upper()
@@ -210,6 +215,7 @@ class _Certificate:
         scale = flint.arb(2) ** -self.shift
         slope = derivatives.gradient(self.values_of_inputs(), self.box(error)) / scale
         moved = slope * summed + count * steps.delta_j  # Σ |D̂_k − D(z_k)|
+        # A square differs by at most |x − y| (|x| + |y|), each at most `size`.
         size = steps.size + slope * error
         result = {}
         if "delta_j_max" in asked:
@@ -233,6 +239,7 @@ class _Certificate:
         scale, count = flint.arb(2) ** -self.shift, self.steps
         low, high = self.seen["least"], self.seen["most"]
         largest, jump = abs(low).max(abs(high)), scale * size
+        # Logarithms of the factors and of the product are taken: both must stay positive.
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
         drift = count * self.of_product(scale, jump, largest) / (1 + low)

@@ -63,9 +63,11 @@ class MoreFunctions(Functions):
             ">=", size, constant(1 << self.fraction - _LEAST_DIVISOR, self.width)
         )
         one = ir.Constant(DOUBLE, 1.0)
+        # Where x is out of range 1 is divided by, so that no infinity is turned into an integer.
         guess = b.fdiv(one, b.select(valid, to_double(b, x, self.fraction), one))
         y = from_double(b, guess, self.width, self.fraction)
         product = self.products.product
+        # y ← y + y (1 − x y): the relative error is squared each time.
         for _ in range(self._iterations(quadratic=True)):
             error = b.sub(constant(1 << self.fraction, self.width), product(b, x, y))
             y = b.add(y, product(b, y, error))
@@ -81,6 +83,7 @@ class MoreFunctions(Functions):
         s = from_double(b, guess, self.width, self.fraction)
         slope = from_double(b, half, self.width, self.fraction)
         product = self.products.product
+        # s ← s + (x − s²)/(2 s₀): the slope stays that of the guess, which saves a division.
         for _ in range(self._iterations(quadratic=False)):
             s = b.add(s, product(b, b.sub(x, product(b, s, s)), slope))
         return self._result(b, valid, s)
@@ -90,6 +93,7 @@ class MoreFunctions(Functions):
         b, x = self._define("log", 1)
         width, places = self.width, self.width - 2
         valid = b.icmp_signed(">", x, constant(0, width))
+        # The leading zeros are shifted out: m in [½, 1) as a fraction of `width` bits.
         x = b.select(valid, x, constant(1, width))
         lead = b.ctlz(x, ir.Constant(ir.IntType(1), 0))
         m = b.shl(x, lead)
@@ -102,6 +106,7 @@ class MoreFunctions(Functions):
         below = b.icmp_signed("<", a, constant(0, 64))
         doubled = b.shl(mantissa, resized(b, b.select(below, constant(0, 64), a), width))
         power = b.select(below, limbs.shifted_down(b, mantissa, 1), doubled)
+        # δ = m e^−guess − 1 is small: log m = guess + log(1 + δ).
         delta = b.sub(self.products.high(b, m, power), constant(1 << places, width))
         total = b.add(b.neg(b.shl(minus, constant(INTEGER_BITS - 2, width))), self._log1p(b, delta))
         # The guess may lie on either side of −½; the sum may be large: one limb more.

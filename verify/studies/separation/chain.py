@@ -98,7 +98,7 @@ class Chain:
 
     @property
     def kind(self) -> Kind:
-        """ "enclosed" where the bound of every link is proved, else "estimated"."""
+        """Enclosed where the bound of every link is proved, else estimated."""
         return "enclosed" if all(x.kind == "enclosed" for x in self.links) else "estimated"
 
     @property
@@ -148,6 +148,8 @@ class Separation:
         if arithmetic == AUTO:
             arithmetic = choose(self.kernel_run, digits + _CANCELLED)
         links = _Links(self.kernel_run, self.map, arithmetic, digits + _CANCELLED, advance)
+        # How many digits the differences cancel is known once they are made: then what lacks some
+        # is made again with more.
         for _ in range(_ATTEMPTS):
             plain, closed = links.chains()
             lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
@@ -189,6 +191,7 @@ class _Links:
         second = first if self.same else self.constant or self._reference(self.rounded, "second")
         third = working.trajectory or second
         plain = Chain(self.marks, (first, second, third, working.determinant, working.plain))
+        # Both chains share Λ₀ … Λ₂: only how Λ is evaluated in float64 differs.
         fourth, fifth = working.closed_delta_j, working.closed_form
         if fourth is None or fifth is None:
             return plain, None
@@ -197,6 +200,7 @@ class _Links:
     def refine(self, lacking: Sequence[int]) -> bool:
         """Asks for so many more digits of Λ₀ … Λ₄; False where no run lacks any."""
         first, second, *beside = lacking
+        # One run that serves as two links is made once, with the digits of the one that lacks more.
         if self.same:
             first, second = max(first, second), 0
         wanted = {
