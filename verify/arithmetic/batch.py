@@ -8,11 +8,15 @@ import operator
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import gmpy2
 
-Array = Any  # numpy.ndarray, which is imported where it is used
+if TYPE_CHECKING:
+    import numpy
+
+Array: TypeAlias = "numpy.ndarray"  # which is imported where it is used
+Operand: TypeAlias = Any  # a number or a truth value of any kind, an array, or a Batch
 _BITS = 120  # more than two float64 hold
 
 
@@ -73,10 +77,10 @@ class Batch:
 def _binary(name: str) -> None:
     apply = getattr(operator, name)
 
-    def forwards(self: Batch, other: Any) -> Batch:
+    def forwards(self: Batch, other: Operand) -> Batch:
         return Batch(apply(self.values, _bare(other)))
 
-    def backwards(self: Batch, other: Any) -> Batch:
+    def backwards(self: Batch, other: Operand) -> Batch:
         return Batch(apply(_bare(other), self.values))
 
     plain = name.strip("_")
@@ -89,7 +93,7 @@ for _name in ("add", "sub", "mul", "truediv", "pow", "lt", "le", "gt", "ge"):
     _binary(_name)
 
 
-def _bare(x: Any) -> Any:
+def _bare(x: Operand) -> Operand:
     if isinstance(x, Batch):
         return x.values
     return gmpy2.mpq(x) if isinstance(x, Fraction) else x
@@ -104,16 +108,18 @@ def exact(values: Array) -> Batch:
     return Batch(found)
 
 
-def choose(condition: Any, then: Any, otherwise: Any) -> Any:
+def choose(condition: Operand, then: Operand, otherwise: Operand) -> Operand:
     """`then` where the condition holds, for one number or for each of a batch."""
     if not isinstance(condition, Batch):
         return then if condition else otherwise
     import numpy as np
 
-    return Batch(np.where(condition.values, _bare(then), _bare(otherwise)))
+    x: Array = _bare(then)
+    y: Array = _bare(otherwise)
+    return Batch(np.where(condition.values, x, y))
 
 
-def some(condition: Any) -> bool:
+def some(condition: Operand) -> bool:
     """Whether it holds for the number, or for any of a batch."""
     return bool(condition.values.any() if isinstance(condition, Batch) else condition)
 

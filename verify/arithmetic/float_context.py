@@ -7,9 +7,13 @@ numpy is imported when a function is first asked for.
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from verify.arithmetic.batch import Batch, choose, some
+
+if TYPE_CHECKING:
+    import numpy
 
 Number = Any  # a float, an array of floats, or a Batch
 _PI = "3.14159265358979323846264338327950288419716939937510582"
@@ -25,15 +29,16 @@ class FloatContext:
         self.wide = wide
 
     @cached_property
-    def _np(self) -> Any:
+    def _np(self) -> ModuleType:
         import numpy
 
         return numpy
 
     @cached_property
-    def type(self) -> Any:
+    def type(self) -> "type[numpy.floating]":
         """numpy's type of its numbers."""
-        return self._np.longdouble if self.wide else self._np.float64
+        found: type[numpy.floating] = self._np.longdouble if self.wide else self._np.float64
+        return found
 
     @cached_property
     def prec(self) -> int:
@@ -53,7 +58,7 @@ class FloatContext:
 
     # -- numbers --------------------------------------------------------------------------------
 
-    def mpf(self, x: Any) -> Number:
+    def mpf(self, x: Number) -> Number:
         """A number, a text or a batch in this precision."""
         if isinstance(x, Batch):
             return Batch(x.values.astype(self.type))
@@ -62,13 +67,13 @@ class FloatContext:
     def mpc(self, x: Number) -> Number:
         return self._each(lambda v: v + 0j, x)
 
-    def rational(self, x: Any) -> Number:
+    def rational(self, x: Number) -> Number:
         """An exact rational, or a batch of them, rounded once."""
         if isinstance(x, Batch):
             high, low = x.parts
             return Batch(high.astype(self.type) + low if self.wide else high)
-        high = float(x)
-        return self.type(high) + (float(x - Fraction(high)) if self.wide else 0)
+        near = float(x)
+        return self.type(near) + (float(x - Fraction(near)) if self.wide else 0)
 
     def ldexp(self, x: Number, n: int) -> Number:
         return self._each(lambda v: self._np.ldexp(self.type(v), n), x)
@@ -77,7 +82,7 @@ class FloatContext:
         """The exponent of the power of 2 above."""
         return self._each(lambda v: self._np.frexp(v)[1], x)
 
-    def _each(self, function: Callable[..., Any], *xs: Number) -> Number:
+    def _each(self, function: Callable[..., Number], *xs: Number) -> Number:
         if not any(isinstance(x, Batch) for x in xs):
             return function(*xs)
         return Batch(function(*(x.values if isinstance(x, Batch) else x for x in xs)))

@@ -16,7 +16,7 @@ highest limbs, and `shifted(x, s)` is x/2^s.
 
 import ast
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 from llvmlite import ir
 
@@ -24,6 +24,7 @@ from verify.arithmetic.wide import limbs, memory
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 
+Ours: TypeAlias = Any  # a node of a source that we wrote, whose parts are known
 BOOL = ir.IntType(1)
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 _FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
@@ -82,13 +83,13 @@ class Translator:
 
     def _block(self, statements: list[ast.stmt]) -> None:
         for statement in statements:
-            known: dict[type, Callable[[Any], None]] = {
+            known: dict[type, Callable[[Ours], None]] = {
                 ast.Assign: self._assignment, ast.If: self._if, ast.For: self._for,
                 ast.Return: self._return,
             }  # fmt: skip
             known[type(statement)](statement)
 
-    def _assignment(self, statement: Any) -> None:
+    def _assignment(self, statement: Ours) -> None:
         target = statement.targets[0]
         if hasattr(target, "elts"):
             values = self._call(statement.value)
@@ -108,7 +109,7 @@ class Translator:
             self.b.branch(after)
         self.b.position_at_end(after)
 
-    def _for(self, statement: Any) -> None:
+    def _for(self, statement: Ours) -> None:
         """`for name in range(limit)`."""
         name, limit = statement.target.id, self._expression(statement.iter.args[0])
         self._assign(name, constant(0, 64))
@@ -123,7 +124,7 @@ class Translator:
         self.b.branch(head)
         self.b.position_at_end(after)
 
-    def _return(self, statement: Any) -> None:
+    def _return(self, statement: Ours) -> None:
         value = statement.value
         values = [self._expression(e) for e in value.elts] if isinstance(value, ast.Tuple) else (
             self._call(value) if isinstance(value, ast.Call) else [self._expression(value)]
@@ -213,7 +214,7 @@ class Translator:
             return resized(self.b, value, target.width, signed=True)
         raise TypeError(f"{value.type} is no {target}; use wide(x) or approx(x)")
 
-    def _call(self, node: Any) -> list[Value]:
+    def _call(self, node: Ours) -> list[Value]:
         values = [self._expression(a) for a in node.args]
         return self._function(node.func.id, values)
 

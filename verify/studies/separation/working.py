@@ -36,7 +36,7 @@ from verify.studies.separation.kernel import MixedKernel, mixed_kernel
 
 Kind = Literal["enclosed", "estimated"]
 Advance = Callable[[int], None]  # called with the number of steps just done
-State = dict[str, Any]
+State = dict[str, Any]  # a float or a wide number; its name begins with f or with w
 POINTS = 2048  # checkpoints of a run
 _MORE_DIGITS = 15
 _WIDE = ("trajectory", "determinant", "closed")
