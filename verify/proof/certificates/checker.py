@@ -1,13 +1,11 @@
 """Checks a certificate (see `verify.proof.certificates.every`) with dicts and fractions alone."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import factorial
 from typing import Any
 
 Poly = dict[tuple[str, ...], Fraction]  # sorted names → coefficient
-Data = Any  # JSON of strangers: what is not as it should be raises an exception
 Ball = tuple[Fraction, Fraction]  # middle, radius
 NOUGHT, ONE = Fraction(0), Fraction(1)
 SIGNS = {"sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0), "exp": (1,)}  # of their Taylor series
@@ -22,7 +20,7 @@ def single(*names: str) -> Poly:
     return {names: ONE}
 
 
-def collected(terms: Iterable[tuple[Sequence[str], Fraction]]) -> Poly:
+def collected(terms: Any) -> Poly:
     total: Poly = {}
     for monomial, c in terms:
         key = tuple(sorted(monomial))
@@ -30,7 +28,7 @@ def collected(terms: Iterable[tuple[Sequence[str], Fraction]]) -> Poly:
     return {m: c for m, c in total.items() if c}
 
 
-def poly(data: Iterable[Sequence[str]]) -> Poly:
+def poly(data: Any) -> Poly:
     need(not any("h" in names for _, *names in data), "coefficients are free of h")
     return collected((tuple(names), Fraction(c)) for c, *names in data)
 
@@ -46,7 +44,7 @@ def mul(x: Poly, y: Poly) -> Poly:
 class Algebra:
     """∂/∂p and ∂/∂q of every name: the free derivatives of H, or functions of given arguments."""
 
-    def __init__(self, data: Data) -> None:
+    def __init__(self, data: Any) -> None:
         self.free, self.separable = data["hamiltonian"] == "every", data.get("separable")
         self.images = {"p": {"p": single()}, "q": {"q": single()}}
         self.relations: dict[str, Poly] = {}
@@ -89,9 +87,7 @@ class Algebra:
     def lie_derivatives(self, x: Poly) -> Poly:
         return add(mul(self.h_p, self.diff(x, "q")), mul(self.h_q, self.diff(x, "p")), -1)
 
-    def zero(
-        self, x: Poly, cofactors: Mapping[str, Mapping[str, Iterable[Sequence[str]]]], what: str
-    ) -> None:
+    def zero(self, x: Poly, cofactors: Any, what: str) -> None:
         for name, cofactor in cofactors.get(what, {}).items():
             x = add(x, mul(poly(cofactor), self.relations[name]), -1)
         need(not x, f"{what} is not zero")
@@ -123,7 +119,7 @@ def function(kind: str, x: Ball) -> Ball:
     return sum(terms, NOUGHT), x[1] * 3 ** int(size + 1) + 2 * size**last / factorial(last)
 
 
-def check(data: Data) -> None:
+def check(data: Any) -> None:
     """An exception unless every identity holds: a ValueError that names the one that does not."""
     if "stages" in data:  # (k, d, s, t): p' = p − h k H_q, q' = q + h d H_p at the shares s, t
         for k, d, s, t in (map(Fraction, row) for row in data["stages"]):
