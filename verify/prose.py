@@ -68,6 +68,18 @@ class Prose(str):
         between = [each for part in parts for each in (self, part)]
         return Prose(*between[1:])
 
+    def partition(self, sep: str) -> "tuple[Prose, str, Prose]":
+        """As of a str, at the first `sep` within a text; each side keeps its parts.
+
+        >>> prose("ΔJ = ", Formula("a; b"), "; and so on").partition("; ")[0].parts
+        ('ΔJ = ', 'a; b')
+        """
+        for at, part in enumerate(self.parts):
+            if type(part) is str and sep in part:
+                before, _, after = part.partition(sep)
+                return Prose(*self.parts[:at], before), sep, Prose(after, *self.parts[at + 1 :])
+        return self, "", Prose()
+
     def as_data(self) -> list[PartData]:
         """The parts as JSON has them: text as a string, the others under the name of their kind."""
         names = {kind: name for name, kind in _KINDS.items()}
@@ -106,8 +118,10 @@ def read_prose(text: str) -> Prose:
     >>> read_prose("at q = `-0.5`").as_data()  # a quoted decimal is a Number
     ['at q = ', {'number': '-0.5'}]
 
-    A backtick without its partner is text.
+    A backtick without its partner is text; a Prose is itself.
     """
+    if isinstance(text, Prose):
+        return text
     pieces = text.split(_QUOTE)
     if len(pieces) % 2 == 0:
         pieces[-2:] = [_QUOTE.join(pieces[-2:])]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.input import target
-from verify.commands.output import print_json
+from verify.commands.output import plain_json, print_json
 from verify.commands.tasks import cluster_option
 from verify.errors import InputError
 
@@ -129,7 +129,7 @@ def _point(point: "WorkPoint") -> dict[str, Any]:
 
 
 def _rest(result: "WorkPrecisionResult") -> dict[str, Any]:
-    data = result.model_dump(mode="json")
+    data = plain_json(result)
     lines = [{k: v for k, v in line.items() if k != "points"} for line in data.pop("lines")]
     return {**data, "lines": lines}
 

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
+    from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
     from verify.scenes.results.separation import (
@@ -140,6 +141,12 @@ def print_run(result: "RunResult") -> None:
         click.echo(f"taken instead of what was asked for: {result.fallback}")
 
 
+def plain_json(model: "Frozen") -> dict[str, Any]:
+    """The model as JSON, without the parts of its texts."""
+    data: dict[str, Any] = model.model_dump(mode="json", context={"parts": False})
+    return data
+
+
 def separation_json(found: "SeparationGrid") -> dict[str, Any]:
     """The first step size's parts, and those of all of them as `grid`."""
     points = [_separated(point) for point in found.points]
@@ -176,7 +183,7 @@ def _evaluated(way: "EvaluationResult | None") -> dict[str, Any]:
         "error_bound": {n: value.bound for n, value in values.items() if value},
         "error_kind": way.error_kind if way else None,
         "largest": way.largest if way else None,
-        "growth": {n: g.model_dump(mode="json") for n, g in way.growth.items()} if way else None,
+        "growth": {n: plain_json(g) for n, g in way.growth.items()} if way else None,
         "series": [point.model_dump(mode="json") for point in way.series] if way else [],
     }
 

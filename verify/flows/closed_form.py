@@ -68,7 +68,7 @@ def _check_end(motion: Motion, time: Fraction, mp: Context) -> None:
     end = motion.blow_up(mp, -1 if time < 0 else 1)
     if end is not None and number(mp, abs(time)) >= end * (1 - mp.ldexp(1, -mp.prec // 2)):
         sign = "−" if time < 0 else ""
-        raise NoFlowError(f"the exact solution blows up at t = {sign}{mp.nstr(end, 12)}")
+        raise NoFlowError(f"the exact solution blows up at t = {sign}`{mp.nstr(end, 12)}`")
 
 
 def _state(motion: Motion, time: Fraction, mp: Context) -> tuple[Any, Any] | None:
@@ -106,7 +106,7 @@ def _moderate(mp: Context, values: list[Any]) -> bool:
     """Whether both are in range; NoFlowError where they agree that the solution is not."""
     sizes = [max((mp.mag(x) for x in z if x), default=0) for z in values]
     if min(sizes) > _MOST_BITS and abs(sizes[0] - sizes[1]) <= 1:
-        raise NoFlowError(f"the exact solution is beyond 2^{_MOST_BITS} by then")
+        raise NoFlowError(f"the exact solution is beyond `2^{_MOST_BITS}` by then")
     return max(sizes) <= _MOST_BITS
 
 

@@ -179,7 +179,7 @@ class _ReturnSearch:
                 raise NoFlowError("the orbit is not closed: it goes far away")
             z, time = after, time + step
             step *= 2 if turned > _TURN[1] else 1
-        raise NoFlowError(f"the orbit is not seen to close until t = {time:.3g}")
+        raise NoFlowError(f"the orbit is not seen to close until t = `{time:.3g}`")
 
     def stepped(self, z: State, step: float) -> tuple[float, State, float]:
         """The longest of step, step/2, … that is accurate and turns by little; where it leads."""

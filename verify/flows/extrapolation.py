@@ -16,6 +16,7 @@ from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import VectorField
 from verify.kernels.lowering import Lowering
 from verify.kernels.program import Evaluator, Program
+from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
 State = tuple[Number, Number]  # p, q
@@ -31,7 +32,14 @@ _STILL = 1000  # a step's error is held against how far it goes, and this part o
 
 
 class NoFlowError(Exception):
-    """The flow could not be followed; the message says why."""
+    """The flow could not be followed; `said` is why, the message its plain text.
+
+    It is written as `read_prose` takes it, with formulas and numbers quoted.
+    """
+
+    def __init__(self, said: str) -> None:
+        self.said = read_prose(said)
+        super().__init__(str(self.said))
 
 
 def functions_at(
@@ -120,11 +128,11 @@ class Flow:
                 if after is None:
                     good, step = 0, step * 2 / 3
                     if step < shortest or done + step == done:
-                        raise NoFlowError(f"{LOST}, at about t = {float(sign * done):.6g}")
+                        raise NoFlowError(f"{LOST}, at about t = `{float(sign * done):.6g}`")
                 else:
                     z, done, good = after, goal if last else done + step, good + 1
                     step = step * 3 / 2 if good > _PATIENCE else step
-        raise NoFlowError(f"{most_steps} steps lead only to t = {float(sign * done):.6g}")
+        raise NoFlowError(f"{most_steps} steps lead only to t = `{float(sign * done):.6g}`")
 
     def _first_step(self, z: State, goal: Number) -> Number:
         """A guess: the time in which the state would become different."""

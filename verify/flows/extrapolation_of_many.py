@@ -125,13 +125,13 @@ class _CommonSteps:
             self._step = _short(float(step) * _SHORTER)
             if self._step < self._least or self._done + self._step == self._done:
                 raise NoFlowError(self._lost(ratio))
-        raise NoFlowError(f"{_MOST_STEPS} steps lead only to t = {self._sign * self._done:.6g}")
+        raise NoFlowError(f"{_MOST_STEPS} steps lead only to t = `{self._sign * self._done:.6g}`")
 
     def _lost(self, ratio: Array) -> str:
         import numpy as np
 
         i = int(np.argmax(np.where(np.isfinite(ratio), ratio, np.inf)))
-        return f"point {i}: {LOST}, at about t = {self._sign * self._done:.6g}"
+        return f"point {i}: {LOST}, at about t = `{self._sign * self._done:.6g}`"
 
     def _extrapolated(self, time: Any) -> tuple[Array, Array]:
         """How far the points move by Aitken and Neville's scheme, and its estimated error."""

@@ -17,6 +17,7 @@ from verify.flows.closed_orbit import shifts
 from verify.flows.extrapolation import Flow, NoFlowError, Number, State, functions_at
 from verify.flows.solution import NOT_KNOWN, leaves_by_algebra
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Prose, prose, read_prose
 
 _DIGITS, _MOST_DIGITS = 20, 40
 _MOST_STEPS = 3000
@@ -43,7 +44,7 @@ class ExactOrbit:
     """
 
     kind: Kind
-    summary: str
+    summary: Prose
     centre: tuple[Fraction, Fraction]
     reach: tuple[Fraction, Fraction]
     turns: tuple[bool, bool]
@@ -62,7 +63,8 @@ def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fracti
     if exactly is None:
         return orbit
     return replace(
-        orbit, summary=exactly if orbit.kind == "escapes" else f"{orbit.summary}; {exactly}"
+        orbit,
+        summary=prose(exactly) if orbit.kind == "escapes" else prose(orbit.summary, "; ", exactly),
     )
 
 
@@ -110,7 +112,7 @@ class _OrbitSearch:
         try:
             self.note(self.z0)
         except NoFlowError as error:
-            return self.found("unknown", str(error))
+            return self.found("unknown", error.said)
         if not any(self.rates[0][:2]):
             return self.found("at rest", "stays where it is, an equilibrium")
         if any(self.free):
@@ -122,7 +124,7 @@ class _OrbitSearch:
         try:
             return self.integrated()
         except NoFlowError as error:
-            return self.found("unknown", str(error))
+            return self.found("unknown", error.said)
 
     def note(self, z: State) -> None:
         """Keeps what is to be known at a point of the orbit."""
@@ -143,7 +145,7 @@ class _OrbitSearch:
                 step = min(2 * step, self.allowed(), left)
             step, after = self.stepped(z, step)
             if after is None or (longest and step < left and step * _FASTER < longest):
-                summary = f"becomes ever faster at t = {float(time):.6g}"
+                summary = f"becomes ever faster at t = `{float(time):.6g}`"
                 return self.found("escapes", summary)
             with self.arithmetic.context():
                 time = time + step
@@ -154,7 +156,8 @@ class _OrbitSearch:
             self.note(after)
             if grown > _FAR and outwards >= _OUTWARDS:
                 summary = (
-                    f"is {_FAR:.0e} times as far out as z0 at t = {float(time):.6g}, and goes on"
+                    f"is `{_FAR:.0e}` times as far out as z0 at t = `{float(time):.6g}`, "
+                    "and goes on"
                 )
                 return self.found("escapes", summary)
             back = self.returned(z, after)
@@ -163,12 +166,12 @@ class _OrbitSearch:
                 with self.arithmetic.context():
                     period = time - (1 - part) * step
                 kind: Kind = "rotates" if any(shift) else "closed"
-                summary = f"{kind}, with a period of about {float(period):.3g}"
+                summary = f"{kind}, with a period of about `{float(period):.3g}`"
                 return self.found(kind, summary, shift, period=self.arithmetic.exact(period))
             z = after
             if time >= self.time:
-                return self.found("open", f"is still under way at t = {float(time):.6g}")
-        return self.found("unknown", f"was followed to t = {float(time):.6g} only")
+                return self.found("open", f"is still under way at t = `{float(time):.6g}`")
+        return self.found("unknown", f"was followed to t = `{float(time):.6g}` only")
 
     def allowed(self) -> Number:
         """The step that the local frequency allows; call it inside the context."""
@@ -257,7 +260,7 @@ class _OrbitSearch:
         scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
         return ExactOrbit(
             kind=kind,
-            summary=summary,
+            summary=read_prose(summary),
             centre=(exact(centre[0]), exact(centre[1])),
             reach=(reach[0], reach[1]),
             turns=(bool(shift[0]), bool(shift[1])),

@@ -22,6 +22,7 @@ from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.known_flows import closed_form
 from verify.hamiltonians.motion import Motion, number
+from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _UNIT = 2.0**-53  # the rounding of a result, relative to it
@@ -193,9 +194,10 @@ class _Work:
             found = exact_solution(self.hamiltonian, p=p, q=q, time=time, digits=_DIGITS)
             return (float(found.p), float(found.q)), float(found.bound)
         except (NoFlowError, OverflowError) as error:
-            said = "it is beyond float64" if isinstance(error, OverflowError) else error
-            where = f"point {i}, q = {self.q[i]:.6g}, p = {self.p[i]:.6g}"
-            raise NoFlowError(f"{where}, to t = {float(time):.6g}: {said}") from None
+            said = error.said if isinstance(error, NoFlowError) else "it is beyond float64"
+            where = f"point {i}, q = `{self.q[i]:.6g}`, p = `{self.p[i]:.6g}`"
+            at = read_prose(f"{where}, to t = `{float(time):.6g}`: ")
+            raise NoFlowError(at + said) from None
 
     def checked(self, most: int) -> Points:
         """What was found, where the sample's errors are no larger than they are estimated."""
@@ -211,8 +213,8 @@ class _Work:
                 worst = max(worst, float(error) + bound)
                 if error > _SAFETY * estimated:
                     raise NoFlowError(
-                        f"point {i} is wrong by {error:.2g} at t = {float(self.times[k]):.6g}, "
-                        f"where {estimated:.2g} was estimated"
+                        f"point {i} is wrong by `{error:.2g}` at t = `{float(self.times[k]):.6g}`, "
+                        f"where `{estimated:.2g}` was estimated"
                     )
         bound = max(estimated, _SAFETY * worst)
         p, q = self.found

@@ -9,6 +9,7 @@ from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order
+from verify.prose import read_prose
 
 Lifted = Callable[[Dual, Dual, Dual], Sequence[Dual]]  # (p, q, h) ↦ p', q'
 _SIZES = Fraction(1, 8), Fraction(1, 64)
@@ -67,7 +68,9 @@ def must_agree(step: Step, points: Sequence[Point], made: Callable[[Duals], Lift
                 reach = 1 + max(map(abs, mine))
                 near = _ENDS_ELSEWHERE if kind.compared else _AGREES
                 if any(abs(x - y) > near * reach for x, y in zip(mine, theirs, strict=True)):
-                    where = f"p = {point[0]}, q = {point[1]}, h = {h}"
-                    raise UntraceableError(f"with floats it does something else, at {where}")
+                    where = f"p = `{point[0]}`, q = `{point[1]}`, h = `{h}`"
+                    raise UntraceableError(
+                        read_prose(f"with floats it does something else, at {where}")
+                    )
     if not compared:
         raise UntraceableError("it fails at every point that is tried")

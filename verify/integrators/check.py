@@ -21,6 +21,7 @@ from verify.integrators.tracing.step_map import TracedMap, traced_map
 from verify.integrators.tracing.trace import Tape
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
+from verify.prose import Prose, prose, read_prose
 from verify.verdict import Verdict
 
 POINTS: tuple[Point, ...] = (
@@ -64,17 +65,17 @@ def check_integrator(
 
 
 def _no_step(faults: Sequence[Fault]) -> Finding:
-    text = next(fault.text for fault in faults if fault.fatal)
+    text = prose(next(fault.text for fault in faults if fault.fatal))
     return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
 
 
 def _examine(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
-    notes: list[str] = []
+    notes: list[Prose] = []
     try:
         with within(_PROOF_SECONDS, "its proof takes too long"):
             return _proved(step, hamiltonian, points)
     except Exception as error:  # the user's code may raise anything
-        notes.append(f"no proof: {_why(error)}")
+        notes.append(prose("no proof: ", _why(error)))
     kept = _KEPT * max(step.left, 0)
     for how in ("duals", "floats"):
         step.left += -kept if how == "duals" else kept
@@ -85,10 +86,9 @@ def _examine(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> F
             told = of_measured(found, step, hamiltonian, points)
             return replace(told, notes=(*notes, *told.notes))
         except Exception as error:  # as above
-            notes.append(f"not measured with {how}: {_why(error)}")
-    return Finding(Verdict.UNDECIDED, "it can be neither traced nor measured", "calls").noting(
-        *notes
-    )
+            notes.append(prose(f"not measured with {how}: ", _why(error)))
+    neither = prose("it can be neither traced nor measured")
+    return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
 
 
 def _exchanged(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> list[str]:
@@ -101,9 +101,9 @@ def _exchanged(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) ->
     return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
 
 
-def _why(error: Exception) -> str:
+def _why(error: Exception) -> Prose:
     known = isinstance(error, UntraceableError | StepError | InputError)
-    return str(error) if known else last_line(error)
+    return prose(error.args[0] if known else last_line(error))
 
 
 # -- proved ---------------------------------------------------------------------------------------
@@ -136,14 +136,15 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
     return _measured_area(found, step, hamiltonian, points)
 
 
-def _readings(tape: Tape) -> list[str]:
-    notes = ["h > 0 is taken for granted"] if tape.positive else []
+def _readings(tape: Tape) -> list[Prose]:
+    notes = [prose("h > 0 is taken for granted")] if tape.positive else []
     if tape.readings:
-        shown = ", ".join(f"{x!r} as {text(v)}" for x, v in sorted(tape.readings.items()))
-        notes.append(f"floats are read as the exact numbers that they are written for: {shown}")
+        shown = ", ".join(f"`{x!r}` as `{text(v)}`" for x, v in sorted(tape.readings.items()))
+        told = f"floats are read as the exact numbers that they are written for: {shown}"
+        notes.append(read_prose(told))
     if tape.rounded:
-        shown = ", ".join(map(repr, sorted(tape.rounded)))
-        notes.append(f"floats taken by their exact binary values: {shown}")
+        shown = ", ".join(f"`{x!r}`" for x in sorted(tape.rounded))
+        notes.append(read_prose(f"floats taken by their exact binary values: {shown}"))
     return notes
 
 
@@ -179,18 +180,18 @@ def _is_scheme(better: Rounded) -> bool:
     return better.convergence is None or better.convergence >= 1
 
 
-def _rounded_reason(found: Finding, better: Rounded, most: int) -> str:
+def _rounded_reason(found: Finding, better: Rounded, most: int) -> Prose:
     order = f"order {better.convergence}" if better.convergence is not None else f"order ≥ {most}"
     if found.area_preserving:
         area = "det J ≡ 1, proved"
     else:
-        area = f"ΔJ = O(h^{better.area if better.area is not None else most})"
+        area = f"ΔJ = O(`h^{better.area if better.area is not None else most}`)"
     strictly = found.convergence_order
     exactly = f"; taken exactly, they make the order {strictly}" if strictly is not None else ""
     residue = decimal(better.residue, 2)
-    return (
+    return read_prose(
         f"{order} and {area}, but for the rounding of its coefficients, which leaves residues of "
-        f"up to {residue}{exactly}"
+        f"up to `{residue}`{exactly}"
     )
 
 
@@ -204,14 +205,14 @@ def _measured_area(
         by_duals = measured(step, hamiltonian, points, "duals")
         other = of_measured(by_duals, step, hamiltonian, points)
     except Exception as error:  # the user's code may raise anything
-        return found.noting(f"not measured: {_why(error)}")
+        return found.noting(prose("not measured: ", _why(error)))
     if other.verdict is not Verdict.MEASURED:
         return found
     return replace(
         other,
         convergence_order=found.convergence_order,
         order_decided=found.order_decided,
-        reason=f"{other.reason} (the coefficients of ΔJ are not decided: {found.reason})",
+        reason=prose(other.reason, " (the coefficients of ΔJ are not decided: ", found.reason, ")"),
         notes=(*found.notes, *other.notes),
         leading=found.leading,
         area_at_least=found.area_at_least,

@@ -8,6 +8,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.probe import FINER, Measured, Point, Row, measured
 from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, broken
 from verify.integrators.step import Step
+from verify.prose import prose
 from verify.verdict import Verdict
 
 _TOO_SLOW = 1.3  # times what a power allows: a step's other terms make less of it
@@ -32,14 +33,14 @@ def with_claims(
         return replace(
             found,
             verdict=Verdict.UNDECIDED,
-            reason=f"{failed[0][0]} is claimed and not decided: {found.reason}",
+            reason=prose(failed[0][0], " is claimed and not decided: ", found.reason),
         )
     if false:
         name, _, known = false[0]
-        reason = f"{name} is claimed; {known} ({found.reason})"
+        reason = prose(name, " is claimed; ", known, " (", found.reason, ")")
         found = replace(found, verdict=Verdict.REFUTED, reason=reason)
     else:
-        name = "order 1"
+        name = prose("order 1")
     return replace(found, counterexample=_counterexample(name, claims, step, hamiltonian, points))
 
 

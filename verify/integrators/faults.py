@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.integrators.step import State, Step, StepError, last_line, line_of_error
+from verify.prose import Number, Prose, joined, prose
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,13 @@ def changed_since(step: Step, first: Mapping[State, State]) -> list[Fault]:
 
 
 def _not_a_function(state: State, before: State, after: State) -> Fault:
-    found = f"{before} and then {after}{line_of_error(*state, _STEPS[0])}"
-    return Fault("not a function", f"it is not deterministic: it returns {found}")
+    pair = prose(_shown(before), " and then ", _shown(after))
+    found = prose(pair, line_of_error(*state, _STEPS[0]))
+    return Fault("not a function", prose("it is not deterministic: it returns ", found))
+
+
+def _shown(state: State) -> Prose:
+    return prose("(", joined(", ", (Number(repr(x)) for x in state)), ")")
 
 
 def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
@@ -76,8 +82,8 @@ def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
 def _failure(state: State, error: Exception) -> Fault:
     place = line_of_error(*state, _STEPS[0])
     if isinstance(error, StepError):
-        return Fault("not a step", str(error))
-    return Fault("raises", f"it raises {last_line(error)}{place}")
+        return Fault("not a step", error.said)
+    return Fault("raises", prose(f"it raises {last_line(error)}", place))
 
 
 def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
@@ -88,8 +94,8 @@ def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
             second[state] = step.at(*state, _STEPS[1])
             after = step.at(*state, _STEPS[0])
         except Exception as error:  # the user's code may raise anything
-            said = str(error) if isinstance(error, StepError) else f"it raises {last_line(error)}"
-            return [Fault("fails", f"{said}, at a later call", fatal=step.left <= 0)]
+            said = error.said if isinstance(error, StepError) else f"it raises {last_line(error)}"
+            return [Fault("fails", prose(said, ", at a later call"), fatal=step.left <= 0)]
         if after != before:
             return [_not_a_function(state, before, after)]
     if all(state == after for state, after in first.items()):

@@ -10,6 +10,7 @@ from verify.integrators.fitted_order import Fitted
 from verify.integrators.probe import Measured, Point, measured
 from verify.integrators.results import Finding
 from verify.integrators.step import Step
+from verify.prose import Prose, prose, read_prose
 from verify.verdict import Verdict
 
 _SEEN = 1e-6  # a ΔJ that no tolerance makes
@@ -44,7 +45,7 @@ def _as_it_stands(found: Measured) -> Finding:
         verdict = Verdict.UNDECIDED
     finding = Finding(
         verdict,
-        f"{told}; {said}",
+        read_prose(f"{told}; {said}"),
         found.how,
         order=area.power,
         area_preserving=preserving,
@@ -61,7 +62,7 @@ def _order_sentence(distance: Fitted, exact: bool) -> str:
         return "the map is the exact flow to its last digits"
     if distance.power is None:
         return "its error follows no power of h"
-    seen = f"as seen for h = {Fraction(distance.first)} … {distance.last:.1e}"
+    seen = f"as seen for h = {Fraction(distance.first)} … `{distance.last:.1e}`"
     if distance.power == 0:
         return f"its error after one step does not shrink with h, {seen}"
     return f"the map's order is {distance.power - 1}, {seen}"
@@ -70,10 +71,10 @@ def _order_sentence(distance: Fitted, exact: bool) -> str:
 def _area_sentence(found: Measured) -> tuple[bool | None, str]:
     """Whether ΔJ is 0 as far as can be seen, and what is seen of it."""
     if found.area.power is not None:
-        return False, f"ΔJ shrinks as h^{found.area.power}"
+        return False, f"ΔJ shrinks as `h^{found.area.power}`"
     largest, noise = abs(found.largest.delta_j), found.noise
     most = max(largest, noise)  # a ΔJ of 0 is not known better than its noise
-    shown = plain(Fraction(most), 2) if most >= 1e-3 else f"{most:.1e}"
+    shown = plain(Fraction(most), 2) if most >= 1e-3 else f"`{most:.1e}`"
     clear = found.how == "duals" and not found.opaque  # then ΔJ is that of the map itself
     least = 10 * noise
     if found.how == "duals" and (found.opaque or found.rounded):
@@ -86,7 +87,7 @@ def _area_sentence(found: Measured) -> tuple[bool | None, str]:
             "leaves, and not as a truncation error"
         )
     if noise > _NO_AREA:
-        return None, f"ΔJ is hidden by the probe's own error, {noise:.1e}"
+        return None, f"ΔJ is hidden by the probe's own error, `{noise:.1e}`"
     at = found.largest.h
     return False if clear else None, f"|ΔJ| up to {shown}, at h = {at}, follows no power of h"
 
@@ -96,31 +97,34 @@ def _consistent(found: Finding) -> Finding:
     area, order = found.order, found.convergence_order
     if found.verdict is Verdict.REFUTED or area is None or order is None or area > order:
         return found
-    reason = f"{found.reason}, which no map of order {order} does: a small mistake, or a tolerance"
+    but = f", which no map of order {order} does: a small mistake, or a tolerance"
+    reason = prose(found.reason, but)
     return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
 
 
-def _notes(found: Measured) -> list[str]:
+def _notes(found: Measured) -> list[Prose]:
     notes = []
     first, last = found.rows[0].h, found.rows[-1].h
     most = [max(abs(point[i]) for point in found.points) for i in (0, 1)]
     where = f"{len(found.points)} points, |p| ≤ {most[0]}, |q| ≤ {most[1]}"
-    notes.append(f"measured at {where}, for h from {first} to {float(last):.1e}, and nowhere else")
+    notes.append(
+        f"measured at {where}, for h from {first} to `{float(last):.1e}`, and nowhere else"
+    )
     if found.how == "floats":
-        unseen = f"{found.unseen:.0e}"
+        unseen = f"`{found.unseen:.0e}`"
         notes.append(
             f"in floats: an error of p' − p or q' − q below about {unseen} of them is not seen"
         )
     if found.opaque and found.area.power is not None and len(found.steady) < len(found.rows):
         grows = float(found.rows[len(found.steady)].h)
-        notes.append(f"ΔJ grows again at h = {grows:.1e}, as where a loop with a tolerance ends")
+        notes.append(f"ΔJ grows again at h = `{grows:.1e}`, as where a loop with a tolerance ends")
     tail = found.distance.tail
     if tail is not None:
         notes.append(
-            f"for h below {tail.h:.1e}, where its error is {tail.error:.1e}, that shrinks as "
-            f"h^{tail.power} only, as the tolerance of a loop or a small mistake makes it"
+            f"for h below `{tail.h:.1e}`, where its error is `{tail.error:.1e}`, that shrinks as "
+            f"`h^{tail.power}` only, as the tolerance of a loop or a small mistake makes it"
         )
-    return notes
+    return list(map(read_prose, notes))
 
 
 def _with_floats(
@@ -135,7 +139,7 @@ def _with_floats(
     area = replace(
         found,
         verdict=other.verdict if found.verdict is Verdict.MEASURED else found.verdict,
-        reason=f"{found.reason.partition('; ')[0]}; {other.reason.partition('; ')[2]}",
+        reason=prose(found.reason.partition("; ")[0], "; ", other.reason.partition("; ")[2]),
         order=other.order,
         area_preserving=other.area_preserving,
         largest=other.largest,

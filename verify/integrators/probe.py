@@ -186,7 +186,7 @@ def _reading(probe: "_Duals | _Floats", flow: Flow, point: Point, h: Fraction) -
     try:
         end = flow.advance(start, flow.number(h))
     except NoFlowError as error:
-        raise StepError(str(error)) from None
+        raise StepError(error.said) from None
     with flow.arithmetic.context():
         distance = max(abs(float(p - end[0])), abs(float(q - end[1])))
         increment = max(abs(float(end[0] - start[0])), abs(float(end[1] - start[1])))

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential, potential_of
+from verify.prose import Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -56,7 +57,7 @@ class Finding:
     """
 
     verdict: Verdict
-    reason: str
+    reason: Prose
     how: str
     order: int | None = None
     area_preserving: bool | None = None
@@ -68,7 +69,7 @@ class Finding:
     proof: Proof | None = field(default=None, repr=False)
     largest: float | None = None
     probe_error: float | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Prose, ...] = ()
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
 
@@ -81,23 +82,25 @@ class Finding:
 
     def noting(self, *notes: str) -> "Finding":
         """The same with further notes."""
-        return replace(self, notes=(*self.notes, *notes))
+        return replace(self, notes=(*self.notes, *map(prose, notes)))
 
 
-def broken(claims: Claims, found: Finding) -> list[tuple[str, bool | None, str]]:
+def broken(claims: Claims, found: Finding) -> list[tuple[Prose, bool | None, Prose]]:
     """The claims that are not shown: (which, False or None for undecided, what was found)."""
     judged: list[tuple[str, bool | None, str]] = []
     if claims.order is not None:
         holds = None
         if found.order_decided:
             holds = found.convergence_order is None or found.convergence_order >= claims.order
-        known = f"the map agrees with the exact flow up to h^{found.convergence_order} only"
+        known = f"the map agrees with the exact flow up to `h^{found.convergence_order}` only"
         judged.append((f"order {claims.order}", holds, known))
     area = f"ΔJ has order {found.order}"
     if found.order is None:
         area = "ΔJ is not 0"
         if found.area_at_least is not None:
-            area = f"ΔJ is not 0, but O(h^{found.area_at_least}), as where an iteration ends early"
+            area = (
+                f"ΔJ is not 0, but O(`h^{found.area_at_least}`), as where an iteration ends early"
+            )
     if claims.area_preserving:
         judged.append(("det J ≡ 1", found.area_preserving, area))
     if claims.area_order is not None:
@@ -105,8 +108,12 @@ def broken(claims: Claims, found: Finding) -> list[tuple[str, bool | None, str]]
         holds = True if found.area_preserving or shown else None
         if found.order is not None:
             holds = found.order >= claims.area_order
-        judged.append((f"ΔJ = O(h^{claims.area_order})", holds, area))
-    return [claim for claim in judged if claim[1] is not True]
+        judged.append((f"ΔJ = O(`h^{claims.area_order}`)", holds, area))
+    return [
+        (read_prose(claim), holds, read_prose(known))
+        for claim, holds, known in judged
+        if holds is not True
+    ]
 
 
 def potential_of_finding(found: Finding) -> Potential:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from verify.integrators.tracing.number import TracedNumber
+from verify.prose import Number, Prose, prose, read_prose
 
 Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
 State = tuple[float, float]
@@ -20,7 +21,11 @@ TIME_LIMIT = 60.0  # seconds for all of the user's code
 
 
 class StepError(Exception):
-    """What the user's function did instead of a step: one clause, "it …", for people."""
+    """What the user's function did instead of a step: `said`, one clause, "it …", for people."""
+
+    def __init__(self, said: str) -> None:
+        self.said = prose(said)
+        super().__init__(self.said)
 
 
 class _OverTimeError(BaseException):  # so that `except Exception` in the user's code lets it pass
@@ -71,7 +76,8 @@ class Step:
                 result = self.raw(self.function, p, q, h)
         x, y = (_real(x) for x in self.pair(result))
         if x - x != 0 or y - y != 0:
-            raise StepError(f"it returns {x:g}, {y:g}{line_of_error(p, q, h)}")
+            found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))
+            raise StepError(prose("it returns ", found, line_of_error(p, q, h)))
         return x, y
 
     def pair(self, result: Theirs) -> tuple[Theirs, Theirs]:
@@ -129,8 +135,8 @@ def within(seconds: float, problem: str) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3))
 
 
-def line_of_error(p: float, q: float, h: float) -> str:
-    return f" at p = {p:g}, q = {q:g}, h = {h:g}"
+def line_of_error(p: float, q: float, h: float) -> Prose:
+    return read_prose(f" at p = `{p:g}`, q = `{q:g}`, h = `{h:g}`")
 
 
 def _parts(result: Theirs) -> list[Theirs]:

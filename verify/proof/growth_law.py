@@ -64,7 +64,11 @@ Element = tuple[Ring, Poly]
 
 
 class NoLawError(Exception):
-    """There is no growth law; the message says why."""
+    """There is no growth law; `said` is why, with formulas quoted, the message its plain text."""
+
+    def __init__(self, said: str) -> None:
+        self.said = read_prose(said)
+        super().__init__(str(self.said))
 
 
 @dataclass(frozen=True)
@@ -113,12 +117,8 @@ def _plain_law(step: Substep) -> GrowthLaw:
         if zero is True:
             continue
         if zero is None:
-            raise NoLawError(
-                read_prose(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
-            )
+            raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
         if n < 2:
-            raise NoLawError(
-                read_prose(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
-            )
+            raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
         return GrowthLaw(n - 1, (ring, x), None, None)
-    raise NoLawError(read_prose(f"the coefficients of ΔJ vanish up to `h^{_MOST_ORDERS}`"))
+    raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{_MOST_ORDERS}`")

@@ -24,11 +24,12 @@ from verify.integrators.others.tableau import (
     symplecticity,
 )
 from verify.integrators.results import Finding
-from verify.prose import prose
+from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
-_Judgement = tuple[Verdict, str, tuple[tuple[str, ...], ...]]
+_Judgement = tuple[Verdict, Prose, tuple[tuple[str, ...], ...]]
+NONE = Prose()
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
 
 
@@ -54,7 +55,9 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
         )
 
     if isinstance(method, Compared):
-        yield claim("agreement", method.statement, method.compare(), integrator.reproduction)
+        verdict, told, details = method.compare()
+        compared = verdict, prose(told), details
+        yield claim("agreement", method.statement, compared, integrator.reproduction)
         return
     if isinstance(method, PrintedTable):
         assert integrator.order is not None  # noqa: S101 - of printed tables it is always claimed
@@ -81,7 +84,7 @@ def _order(integrator: ReleasedIntegrator) -> _Judgement:
     if isinstance(integrator.method, ExactTableau):
         table = integrator.method
         order = order_of(table.tableau, integrator.order, table.rounded)
-        repaired = ""
+        repaired = NONE
         if order.order < integrator.order and not table.rounded:
             repaired = repair(table.tableau, integrator.order)
         area = symplecticity(table.tableau, table.rounded)
@@ -105,32 +108,35 @@ def _area(integrator: ReleasedIntegrator) -> _Judgement:
 
 
 def of_tableau(
-    claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: str = ""
+    claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: Prose = NONE
 ) -> _Judgement:
     """Of exact coefficients by proof; of floats up to their rounding."""
-    ends = (
-        f"; of h^{found.order + 1}, {found.next} fails by {found.residue:.3g}" if found.next else ""
-    )
+    of_next = prose("; of ", Formula(f"h^{found.order + 1}"), ", ", Formula(found.next))
+    by = prose(" fails by ", Number(f"{found.residue:.3g}"))
+    ends = prose(of_next, by) if found.next else NONE
     symplectic = {True: "it is symplectic", False: "it is not symplectic", None: ""}[area.holds]
-    beside = f". {_NOT_CLAIMED}; {symplectic}: {area.said}" if symplectic else f". {_NOT_CLAIMED}"
+    beside = prose(f". {_NOT_CLAIMED}")
+    if symplectic:
+        beside = prose(beside, f"; {symplectic}: ", area.said)
     if found.order >= claimed:
         more = f", and even order {found.order}" if found.order > claimed else ""
         shown = f"order {claimed}{more} by {found.by}"
         if rounded:
             shown += (
-                f", with residues up to {found.largest:.1e}, as its floats' rounding leaves them"
+                f", with residues up to `{found.largest:.1e}`, as its floats' rounding leaves them"
             )
         verdict = Verdict.MEASURED if rounded else Verdict.PROVED
-        return verdict, f"{shown}{ends}{beside}", ()
+        return verdict, prose(read_prose(shown), ends, beside), ()
     if rounded and found.residue < float(WRONG):
-        said = (
-            f"its floats satisfy {found.next} but for {found.residue:.2e}, more than rounding "
+        said = read_prose(
+            f"its floats satisfy `{found.next}` but for `{found.residue:.2e}`, more than rounding "
             "and less than a wrong method: digits are missing"
         )
         return Verdict.UNDECIDED, said, ()
-    said = f"its order is {found.order}: of h^{found.order + 1}, {found.next} fails by"
-    mend = f". {repaired}" if repaired else ""
-    return Verdict.REFUTED, f"{said} {found.residue:.5g}{mend}{beside}", ()
+    fails = f"`{found.next}` fails by `{found.residue:.5g}`"
+    said = read_prose(f"its order is {found.order}: of `h^{found.order + 1}`, {fails}")
+    mend = prose(". ", repaired) if repaired else NONE
+    return Verdict.REFUTED, prose(said, mend, beside), ()
 
 
 # -- printed tables -------------------------------------------------------------------------------
@@ -140,22 +146,24 @@ def of_printed(found: OrderVerdict, claimed: int, table: PrintedTable) -> _Judge
     """Whether the order can be had within ten units of the digits."""
     count = f"{found.checked} condition{'' if found.checked == 1 else 's'}"
     if found.verdict is Verdict.PROVED:
-        return found.verdict, f"all {count} hold exactly, for its coefficients are no decimals", ()
+        exactly = prose(f"all {count} hold exactly, for its coefficients are no decimals")
+        return found.verdict, exactly, ()
     if found.verdict is Verdict.ENCLOSED:
         assert found.off is not None  # noqa: S101 - of an enclosure it is known
         said = (
             f"exact coefficients that satisfy all {count} lie within {_far(found, table)} of those "
             f"printed to {table.digits} decimals, whose residues are up to {_short(found.largest)}"
         )
-        return found.verdict, said, ()
+        return found.verdict, read_prose(said), ()
     if found.verdict is Verdict.MEASURED:
         small = "as small as the digits make them" if found.digits is None else "of wrong digits"
         said = (
             f"all {count} hold but for residues up to {_short(found.largest)}, {small}; "
             "that exact ones exist nearby is not shown"
         )
-        return found.verdict, said, ()
-    return Verdict.REFUTED, _excluded(found, claimed, table), _moved(found, table)
+        return found.verdict, read_prose(said), ()
+    excluded = read_prose(_excluded(found, claimed, table))
+    return Verdict.REFUTED, excluded, _moved(found, table)
 
 
 def _excluded(found: OrderVerdict, claimed: int, table: PrintedTable) -> str:
@@ -168,8 +176,8 @@ def _excluded(found: OrderVerdict, claimed: int, table: PrintedTable) -> str:
     assert found.failing is not None  # noqa: S101 - it is what excludes more
     rounded = f", and no coefficients within {WITHIN} units of the last digits satisfy it"
     said = (
-        f"its order is {found.order}: of h^{found.failing.order}, {found.failing.name} fails by "
-        f"{_short(found.residue)}{rounded if table.units else ''}"
+        f"its order is {found.order}: of `h^{found.failing.order}`, `{found.failing.name}` fails "
+        f"by {_short(found.residue)}{rounded if table.units else ''}"
     )
     return said + _alone(found, table)
 
@@ -181,7 +189,8 @@ def _alone(found: OrderVerdict, table: PrintedTable) -> str:
         return ""
     would = _rounded(m.value, table.units[m.name])
     return (
-        f". One number alone explains it: {m.name}, printed {m.printed.strip()}, would be {would}"
+        f". One number alone explains it: `{m.name}`, printed `{m.printed.strip()}`, would be "
+        f"`{would}`"
     )
 
 
@@ -189,18 +198,19 @@ def of_digits(found: OrderVerdict, table: PrintedTable) -> _Judgement:
     """Whether all digits are right to one unit of the last."""
     if found.digits is None:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
-        return Verdict.UNDECIDED, said, ()
+        return Verdict.UNDECIDED, prose(said), ()
     if found.off is None:
         said = "no coefficients within one unit of the last printed digits satisfy all conditions"
-        return Verdict.REFUTED, f"{said}; the nearest are not known{_alone(found, table)}", ()
+        told = read_prose(f"{said}; the nearest are not known{_alone(found, table)}")
+        return Verdict.REFUTED, told, ()
     if found.digits:
         said = f"exact coefficients lie within {_far(found, table)} of the printed ones"
-        return Verdict.ENCLOSED, said, ()
+        return Verdict.ENCLOSED, read_prose(said), ()
     said = (
         "no coefficients within one unit of the last printed digits satisfy all conditions; the "
         f"nearest that do are up to {_far(found, table)} away{_alone(found, table)}"
     )
-    return Verdict.REFUTED, said, _moved(found, table)
+    return Verdict.REFUTED, read_prose(said), _moved(found, table)
 
 
 def _moved(found: OrderVerdict, table: PrintedTable) -> tuple[tuple[str, ...], ...]:
@@ -229,13 +239,13 @@ def _far(found: OrderVerdict, table: PrintedTable) -> str:
     assert found.off is not None  # noqa: S101 - the callers have one
     assert found.nearest is not None  # noqa: S101 - and so its numbers
     if found.off < 100:
-        return f"{float(found.off):.2g} units of the last digit"
+        return f"`{float(found.off):.2g}` units of the last digit"
     most = max(abs(table.values[n] - x) for n, x in found.nearest.items())
-    return f"{float(most):.1e}"
+    return f"`{float(most):.1e}`"
 
 
 def _short(x: Fraction) -> str:
-    return f"{float(x):.2e}"
+    return f"`{float(x):.2e}`"
 
 
 # -- floats ---------------------------------------------------------------------------------------
@@ -247,20 +257,26 @@ def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -
     beside = ""
     if area_claimed is None and found.area_preserving is False:
         beside = f". {_NOT_CLAIMED}, and area is not preserved"
-    notes = "".join(f". {note[0].upper()}{note[1:]}" for note in found.notes[:1])
+    notes = joined("", (prose(". ", _capital(note)) for note in found.notes[:1]))
     if known and (order is None or order >= claimed):
-        return Verdict.MEASURED, f"{found.reason}{beside}{notes}", ()
+        return Verdict.MEASURED, prose(found.reason, beside, notes), ()
     if known and order is not None:
-        return Verdict.REFUTED, f"{found.reason}{notes}", ()
-    return Verdict.UNDECIDED, f"{found.reason}{notes}", ()
+        return Verdict.REFUTED, prose(found.reason, notes), ()
+    return Verdict.UNDECIDED, prose(found.reason, notes), ()
+
+
+def _capital(note: Prose) -> Prose:
+    """With a capital, where it opens with a text."""
+    first, *rest = note.parts
+    return prose(f"{first[0].upper()}{first[1:]}" if type(first) is str else first, *rest)
 
 
 def of_measured_area(found: Finding) -> _Judgement:
     """An area defect above the probe's own error refutes; none that is seen is MEASURED."""
-    error = "unknown" if found.probe_error is None else f"{found.probe_error:.1e}"
+    error = "unknown" if found.probe_error is None else f"`{found.probe_error:.1e}`"
     if found.area_preserving:
-        return Verdict.MEASURED, f"no area defect above the probe's error {error}", ()
+        return Verdict.MEASURED, read_prose(f"no area defect above the probe's error {error}"), ()
     if found.area_preserving is False and found.largest is not None:
-        said = f"|det J − 1| is up to {found.largest:.3g}, where the probe's error is {error}"
-        return Verdict.REFUTED, f"{said}; {found.reason}", ()
+        said = f"|det J − 1| is up to `{found.largest:.3g}`, where the probe's error is {error}"
+        return Verdict.REFUTED, prose(read_prose(said), "; ", found.reason), ()
     return Verdict.UNDECIDED, found.reason, ()

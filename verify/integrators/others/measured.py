@@ -11,6 +11,7 @@ from verify.integrators.others.integrator import FloatStep
 from verify.integrators.probe import measured
 from verify.integrators.results import Finding
 from verify.integrators.step import Step, StepError, last_line
+from verify.prose import prose, read_prose
 from verify.verdict import Verdict
 
 # A library may raise anything, and leave the program too.
@@ -23,8 +24,8 @@ _NO_SCHEME = ("frozen", "ignores h", "not a function")
 
 def _undecided(found: Finding, first: float, last: float) -> Finding:
     """Of a power that is seen over a short stretch only, as one may be in passing."""
-    said = f"a power of h is seen from h = {first:.2g} to {last:.2g} only, too short a stretch"
-    reason = f"{said}; {found.reason.partition('; ')[2]}"
+    said = f"a power of h is seen from h = `{first:.2g}` to `{last:.2g}` only, too short a stretch"
+    reason = prose(read_prose(said), "; ", found.reason.partition("; ")[2])
     return replace(
         found, verdict=Verdict.UNDECIDED, reason=reason, convergence_order=None, order_decided=False
     )
@@ -42,7 +43,8 @@ def finding(method: FloatStep) -> Finding:
         fatal = next((fault for fault in faults if fault.fatal), None)
         if fatal is not None:
             wrong = fatal.name in _NO_SCHEME
-            return Finding(Verdict.REFUTED if wrong else Verdict.UNDECIDED, fatal.text, "calls")
+            verdict = Verdict.REFUTED if wrong else Verdict.UNDECIDED
+            return Finding(verdict, prose(fatal.text), "calls")
         found = measured(step, hamiltonian, points, "floats", method.ladder)
         told = of_measured(found, step, hamiltonian, points)
         seen = found.distance
@@ -50,5 +52,5 @@ def finding(method: FloatStep) -> Finding:
             return _undecided(told, seen.first, seen.last)
         return told
     except FAILURES as error:
-        said = str(error) if isinstance(error, StepError) else last_line(error)
-        return Finding(Verdict.UNDECIDED, f"it cannot be measured: {said}", "calls")
+        said = error.said if isinstance(error, StepError) else last_line(error)
+        return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", said), "calls")

@@ -19,6 +19,7 @@ from itertools import combinations
 import sympy
 
 from verify.algebra.ring import Poly
+from verify.prose import Formula, Number, Prose, prose, read_prose
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
 from verify.schemes.tree_conditions import (
     MOST_ORDER,
@@ -128,13 +129,14 @@ class Symplecticity:
     """`holds`: None where it is not decided; `said`: what shows it."""
 
     holds: bool | None
-    said: str
+    said: Prose
 
 
 def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplecticity:
     """Whether the method is symplectic for every H in any dimension."""
     if all(c.holds for c in tableau.area_conditions()):
-        return Symplecticity(True, "b_i a_ij + b_j a_ji = b_i b_j holds exactly for all i, j")
+        said = read_prose("`b_i a_ij + b_j a_ji = b_i b_j` holds exactly for all i, j")
+        return Symplecticity(True, said)
     least = float(WRONG) if rounded else 0.0
     weights = Weights(tableau.numbers)
     for u, v in _pairs():
@@ -146,8 +148,9 @@ def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplectic
         if size > least:
             left = f"{condition_text((*u, v))} + {condition_text((*v, u))}"
             right = f"({condition_text(u) if u else 'b·1'})({condition_text(v) if v else 'b·1'})"
-            return Symplecticity(False, f"{left} = {right} fails by {size:.3g}")
-    return Symplecticity(None, "no pair of trees that was looked at fails")
+            said = prose(Formula(f"{left} = {right}"), " fails by ", Number(f"{size:.3g}"))
+            return Symplecticity(False, said)
+    return Symplecticity(None, prose("no pair of trees that was looked at fails"))
 
 
 def _pairs() -> Iterator[tuple[Tree, Tree]]:
@@ -159,14 +162,14 @@ def _pairs() -> Iterator[tuple[Tree, Tree]]:
                         yield u, v
 
 
-def repair(tableau: ImplicitTableau, order: int) -> str:
+def repair(tableau: ImplicitTableau, order: int) -> Prose:
     """A sentence that names the two entries, their sum kept, and what they would have to be.
 
-    "" where no such pair makes it that order, or several do. Of rational coefficients.
+    Empty where no such pair makes it that order, or several do. Of rational coefficients.
     """
     numbers = [x for row in (*tableau.rows, tableau.weights) for x in row]
     if not all(x.is_Rational for x in numbers):
-        return ""
+        return Prose()
     found = []
     for i in range(tableau.stages):
         for j, k in combinations(range(i), 2):
@@ -174,12 +177,12 @@ def repair(tableau: ImplicitTableau, order: int) -> str:
             if changed is not None and order_of(changed, order).order >= order:
                 found.append((i, j, k, changed))
     if len(found) != 1:
-        return ""
+        return Prose()
     ((i, j, k, changed),) = found
     before, after = tableau.rows[i], changed.rows[i]
-    return (
-        f"With a_{i + 1}{j + 1}, a_{i + 1}{k + 1} = {after[j]}, {after[k]} in place of "
-        f"{before[j]}, {before[k]} its order is {order}"
+    return read_prose(
+        f"With `a_{i + 1}{j + 1}`, `a_{i + 1}{k + 1}` = `{after[j]}`, `{after[k]}` in place of "
+        f"`{before[j]}`, `{before[k]}` its order is {order}"
     )
 
 

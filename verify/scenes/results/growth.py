@@ -2,11 +2,11 @@
 
 from typing import Literal
 
-from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 
 
-class AverageResult(Frozen):
+class AverageResult(WithProse):
     """The growth law of Λ on one orbit: see `verify.proof.growth_law`.
 
     `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas;
@@ -25,7 +25,7 @@ class AverageResult(Frozen):
     g: str
     potential: str
     orbit: Literal["libration", "rotation", "equilibrium", "undecided"]
-    reason: str
+    reason: Said
     average: Value | None
     period: Value | None
     error_kind: Literal["enclosed", "estimated"]

@@ -1,6 +1,7 @@
 """What was found of regions that are carried by maps: areas, their changes, and curves to draw."""
 
-from verify.scenes.frozen import Frozen, Seconds
+from verify.prose import Prose
+from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 
 EXACT_FLOW = "exact flow"
 
@@ -28,7 +29,7 @@ class DrawnOutline(Frozen):
     points: str
 
 
-class FlowImage(Frozen):
+class FlowImage(WithProse):
     """A shape after `steps` steps of one map, the first outline being that of its region.
 
     `map` is a scheme's name or `EXACT_FLOW`. `area_change` and `probe_error` are the region's;
@@ -43,7 +44,7 @@ class FlowImage(Frozen):
     steps: int
     time: str
     area_preserving: bool | None
-    problem: str = ""
+    problem: Said = Prose()
     area_change: str | None = None
     probe_error: str | None = None
     mean_lambda: str | None = None

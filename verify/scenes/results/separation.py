@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Literal
 
 from verify.notebook import html_table
-from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 
 _PARTS = {
@@ -44,13 +44,13 @@ class PartsAt(Frozen):
     product: str
 
 
-class GrowthResult(Frozen):
+class GrowthResult(WithProse):
     """A `verify.studies.separation.growth.Growth`."""
 
     exponent: str | None
     standard_error: str | None
     name: Literal["random walk", "drift", "undecided"]
-    reason: str
+    reason: Said
     first: int
     last: int
     points: int

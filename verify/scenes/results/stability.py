@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import Frozen, Said, WithProse
 
 Kind = Literal[
     "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",
@@ -14,7 +14,7 @@ Kind = Literal[
 KINDS: tuple[Kind, ...] = Kind.__args__  # type: ignore[attr-defined]
 
 
-class StabilityResult(Frozen):
+class StabilityResult(WithProse):
     """One run's verdict, which says what it is due to; `id` is the run's name in its scene.
 
     `step`: where it leaves its bounds, parts from the same scheme in other arithmetic, or leaves
@@ -38,8 +38,8 @@ class StabilityResult(Frozen):
     energy_error: str | None = None
     h_omega: str | None = None
     linear_limit: str | None = None
-    exact_orbit: str
-    detail: str
+    exact_orbit: Said
+    detail: Said
 
     @property
     def verdict(self) -> str:
@@ -51,7 +51,7 @@ class StabilityResult(Frozen):
         return self.kind
 
 
-class LargestStepResult(Frozen):
+class LargestStepResult(WithProse):
     """The largest step size with bounded motion, measured, against linear theory.
 
     `bounded`: the motion stays bounded with it; `unbounded`: with this next one, a thousandth
@@ -69,8 +69,8 @@ class LargestStepResult(Frozen):
     unbounded: str | None
     linear: str | None
     h_omega: str | None
-    exact_orbit: str
-    detail: str
+    exact_orbit: Said
+    detail: Said
 
 
 class MapCell(Frozen):

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
@@ -116,7 +116,7 @@ class RatioResult(Frozen):
     most: str
 
 
-class ComparisonResult(Frozen):
+class ComparisonResult(WithProse):
     """Two schemes at equal run time `seconds`, over run times `first` … `last` that both cover.
 
     `error` and `area` are None where there is nothing to compare, and `sentence` says it all.
@@ -129,7 +129,7 @@ class ComparisonResult(Frozen):
     last: str | None
     error: RatioResult | None
     area: RatioResult | None
-    sentence: str
+    sentence: Said
 
 
 class WorkPrecisionResult(Frozen):

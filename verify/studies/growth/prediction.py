@@ -28,6 +28,7 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
+from verify.prose import Prose
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, PredictionResult
 from verify.scenes.results.run import RunResult
@@ -53,12 +54,12 @@ def average_of(
     start = rational(p, "p"), rational(q, "q")
     law: GrowthLaw | None = None
     found: Average | None = None
-    reason = ""
+    reason = Prose()
     try:
         law = growth_law(hamiltonian, scheme)
         found = average(hamiltonian, law.g, start, digits)
     except (NoLawError, NoFlowError) as error:
-        reason = str(error)
+        reason = error.said
     period = found.period if found else None
     at_rest = found is not None and period is None
     return AverageResult(

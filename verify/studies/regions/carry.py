@@ -24,6 +24,7 @@ from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import LeftRangeError
+from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage
 from verify.scenes.shapes.outline import Outline, Shape
 from verify.schemes import get
@@ -114,7 +115,7 @@ def carry(
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
                     found |= _distance(hamiltonian, by.time, carried)
     except (LeftRangeError, NoFlowError, NoAreaError) as error:
-        found = {"problem": str(error)}
+        found = {"problem": error.said if isinstance(error, NoFlowError) else prose(str(error))}
     return FlowImage(
         map=map_name,
         steps=steps,
@@ -199,16 +200,17 @@ def _areas(
     }
 
 
-def _problem(region: Measured, preserves: bool) -> str:
+def _problem(region: Measured, preserves: bool) -> Prose:
     """Why what was measured tells nothing; empty where it does."""
     if not preserves and not _is_sharp(region):
-        return (
-            f"the probe's error {decimal(region.error, 2)} is not {BELOW} times below the change "
-            f"of area {decimal(region.change, 2)}"
+        return read_prose(
+            f"the probe's error `{decimal(region.error, 2)}` is not {BELOW} times below the change "
+            f"of area `{decimal(region.change, 2)}`"
         )
     if BELOW * region.error > max(Fraction(1), abs(region.change)):
-        return f"the image is not resolved: its area is known but for {decimal(region.error, 2)}"
-    return ""
+        error = Number(decimal(region.error, 2))
+        return prose("the image is not resolved: its area is known but for ", error)
+    return Prose()
 
 
 def _outlines(

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from verify.arithmetic.exact import text
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import PLAIN, Frozen
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import DrawnOutline, FlowImage, FlowResult
 from verify.scenes.scene import Scene
@@ -59,7 +59,7 @@ def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
 
 
 def _without_points(image: FlowImage) -> dict[str, Any]:
-    data = image.model_dump(mode="json")
+    data = image.model_dump(mode="json", context=PLAIN)
     for outline in data["outlines"]:
         del outline["points"]
     return data

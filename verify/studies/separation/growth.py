@@ -28,6 +28,7 @@ from fractions import Fraction
 from typing import Literal
 
 from verify.arithmetic.arb import slope
+from verify.prose import Number, Prose, prose
 
 Name = Literal["random walk", "drift", "undecided"]
 _FIRST = 8  # values that a maximum is taken of, at least
@@ -51,7 +52,7 @@ class Growth:
     exponent: float | None
     standard_error: float | None
     name: Name
-    reason: str
+    reason: Prose
     first: int
     last: int
     points: int
@@ -82,7 +83,7 @@ def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) ->
     first, last = (marks[chosen[0]], marks[chosen[-1]]) if chosen else (0, 0)
     reach = math.log(last / first) if chosen else 0.0
     if len(chosen) < _LEAST or reach < _DECADES * math.log(10):
-        reason = (
+        reason = prose(
             f"{len(chosen)} checkpoints above noise over {reach / math.log(10):.1f} decades of N; "
             f"a fit takes {_LEAST} over {_DECADES}"
         )
@@ -92,7 +93,8 @@ def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) ->
     held = [at for at in _NAMES if abs(found - at) <= _WIDTH * error]
     name = _NAMES[held[0]][0] if len(held) == 1 else "undecided"
     holds = " and ".join(_NAMES[at][1] for at in held) or "neither ½ nor 1"
-    reason = f"{found:.3f} ± {_WIDTH * error:.3f} holds {holds}"
+    width = Number(f"{_WIDTH * error:.3f}")
+    reason = prose(Number(f"{found:.3f}"), " ± ", width, f" holds {holds}")
     return Growth(found, error, name, reason, first, last, len(chosen))
 
 

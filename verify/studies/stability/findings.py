@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import PLAIN, Frozen
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.scene import Scene
 from verify.studies.stability.plan import largest_step_tasks, stability_map_tasks, stability_tasks
@@ -22,10 +22,11 @@ class StabilityFindings:
         """As a report's JSON has them, under `cases`, `largest_steps` and `maps`."""
         return {
             "cases": [
-                {"id": run.id, "verdict": run.verdict} | run.model_dump(mode="json", exclude={"id"})
+                {"id": run.id, "verdict": run.verdict}
+                | run.model_dump(mode="json", exclude={"id"}, context=PLAIN)
                 for run in self.runs
             ],
-            "largest_steps": [x.model_dump(mode="json") for x in self.largest_steps],
+            "largest_steps": [x.model_dump(mode="json", context=PLAIN) for x in self.largest_steps],
             "maps": [x.model_dump(mode="json") for x in self.maps],
         }
 

@@ -15,6 +15,7 @@ from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
 from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Prose, prose
 from verify.studies.stability.linear import linear_stability
 from verify.studies.stability.trail import Run
 from verify.studies.stability.verdict_on_run import Judgement, bounded, judge
@@ -55,7 +56,7 @@ class LargestStep:
     bounded: Fraction | None
     unbounded: Fraction | None
     linear: Fraction | None
-    detail: str
+    detail: Prose
 
 
 def largest_step(
@@ -70,7 +71,7 @@ def largest_step(
     omega, limit = frequency(orbit), linear_limit(scheme)
     linear = limit / omega if limit is not None and omega else None
     if orbit.kind == "escapes":
-        return LargestStep(orbit, None, None, linear, f"the exact solution {orbit.summary}")
+        return LargestStep(orbit, None, None, linear, prose("the exact solution ", orbit.summary))
 
     def stays(h: Fraction) -> bool:
         steps = time // h
@@ -79,13 +80,15 @@ def largest_step(
     middle = linear or (1 / omega if omega else time / 100)
     good, bad = _bracket(stays, min(middle, time / 2), time)
     if bad is None:
-        return LargestStep(orbit, good, None, linear, "bounded with every step size looked at")
+        everywhere = prose("bounded with every step size looked at")
+        return LargestStep(orbit, good, None, linear, everywhere)
     if good is None:
-        return LargestStep(orbit, None, bad, linear, "not bounded with any step size looked at")
+        nowhere = prose("not bounded with any step size looked at")
+        return LargestStep(orbit, None, bad, linear, nowhere)
     while bad / good > _FINER:
         middle = _short((good + bad) / 2)
         good, bad = (middle, bad) if stays(middle) else (good, middle)
-    return LargestStep(orbit, good, bad, linear, "")
+    return LargestStep(orbit, good, bad, linear, Prose())
 
 
 def _bracket(

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import decimal, plain, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import (
     LargestStepResult,
     MapCell,
@@ -38,14 +39,15 @@ def run_result(run: Run) -> StabilityResult:
     )
 
 
-def _against_theory(found: Judgement, h_omega: Fraction, limit: Fraction | None) -> str:
+def _against_theory(found: Judgement, h_omega: Fraction, limit: Fraction | None) -> Prose:
     """What linear theory says of a scheme that is to blame."""
     if found.kind != "unstable: scheme" or limit is None or not h_omega:
-        return ""
+        return Prose()
     if limit == 0:
-        return "; in linear theory it is stable for no step size"
+        return prose("; in linear theory it is stable for no step size")
     side = "beyond" if h_omega > limit else "within"
-    return f"; hω = {plain(h_omega, 3)} is {side} its linear limit {plain(limit, 3)}"
+    sizes = Number(plain(h_omega, 3)), Number(plain(limit, 3))
+    return prose("; hω = ", sizes[0], f" is {side} its linear limit ", sizes[1])
 
 
 def largest_step_result(

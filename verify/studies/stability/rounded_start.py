@@ -4,6 +4,7 @@ from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import functions_at
+from verify.prose import Number, Prose, prose, read_prose
 from verify.studies.stability.trail import Run
 
 _DIGITS = 120
@@ -11,20 +12,21 @@ _NEWTON = 12
 _NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
 
 
-def describe_rounded_start(run: Run) -> str:
+def describe_rounded_start(run: Run) -> Prose:
     """How float64 rounds the initial value, and what it cannot tell it from; may be empty."""
-    told = ""
+    told = Prose()
     for name in ("q", "p"):
         given = getattr(run, name)
         gap = abs(Fraction(float(given)) - given)
         if gap:
-            told += f"; it rounds {name}0 by {float(gap):.1e}"
+            told += prose(f"; it rounds {name}0 by ", Number(f"{float(gap):.1e}"))
     rest = nearest_equilibrium(run)
     if rest is not None and all(
         float(x) == float(y) for x, y in zip(rest, (run.p, run.q), strict=True)
     ):
         apart = max(abs(x - y) for x, y in zip(rest, (run.p, run.q), strict=True))
-        told += f" and cannot tell z0 from an equilibrium, which is {float(apart):.1e} away"
+        far = f"`{float(apart):.1e}`"
+        told += read_prose(f" and cannot tell z0 from an equilibrium, which is {far} away")
     return told
 
 

@@ -22,6 +22,7 @@ from fractions import Fraction
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.flows.orbit import ExactOrbit
+from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import Kind
 from verify.schemes import get
 from verify.studies.stability.energy_drift import drift_of, too_short
@@ -50,7 +51,7 @@ class Judgement:
     """A verdict with its evidence; see `StabilityResult`."""
 
     kind: Kind
-    detail: str
+    detail: Prose
     orbit: ExactOrbit
     step: int | None = None
     rate: Fraction | None = None
@@ -61,17 +62,19 @@ def judge(run: Run) -> Judgement:
     """The verdict on one run."""
     motion = RunMotion(run)
     if motion.orbit.kind == "escapes":
-        return Judgement("escapes", f"the exact solution {motion.orbit.summary}", motion.orbit)
+        told = prose("the exact solution ", motion.orbit.summary)
+        return Judgement("escapes", told, motion.orbit)
     precise, _ = motion.precise
     if not motion.stays(precise):
         if motion.orbit.kind == "unknown":
-            told = f"the exact solution, to be held against, is not known: {motion.orbit.summary}"
+            unknown = "the exact solution, to be held against, is not known: "
+            told = prose(unknown, motion.orbit.summary)
             return Judgement("undecided", told, motion.orbit)
         return _scheme(motion)
     if not motion.together(motion.as_far, precise):
         return _not_the_scheme(motion)
     if not motion.stays(motion.float64):
-        told = (
+        told = prose(
             f"float64 leaves its bounds beyond the {precise.steps} steps of the run it is held to"
         )
         return Judgement("undecided", told, motion.orbit)
@@ -93,12 +96,12 @@ def _scheme(motion: RunMotion) -> Judgement:
     again, arithmetic = follow_precisely(motion.run, digits)
     step = first_step(motion.run, again, arithmetic, motion.beyond)
     if step is None:
-        told = f"{motion.digits} and {digits} digits differ in whether the orbit stays"
+        told = prose(f"{motion.digits} and {digits} digits differ in whether the orbit stays")
         return Judgement("undecided", told, motion.orbit)
     solved = get(motion.run.scheme).step_map(motion.run.hamiltonian).implicit
     unsolved = solved and not again.finished and step == again.done + 1
     does = "finds no solution of its equations" if unsolved else "leaves the bounds"
-    told = f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits"
+    told = prose(f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits")
     if not motion.float64.finished:
         ends = "goes no further" if solved else "is out of its range"
         told += f"; float64 {ends} from step {motion.float64.done + 1} on"
@@ -111,18 +114,18 @@ def _not_the_scheme(motion: RunMotion) -> Judgement:
     run, here = replace(motion.run, steps=precise.steps), motion.as_far
     confirmed = _confirmed(motion, run, precise)
     if confirmed is None:
-        told = f"up to {_MOST_DIGITS} digits no two precisions give the same orbit"
+        told = prose(f"up to {_MOST_DIGITS} digits no two precisions give the same orbit")
         return Judgement("undecided", told, motion.orbit)
     digits, precise, arithmetic = confirmed
     if not motion.stays(precise):  # fewer digits did, by rounding
         step = first_step(run, precise, arithmetic, motion.beyond)
-        told = f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits"
+        told = prose(f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits")
         return Judgement("unstable: scheme", told, motion.orbit, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
     step = first_apart((run, here, float64()), (run, precise, arithmetic), motion.apart)
     at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
-    told = f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits"
+    told = prose(f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits")
     told += describe_rounded_start(motion.run)
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
@@ -155,23 +158,23 @@ def _range_alone(motion: RunMotion) -> bool:
 
 def _out_of_range(motion: RunMotion, here: Trail) -> Judgement:
     if here.finished:
-        told = _vanished(motion) or "numbers vanish in float64 that wider exponents keep"
+        told = _vanished(motion) or prose("numbers vanish in float64 that wider exponents keep")
         return Judgement("underflow", told, motion.orbit)
-    told = (
+    told = prose(
         "a number is beyond float64's range; with 53 bits and wider exponents the run stays within "
         "its bounds"
     )
     return Judgement("overflow", told, motion.orbit, step=here.done + 1)
 
 
-def _vanished(motion: RunMotion) -> str:
+def _vanished(motion: RunMotion) -> Prose:
     """What underflow has taken of a bounded run; empty where that is nothing.
 
     p or q as a whole, either of which may be small beside the other one.
     """
     seen = [abs(x) for point in motion.float64.points for x in (point.p, point.q)]
     if min((x for x in (*seen, *motion.orbit.reach) if x), default=_SMALL) >= _SMALL:
-        return ""
+        return Prose()
     run = replace(motion.run, steps=min(motion.run.steps, _RANGE_STEPS))
     wide, own = follow(run, mpfr.at_bits(_FLOAT_BITS)), follow(run, float64())
     for name in ("q", "p"):
@@ -180,15 +183,16 @@ def _vanished(motion: RunMotion) -> str:
         size = max(map(abs, true))
         gap = max(abs(x - y) for x, y in zip(true, kept, strict=False))
         if gap > _LOST * size:
-            share = "all" if not any(kept) else f"{float(gap / size):.1e}"
-            return f"{share} of {name} vanishes in float64; 53 bits with wider exponents keep it"
-    return ""
+            share = "all" if not any(kept) else Number(f"{float(gap / size):.1e}")
+            rest = f" of {name} vanishes in float64; 53 bits with wider exponents keep it"
+            return prose(share, rest)
+    return Prose()
 
 
 def _bounded(motion: RunMotion) -> Judgement:
     precise, _ = motion.precise
     rate = drift_of(motion)
-    told = f"bounded over all {motion.run.steps} steps"
+    told = prose(f"bounded over all {motion.run.steps} steps")
     if precise.steps < motion.run.steps:
         told += f", of which {precise.steps} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"

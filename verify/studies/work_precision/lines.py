@@ -16,6 +16,7 @@ from decimal import Decimal
 from itertools import combinations, pairwise
 
 from verify.arithmetic.arb import slope
+from verify.prose import read_prose
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import (
     ComparisonResult,
@@ -144,10 +145,11 @@ def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
     errors = _places(one, "error", scale), _places(other, "error", scale)
     span = _overlap(errors)
     if span is None:
-        why = f"{one.name} and {other.name} have no run time in common: nothing is compared."
+        names = f"{_called(one)} and {_called(other)}"
+        why = f"{names} have no run time in common: nothing is compared."
         return ComparisonResult(
             one=one.name, other=other.name, seconds=None, first=None, last=None, error=None,
-            area=None, sentence=why,
+            area=None, sentence=read_prose(why),
         )  # fmt: skip
     error = _ratio(*errors, span)
     middle = sum(span) / 2
@@ -166,7 +168,7 @@ def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
         last=_few(10 ** span[1]),
         error=error,
         area=area,
-        sentence=" ".join(parts),
+        sentence=read_prose(" ".join(parts)),
     )
 
 
@@ -204,18 +206,23 @@ def _at(places: list[Place], x: float) -> float:
     return places[0][1] if x <= places[0][0] else places[-1][1]
 
 
+def _called(line: WorkLine) -> str:
+    """Its name, quoted where that is the formulas of a user's scheme."""
+    return f"`{line.name}`" if "=" in line.name else line.name
+
+
 def _error_sentence(
     one: WorkLine, other: WorkLine, middle: float, span: Place, ratio: RatioResult
 ) -> str:
-    times = f"{_few(10 ** span[0])} to {_few(10 ** span[1])} s"
+    times = f"`{_few(10 ** span[0])}` to `{_few(10 ** span[1])}` s"
     return (
-        f"At equal run time ({_few(10**middle)} s) the solution error of "
-        f"{_smaller(one.name, other.name, ratio, times)}."
+        f"At equal run time (`{_few(10**middle)}` s) the solution error of "
+        f"{_smaller(_called(one), _called(other), ratio, times)}."
     )
 
 
 def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:
-    exact = [line.name for line in (one, other) if line.area_preserving]
+    exact = [_called(line) for line in (one, other) if line.area_preserving]
     if len(exact) == 2:
         return f"Both preserve area exactly: {exact[0]} and {exact[1]} have ΔJ ≡ 0 by proof."
     if exact:
@@ -223,12 +230,12 @@ def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, sc
         keeps = other if other.area_preserving else one
         errors = _sizes(x.lam for x in within_orbit(rest.points, scale))
         rounded = _sizes(x.lam_plain for x in within_orbit(keeps.points, scale))
-        seen = f", where {rest.name} has |Λ| of {_span(errors)}" if errors else ""
+        seen = f", where {_called(rest)} has |Λ| of {_span(errors)}" if errors else ""
         shown = f"; what float64’s rounding shows of it is {_span(rounded)}" if rounded else ""
         return f"In area {exact[0]} makes no error (ΔJ ≡ 0 is proved){seen}{shown}."
     if ratio is None:
         return "In area there is nothing to compare."
-    return f"In area, |Λ| of {_smaller(one.name, other.name, ratio, '')}."
+    return f"In area, |Λ| of {_smaller(_called(one), _called(other), ratio, '')}."
 
 
 def _sizes(values: Iterable[Value | None]) -> list[float]:
@@ -236,7 +243,7 @@ def _sizes(values: Iterable[Value | None]) -> list[float]:
 
 
 def _span(sizes: Sequence[float]) -> str:
-    low, high = _few(sizes[0]), _few(sizes[-1])
+    low, high = f"`{_few(sizes[0])}`", f"`{_few(sizes[-1])}`"
     return low if low == high else f"{low} to {high}"
 
 
@@ -249,12 +256,12 @@ def _smaller(one: str, other: str, ratio: RatioResult, times: str) -> str:
     over = f" over {times}" if times else ""
     if most <= ALIKE and least >= 1 / ALIKE:
         return f"{one} is that of {other} (both within {ALIKE - 1:.0%} of each other{over})"
-    said = f"{one} is {_few(at)} times smaller than that of {other}"
+    said = f"{one} is `{_few(at)}` times smaller than that of {other}"
     if least >= 1:
-        return f"{said} ({_few(least)} to {_few(most)} times{over})"
+        return f"{said} (`{_few(least)}` to `{_few(most)}` times{over})"
     return (
         f"{said}, but which of the two is smaller changes{over} "
-        f"({_few(most)} times smaller to {_few(1 / least)} times larger)"
+        f"(`{_few(most)}` times smaller to `{_few(1 / least)}` times larger)"
     )
 
 
