@@ -153,7 +153,7 @@ def test_what_needs_a_closed_form_is_refused_in_one_line(what: str) -> None:
 
 
 def test_a_proof_task_has_no_closed_form_and_is_done() -> None:
-    from verify.studies.plan import ProofTask
+    from verify.studies.proofs.one import ProofTask
 
     for name in IMPLICIT:
         task = ProofTask(hamiltonian="p**2*q**2/2 + p**3", parameters={}, scheme=name)

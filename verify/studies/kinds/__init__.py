@@ -1,0 +1,16 @@
+"""The studies, one a file, each with its `STUDY`."""
+
+from verify.discovery import Catalogue
+from verify.execution.study import Study
+
+_FILES = Catalogue(__name__, __path__)
+
+
+def studies() -> list[Study]:
+    """All of them, in the order in which their tasks are asked for.
+
+    >>> [part.what for part in studies()[1].sections]
+    ['proofs for every H']
+    """
+    found: list[Study] = [_FILES.module(name).STUDY for name in _FILES.names]
+    return sorted(found, key=lambda study: study.order)

@@ -1,0 +1,6 @@
+"""The paper's four criteria, which are judged from proofs and the grid's runs."""
+
+from verify.execution.study import Section, Study
+
+_SECTION = Section(5, "criteria 1–4", "the scene names no criteria", lambda scene: scene.criteria)
+STUDY = Study(6, (_SECTION,))

@@ -1,0 +1,34 @@
+"""What holds of the scene's schemes for every H."""
+
+from typing import Any
+
+from verify.execution.plan import Plan
+from verify.execution.study import Results, Section, Study, called
+from verify.scenes.results.proof import EveryResult
+from verify.scenes.scene import Scene
+from verify.schemes import get
+from verify.studies.proofs.every import EveryTask
+
+
+def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
+    if not scene.every_hamiltonian:
+        return
+    if get(scheme).every_h is None:
+        plan.leave_out(f"{called(scene)}: {scheme} for every H", "it is given for one H")
+    else:
+        plan.need(EveryTask(scheme=scheme), f"{called(scene)}: what holds for every H")
+
+
+def _found(scene: Scene, results: Results) -> dict[str, Any]:
+    found = (results.get(EveryTask(scheme=name).key) for name in scene.schemes)
+    asked = scene.every_hamiltonian
+    return {"every": tuple(r for r in found if asked and isinstance(r, EveryResult))}
+
+
+_SECTION = Section(
+    0,
+    "proofs for every H",
+    "the scene does not say `every_hamiltonian = true`",
+    lambda scene: scene.every_hamiltonian,
+)
+STUDY = Study(1, (_SECTION,), need_of_scheme=_need, found=_found)

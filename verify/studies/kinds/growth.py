@@ -1,0 +1,64 @@
+"""Λ of the grid's runs against its growth law."""
+
+from fractions import Fraction
+from typing import Any
+
+from verify.execution.plan import Plan
+from verify.execution.study import Results, Section, Study, called
+from verify.scenes.results.growth import AverageResult, GrowthLawResult
+from verify.scenes.scene import Scene
+from verify.studies.growth.task import GrowthTask
+from verify.studies.kinds.grid import grid_runs
+
+_DIGITS = 30  # of the time average
+
+
+def growth_task(scene: Scene, scheme: str, start: int) -> GrowthTask:
+    """The growth law for the index of an initial value of the grid."""
+    assert scene.grid is not None  # noqa: S101 - asked for by grids only
+    at = scene.grid.initial_values[start]
+    return GrowthTask(
+        **scene.hamiltonian_fields(), scheme=scheme, q=at.q, p=at.p, digits=_DIGITS
+    )  # fmt: skip
+
+
+def growth_laws(scene: Scene, scheme: str, results: Results) -> list[AverageResult]:
+    """The growth laws of the grid's orbits, by initial value; none where none were asked for."""
+    starts = range(len(scene.grid.initial_values)) if scene.grid else ()
+    found = [results.get(growth_task(scene, scheme, start).key) for start in starts]
+    return [r for r in found if isinstance(r, AverageResult)]
+
+
+def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
+    if scene.grid is None or not scene.grid.growth:
+        return
+    if preserves:
+        why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
+        plan.leave_out(f"{called(scene)}: growth law of Λ for {scheme}", why)
+        return
+    for start in range(len(scene.grid.initial_values)):
+        plan.need(growth_task(scene, scheme, start), f"{called(scene)}: growth law of Λ")
+
+
+def _found(scene: Scene, results: Results) -> dict[str, Any]:
+    if scene.grid is None or not scene.grid.growth:
+        return {"growth_explains": scene.grid.growth_explains if scene.grid else ""}
+    from verify.studies.growth.prediction import predictions
+
+    exact, found = scene.exact_hamiltonian(), []
+    for scheme in scene.schemes:
+        runs = grid_runs(scene, scheme, results)
+        for law in growth_laws(scene, scheme, results):
+            own = [run for run in runs if (run.q, run.p) == (law.q, law.p)]
+            own.sort(key=lambda run: Fraction(run.step_size))
+            found.append(GrowthLawResult(law=law, predictions=predictions(exact, law, own)))
+    return {"growth_laws": tuple(found), "growth_explains": scene.grid.growth_explains}
+
+
+_SECTION = Section(
+    3,
+    "Λ against its growth law",
+    "the scene has no [grid] that says `growth = true`",
+    lambda scene: scene.grid and scene.grid.growth,
+)
+STUDY = Study(3, (_SECTION,), need_of_scheme=_need, found=_found)

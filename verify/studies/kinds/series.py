@@ -1,0 +1,54 @@
+"""Thinned series of single runs, for plots over time."""
+
+from collections.abc import Iterator
+
+from verify.arithmetic.exact import text
+from verify.execution.plan import Plan
+from verify.execution.study import Results, Section, Study, called
+from verify.runs.task import RunTask
+from verify.scenes.results.run import RunResult
+from verify.scenes.scene import Scene
+from verify.scenes.values import CLOSED_FORM
+
+
+def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
+    series = scene.series[index]
+    at = series.initial_value
+    return RunTask(
+        **scene.hamiltonian_fields(), scheme=scheme,
+        step_size=series.step_size, steps=series.count, q=at.q, p=at.p,
+        arithmetic=series.arithmetic, digits=series.digits, observables=CLOSED_FORM,
+        points=series.points,
+    )  # fmt: skip
+
+
+def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
+    for index, series in enumerate(scene.series):
+        what = f"{called(scene)}: series of {scheme} at h = {text(series.step_size)}"
+        if preserves:
+            plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
+        else:
+            plan.need(series_task(scene, scheme, index), f"{what}, for its plot")
+
+
+def _runs(scene: Scene, results: Results) -> Iterator[RunResult]:
+    """The series that were run, each with what the scene says it repeats."""
+    for scheme in scene.schemes:
+        for index, asked in enumerate(scene.series):
+            run = results.get(series_task(scene, scheme, index).key)
+            if isinstance(run, RunResult):
+                yield run.model_copy(update={"source": asked.source})
+
+
+_SECTION = Section(
+    4,
+    "trajectories and plots over time",
+    "the scene has no [[series]]",
+    lambda scene: scene.series,
+)
+STUDY = Study(
+    5,
+    (_SECTION,),
+    need_of_scheme=_need,
+    found=lambda scene, results: {"series": tuple(_runs(scene, results))},
+)
