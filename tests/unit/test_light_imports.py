@@ -12,12 +12,10 @@ from tests.paths import ROOT
 
 LIGHT = [
     "verify",
-    "verify.commands.main",
-    "verify.commands.output",
     "verify.from_type",
     "verify.errors",
-    "verify.commands.progress",
     "verify.verdict",
+    *(name for name in NAMES if name.startswith("verify.commands")),
 ]
 SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2",
         "hypothesis"}  # fmt: skip

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.scenes.scene import Scene
 
-SUITES = {"stiff": "Stiff scenes, judged", "extreme": "Extreme scenes, judged"}
-
 _SYSTEM_OPTIONS = (
     click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
@@ -66,8 +64,8 @@ def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
     """Title, scenes and claims of `paper`, of a suite, or of a scene's file."""
     from verify.scenes.scene import load_scene
 
-    if scene in SUITES:
-        return SUITES[scene], _suite(scene), None
+    if scene in suites():
+        return suites()[scene], _suite(scene), None
     if scene != "paper":
         loaded = load_scene(Path(scene))
         return loaded.title or loaded.name, [loaded], None
@@ -77,6 +75,12 @@ def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
     scenes = [load_scene(path) for path in sorted(folder.glob("*.toml")) if path.stem != "claims"]
     title = "A New Area-Preserving Geometric Numerical Algorithm of Nonlinear Systems, verified"
     return title, scenes, load_claims(folder / "claims.toml")
+
+
+def suites() -> dict[str, str]:
+    """The title of each suite, which a file in its folder holds."""
+    titles = sorted(content("reports", "suites").glob("*/title.txt"))
+    return {title.parent.name: title.read_text("utf-8").strip() for title in titles}
 
 
 def _suite(name: str) -> "list[Scene]":

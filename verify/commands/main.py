@@ -7,19 +7,7 @@ import sys
 
 import click
 
-from verify.commands.bench import bench
-from verify.commands.certificate import certificate
-from verify.commands.check import check
-from verify.commands.check_integrator import check_integrator
-from verify.commands.explore import explore
-from verify.commands.flow import flow
-from verify.commands.plan import plan
-from verify.commands.prove import prove
-from verify.commands.reference import reference
-from verify.commands.report import report
-from verify.commands.run import run
-from verify.commands.separate import separate
-from verify.commands.stability import stability
+from verify.commands import commands
 from verify.errors import InputError, PlaceError
 
 INTERRUPTED, TERMINATED = 130, 143
@@ -48,10 +36,7 @@ def cli(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for command in (
-    prove, certificate, run, separate, explore, flow, stability, check, check_integrator, bench,
-    plan, reference, report,
-):  # fmt: skip
+for command in commands():
     cli.add_command(command)
 
 

@@ -1,5 +1,5 @@
 """The commands `verify reference make` and `check`: numbers for others to test against; `compare`
-is in `verify.commands.compare`."""
+is in `verify.commands.reference_compare`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
-from verify.commands.compare import compare
 from verify.commands.input import keepable, writable
+from verify.commands.reference_compare import compare
 from verify.commands.tasks import json_option, progress_of, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
