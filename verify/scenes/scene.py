@@ -207,25 +207,26 @@ class Scene(Frozen):
         if (self.system is None) == (self.hamiltonian is None):
             raise InputError("scene", "system, hamiltonian", "give one of the two")
         exact = self.exact_hamiltonian()
-        of_stability = *self.stability, *self.largest_step, *self.stability_map
-        also = [name for section in of_stability for name in section.schemes]
-        also += self.work_precision.schemes if self.work_precision else ()
-        also += [name for section in self.flow for name in section.schemes]
-        also += [name for section in self.reference for name in section.schemes]
+        sections = self.sections()
+        also = (name for section in sections for name in getattr(section, "schemes", ()))
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
-        runs = (self.grid, self.series, self.separation, self.work_precision, self.flow,
-                self.reference)  # fmt: skip
         free = set(exact.symbols)
-        if not any((*runs, self.stability, self.largest_step)):
+        if all(isinstance(section, StabilityMap) for section in sections):
             free -= {over.parameter for over in self.stability_map}
-        if any((*runs, *of_stability)) and free:
+        if sections and free:
             raise InputError("parameter", min(free), "has no value; a run needs one")
         for over in self.stability_map:
             if over.parameter not in exact.parameters:
                 known = ", ".join(exact.parameters) or "none"
                 raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
         return self
+
+    def sections(self) -> list[Frozen]:
+        """Every [section] and [[section]] of the scene, whatever it asks for."""
+        given = (getattr(self, name) for name in Scene.model_fields)
+        each = (x for value in given for x in (value if isinstance(value, tuple) else (value,)))
+        return [x for x in each if isinstance(x, Frozen)]
 
     def with_only(self, **sections: Any) -> "Scene":
         """The same H and schemes with these sections, and no others."""
