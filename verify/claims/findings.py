@@ -13,7 +13,10 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.scene import Grid, Scene
 from verify.studies.criteria import judge
-from verify.studies.plan import grid_task, growth_task, proof_task, separation_task
+from verify.studies.kinds.grid import grid_task
+from verify.studies.kinds.growth import growth_task
+from verify.studies.kinds.proofs import proof_task
+from verify.studies.kinds.separation import separation_task
 
 
 class _Speaking(Protocol):

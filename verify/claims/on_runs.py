@@ -22,7 +22,7 @@ from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Grid, Scene
 from verify.scenes.values import AUTO, Digits, InitialValue, Number, Steps, StepSize, Time
-from verify.studies.plan import grid_task
+from verify.studies.kinds.grid import grid_task
 from verify.verdict import Verdict
 
 _LEAST_DIGITS = 20  # certified of every value, unless the claim asks for more or fewer

@@ -7,10 +7,6 @@ from verify.execution.study import Results, called
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.studies.kinds import studies
-from verify.studies.kinds.grid import grid_task as grid_task
-from verify.studies.kinds.growth import growth_task as growth_task
-from verify.studies.kinds.proofs import proof_task as proof_task
-from verify.studies.kinds.separation import separation_task as separation_task
 
 
 def plan_scenes(scenes: list[Scene]) -> Plan:

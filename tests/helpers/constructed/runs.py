@@ -12,7 +12,8 @@ from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene, scene_from
-from verify.studies.plan import grid_task, proof_task
+from verify.studies.kinds.grid import grid_task
+from verify.studies.kinds.proofs import proof_task
 from verify.verdict import Verdict
 
 STEP_SIZES = ("0.001", "0.002", "0.004", "0.006", "0.008", "0.01")

@@ -25,7 +25,7 @@ from verify.claims.kinds.spread import SpreadClaim
 from verify.claims.kinds.step_map import StepMapClaim
 from verify.claims.kinds.table import TableClaim
 from verify.errors import InputError
-from verify.studies.plan import grid_task
+from verify.studies.kinds.grid import grid_task
 from verify.verdict import Verdict
 
 PROVED, MEASURED, REFUTED, UNDECIDED = (

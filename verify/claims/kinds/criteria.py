@@ -12,7 +12,7 @@ from verify.prose import joined, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Grid, Scene
 from verify.scenes.values import CLOSED_FORM
-from verify.studies.plan import proof_task
+from verify.studies.kinds.proofs import proof_task
 from verify.verdict import Verdict
 
 _BY_PROOF_ALONE = {1, 2}

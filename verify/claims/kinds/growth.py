@@ -24,7 +24,7 @@ from verify.runs.task import RunTask
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.studies.plan import grid_task
+from verify.studies.kinds.grid import grid_task
 from verify.verdict import Verdict
 
 _DOUBLINGS = 3

@@ -6,7 +6,7 @@ from verify.execution.plan import Plan
 from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.scene import Scene
 from verify.scenes.sections import Reference
-from verify.studies.plan import proof_task
+from verify.studies.kinds.proofs import proof_task
 from verify.studies.proofs.one import ProofTask
 
 
