@@ -8,15 +8,19 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+import flint
 import mpmath
 import sympy
 
 from tests.helpers.sampled.formulas import P, Q, plain
+from verify.arithmetic.flint_precision import working_precision
 from verify.flows.closed_form import evaluate
-from verify.hamiltonians.motion import Motion
+from verify.hamiltonians.motion import Motion, exactly
 from verify.hamiltonians.named_system import System
 
 WORKING = 160  # digits
+BITS = 1600  # of the balls, whose middles are compared with so many digits
+SHORT = Fraction(1, 10**60)  # a time; at 0 itself ℘ has its pole
 STEP = 40  # the derivative is a difference over 10^−STEP, wrong by about 10^(−2·STEP)
 
 
@@ -42,9 +46,15 @@ class Case:
         return plain(self.system.formula).subs(put)
 
     def at(self, time: Fraction, digits: int = 80) -> tuple[Fraction, Fraction]:
-        parameters = self.values.values()
-        found = evaluate(self.motion, (self.p, self.q), time, digits, parameters)
+        found = evaluate(self.motion, (self.p, self.q), time, digits)
         return found.p, found.q
+
+    def state(self, time: Fraction) -> tuple[Any, Any]:
+        """The middles of the balls at a time, one the motion has, as mpf."""
+        with working_precision(BITS):
+            p, q = self.motion.state(flint.arb(exactly(time)))
+        assert all(x.rad() < (1 + abs(x)) * flint.arb(10) ** (20 - WORKING) for x in (p, q))
+        return middle(p), middle(q)
 
     def moved(self, p: Fraction, q: Fraction) -> "Case":
         return Case(self.system, self.values, p, q)
@@ -52,6 +62,11 @@ class Case:
 
 def example(system: System, regime: str) -> Case:
     return Case(system, *system.regime(regime))
+
+
+def middle(x: Any) -> Any:
+    mantissa, exponent = x.mid().man_exp()
+    return mpmath.ldexp(int(mantissa), int(exponent))
 
 
 def number(x: Fraction) -> Any:
@@ -67,11 +82,11 @@ def energy_defect(case: Case, times: list[Fraction]) -> Any:
     """|H(t) − H(0)| against the size of H's terms."""
     expression = case.expression()
     h = function(expression)
-    with mpmath.workdps(WORKING + case.motion.lost):
+    with mpmath.workdps(WORKING):
         first = h(number(case.p), number(case.q))
         worst = mpmath.mpf(0)
         for time in times:
-            p, q = case.motion.state(mpmath.mp, number(time))
+            p, q = case.state(time)
             size = 1 + abs(first) + p**2 + sum(abs(function(x)(p, q)) for x in expression.args)
             worst = max(worst, abs(h(p, q) - first) / size)
         return worst
@@ -81,13 +96,11 @@ def motion_defect(case: Case, times: list[Fraction]) -> Any:
     """|p' + H_q| and |q' − H_p| by a central difference, against their sizes."""
     expression = case.expression()
     h_p, h_q = (function(sympy.diff(expression, x)) for x in (P, Q))
-    with mpmath.workdps(WORKING + case.motion.lost):
-        step, worst = mpmath.mpf(10) ** -STEP, mpmath.mpf(0)
-        for time in map(number, times):
-            before, at, after = (
-                case.motion.state(mpmath.mp, t) for t in (time - step, time, time + step)
-            )
-            slopes = [(y - x) / (2 * step) for x, y in zip(before, after, strict=True)]
+    with mpmath.workdps(WORKING):
+        step, worst = Fraction(1, 10**STEP), mpmath.mpf(0)
+        for time in times:
+            before, at, after = (case.state(t) for t in (time - step, time, time + step))
+            slopes = [(y - x) / (2 * number(step)) for x, y in zip(before, after, strict=True)]
             wanted = -h_q(*at), h_p(*at)
             size = 1 + max(abs(x) for x in (*at, *wanted))
             worst = max(worst, *(abs(x - y) / size for x, y in zip(slopes, wanted, strict=True)))
@@ -95,9 +108,9 @@ def motion_defect(case: Case, times: list[Fraction]) -> Any:
 
 
 def start_defect(case: Case) -> Any:
-    """|φ_0(z) − z|."""
+    """|φ_t(z) − z| for so short a time that it is a derivative's error, |t| H_p and |t| H_q."""
     with mpmath.workdps(WORKING):
-        p, q = case.motion.state(mpmath.mp, mpmath.mpf(0))
+        p, q = case.state(SHORT)
         return max(abs(p - number(case.p)), abs(q - number(case.q)))
 
 

@@ -35,14 +35,15 @@ State = tuple[Fraction, Fraction]  # p, q
 class Solution:
     """(p, q) = φ_time(p₀, q₀): `bound` ≥ |error| of each of p and q; `method` says how.
 
-    The bound is an estimate, by a second evaluation with more digits, and 0 where the solution is
-    exact.
+    In closed form the bound is `enclosed`, by ball arithmetic, and 0 where the solution is exact;
+    else it is an estimate, by a second evaluation with more digits.
     """
 
     p: Fraction
     q: Fraction
     bound: Fraction
     method: str
+    enclosed: bool = True
 
 
 def exact_solution(
@@ -56,13 +57,12 @@ def exact_solution(
     """
     _check(hamiltonian, digits)
     known = known_flows.closed_form(hamiltonian, p, q)
-    rest = known[0].rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
+    rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
     if rest or time == 0:
         return Solution(p, q, Fraction(0), "the initial value itself")
     if known is not None:
-        motion, parameters = known
-        found = closed_form.evaluate(motion, (p, q), time, digits, parameters)
-        return Solution(found.p, found.q, found.bound, motion.method)
+        found = closed_form.evaluate(known, (p, q), time, digits)
+        return Solution(found.p, found.q, found.bound, known.method)
     return _numerical_solution(hamiltonian, (p, q), time, digits)
 
 
@@ -88,10 +88,10 @@ def leaves_by_algebra(
         raise InputError("time", str(time), "must not be negative")
     known = known_flows.closed_form(hamiltonian, p, q)
     if known is not None:
-        end = closed_form.blow_up(known[0], 1, _TOLD)
-        if end is not None:
-            return f"it blows up at t = {plain(end, 6)}" if end <= time else None
-        return known[0].goes()
+        end = closed_form.blow_up(known, 1, _TOLD)
+        if end is None:
+            return known.goes()
+        return f"it blows up at t = {plain(end, 6)}" if closed_form.ends_by(known, time) else None
     if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
         return None
     for match in known_flows.named(hamiltonian):
@@ -132,6 +132,7 @@ def _numerical_solution(
             bound = _SAFETY * max(abs(after[0] - before[0]), abs(after[1] - before[1]))
             scale = max(map(abs, (*start, *after)))
             if bound * 10**digits <= scale:
-                return Solution(*after, bound, "numerical flow: Gragg's method, extrapolated")
+                method = "numerical flow: Gragg's method, extrapolated"
+                return Solution(*after, bound, method, enclosed=False)
         before = after
     raise NoFlowError("the digits asked for are lost along the orbit")

@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 import sympy
+from flint import fmpq
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
@@ -33,34 +34,31 @@ class Named:
     values: Values
 
 
-def closed_form(
-    hamiltonian: Hamiltonian, p: Fraction, q: Fraction
-) -> tuple[Motion, tuple[Fraction, ...]] | None:
-    """The motion from (p, q) in closed form and the parameters in it; None where none is known."""
+def closed_form(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> Motion | None:
+    """The motion from (p, q) in closed form; None where none is known."""
     if hamiltonian.symbols:
         return None
     found = potential(hamiltonian)
     if found is not None:
-        alpha, coefficients = found
-        return potential_motion.motion(alpha, coefficients, p, q), found[1]
+        return potential_motion.motion(*found, p, q)
     for match in named(hamiltonian):
         motion = match.system.flow(match.values, p, q) if match.system.flow else None
         if motion is not None:
-            return motion, tuple(match.values.values())
+            return motion
     return None
 
 
 @lru_cache(maxsize=64)
-def potential(hamiltonian: Hamiltonian) -> tuple[Fraction, tuple[Fraction, ...]] | None:
+def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
     """α and (c₀, …, c₄) where H = α p²/2 + Σ c_k q^k with α ≠ 0."""
     terms = _terms(hamiltonian.exact)
     if terms is None or not terms.is_polynomial(_P, _Q):
         return None
-    kinetic, coefficients = Fraction(0), [Fraction(0)] * 5
+    kinetic, coefficients = fmpq(0), [fmpq(0)] * 5
     for (i, j), c in sympy.Poly(terms, _P, _Q).terms():
         if not c.is_Rational or (i and (i, j) != (2, 0)) or j > 4:
             return None
-        value = Fraction(int(c.p), int(c.q))
+        value = fmpq(int(c.p), int(c.q))
         if i:
             kinetic = 2 * value
         else:

@@ -9,20 +9,22 @@ Watson, A Course of Modern Analysis, 20.6) is, for f = Σ b_k y^k in y = q − q
 It holds in every regime, has no branches, and B = 0 is where q is infinite. There (x → ∞ in the
 formula's inverse) ℘ = b₂/12 + s v √b₄/2 and ℘' = −(b₃ v + s b₁ √b₄)/4, with s the sign of q'.
 The b_k are exact, so that Δ = 0 (a separatrix, or elementary functions) is known and not guessed.
+
+B may vanish with A at some real t, but not at a rational t ≠ 0: where Δ ≠ 0 and g₂, g₃ and ℘(t) are
+algebraic, t is transcendental (Schneider), so that more precision always tells A/B.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any
 
-import sympy
+from flint import arb, fmpq, fmpq_poly
 
-from verify.arithmetic.batch import Batch
-from verify.hamiltonians.motion import Context, Flow, Motion, Number, State, Values, at_rest, number
-from verify.hamiltonians.potential_barriers import destinations
-from verify.hamiltonians.weierstrass import Weierstrass, waves
+from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians.elliptic import NOT_KNOWN, Real, Weierstrass, double_root, waves
+from verify.hamiltonians.motion import Flow, Motion, State, Values, at_rest, exactly
 
 _METHOD = "closed form: Weierstrass's ℘ by Jacobi's elliptic functions"
 _ELEMENTARY = "closed form: elementary functions"
@@ -30,140 +32,107 @@ _ELEMENTARY = "closed form: elementary functions"
 
 def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Flow:
     """The flow of p²/2 + Σ c_k q^k, k = 0 … 4, with these coefficients."""
-    return lambda values, p, q: motion(Fraction(1), coefficients(values), p, q)
+    return lambda values, p, q: motion(fmpq(1), [exactly(c) for c in coefficients(values)], p, q)
 
 
-def motion(alpha: Fraction, potential: Sequence[Fraction], p: Fraction, q: Fraction) -> Motion:
+def motion(alpha: fmpq, potential: Sequence[fmpq], p: Fraction, q: Fraction) -> Motion:
     """The solution for H = α p²/2 + V(q) through (p, q), α ≠ 0 and V of degree up to 4."""
-    curve = Curve.through(alpha, potential, p, q)
+    start = exactly(q)
+    curve = Curve.through(alpha, potential, exactly(p), start)
     if curve.v == 0 and curve.b[1] == 0:
         return at_rest(p, q)
     ends = curve.degree > 2
 
-    @cache
-    def to(sign: int) -> Any:
-        if curve.b[4] < 0:
-            return 0  # V rises without end on both sides
-        if isinstance(p, Batch):
-            return destinations(alpha, potential, p, q, sign)
-        return curve.destination(sign)
+    def state(t: arb) -> State:
+        y, slope = curve.at(t)
+        return slope / alpha, start + y
 
-    def state(mp: Context, t: Number) -> State:
-        y, slope = curve.at(mp, t)
-        return slope / number(mp, alpha), number(mp, q) + y
-
-    def blow_up(mp: Context, sign: int) -> Number | None:
-        return curve.time_to_infinity(mp, sign, to(sign)) if ends and to(sign) else None
+    def blow_up(sign: int) -> Real | None:
+        to = curve.destination(sign) if ends else 0
+        return curve.time_to_infinity(sign, to) if to else None
 
     def goes() -> str | None:
-        if ends or not to(1):
-            return None
-        return f"q goes to {'+' if to(1) > 0 else '−'}∞ as t grows"
+        to = 0 if ends else curve.destination(1)
+        return f"q goes to {'+' if to > 0 else '−'}∞ as t grows" if to else None
 
-    method = _ELEMENTARY if curve.delta == 0 else _METHOD
-    return Motion(state, method, curve.lost, blow_up, goes)
+    return Motion(state, _ELEMENTARY if curve.delta == 0 else _METHOD, blow_up, goes)
 
 
 @dataclass(frozen=True)
 class Curve:
-    """y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v."""
+    """y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v; a_k are the b_k of q, not of q − q₀."""
 
-    v: Fraction
-    b: tuple[Fraction, Fraction, Fraction, Fraction, Fraction]
+    v: fmpq
+    b: tuple[fmpq, fmpq, fmpq, fmpq, fmpq]
+    a: tuple[fmpq, fmpq, fmpq, fmpq, fmpq]
 
     @classmethod
-    def through(
-        cls, alpha: Fraction, potential: Sequence[Fraction], p: Fraction, q: Fraction
-    ) -> "Curve":
-        c = [*potential, *[Fraction(0)] * (5 - len(potential))]
-        powers = [q**k for k in range(5)]
-        derivatives = (
-            c[1] + 2 * c[2] * q + 3 * c[3] * powers[2] + 4 * c[4] * powers[3],
-            c[2] + 3 * c[3] * q + 6 * c[4] * powers[2],
-            c[3] + 4 * c[4] * q,
-            c[4],
-        )
-        b1, b2, b3, b4 = (-2 * alpha * x for x in derivatives)
-        return cls(alpha * p, (alpha**2 * p**2, b1, b2, b3, b4))
+    def through(cls, alpha: fmpq, potential: Sequence[fmpq], p: fmpq, q: fmpq) -> "Curve":
+        a1, a2, a3, a4 = (-2 * alpha * c for c in [*potential[1:], *[fmpq(0)] * 4][:4])
+        b1 = a1 + q * (2 * a2 + q * (3 * a3 + q * (4 * a4)))
+        b2, b3 = a2 + q * (3 * a3 + q * (6 * a4)), a3 + q * (4 * a4)
+        v = alpha * p
+        b0 = v * v
+        a0 = b0 - q * (a1 + q * (a2 + q * (a3 + q * a4)))
+        return cls(v, (b0, b1, b2, b3, a4), (a0, a1, a2, a3, a4))
 
-    @property
+    @cached_property
     def degree(self) -> int:
         return next((k for k in (4, 3, 2, 1) if self.b[k]), 0)
 
     @cached_property
-    def invariants(self) -> tuple[Fraction, Fraction]:
-        """g₂ and g₃."""
-        b0, b1, b2, b3, b4 = self.b
-        g2 = b4 * b0 - b3 * b1 / 4 + b2**2 / 12
-        g3 = b4 * b2 * b0 / 6 + b3 * b2 * b1 / 48 - b2**3 / 216 - b4 * b1**2 / 16 - b3**2 * b0 / 16
+    def invariants(self) -> tuple[fmpq, fmpq]:
+        """g₂ and g₃, the same for the b_k as for the a_k, which are shorter."""
+        a0, a1, a2, a3, a4 = self.a
+        g2 = a4 * a0 - a3 * a1 / 4 + a2**2 / 12
+        g3 = a0 * (a4 * a2 / 6 - a3**2 / 16) + a3 * a2 * a1 / 48 - a2**3 / 216 - a4 * a1**2 / 16
         return g2, g3
 
     @cached_property
-    def delta(self) -> Fraction:
+    def delta(self) -> fmpq:
         g2, g3 = self.invariants
         return g2**3 - 27 * g3**2
 
-    @property
-    def lost(self) -> int:
-        """Digits by which 1 and the modulus may agree, as they do near a separatrix."""
-        if isinstance(self.v, Batch):
-            return 0  # floats have the digits that they have
-        g2, g3 = self.invariants
-        if not self.delta:
-            return 0
-        ratio = (abs(g2) ** 3 + 27 * g3**2) / abs(self.delta)
-        return (ratio.numerator.bit_length() - ratio.denominator.bit_length() + 1) * 3 // 10
-
-    def function(self, mp: Context) -> Weierstrass:
-        return Weierstrass(mp, *(number(mp, x) for x in (*self.invariants, self.delta)))
-
-    def at(self, mp: Context, t: Number) -> tuple[Number, Number]:
+    def at(self, t: arb) -> tuple[Real, Real]:
         """y and y' at time t."""
-        b0, b1, b2, b3, b4 = (number(mp, x) for x in self.b)
-        v = number(mp, self.v)
-        g2, _ = self.invariants
         if self.degree <= 2:
-            return self.linear(mp, t)
-        double = self.between_saddles
-        if double is not None:
-            return self.heteroclinic(mp, t, double)
-        found = self.function(mp).values(t)
-        if found is None:
-            return mp.mpf(0), v
-        return biermann(v, (b0, b1, b2, b3, b4), number(mp, g2), found)
+            return self.linear(t)
+        if self.delta:
+            return biermann(self.v, self.b, self.invariants[0], self.function().values(t))
+        d = double_root(*self.invariants)
+        if self._between_saddles(d):
+            return self.heteroclinic(t, d)
+        c, s = waves(3 * d, t)
+        return biermann(self.v, self.b, self.invariants[0], (d + 1 / s**2, -2 * c / s**3))
 
-    def linear(self, mp: Context, t: Number) -> tuple[Number, Number]:
+    def function(self) -> Weierstrass:
+        return Weierstrass.of(*self.invariants, self.delta)
+
+    def linear(self, t: arb) -> tuple[Real, Real]:
         """The solution of y'' = b₁/2 + b₂ y."""
-        v, b1, b2 = (number(mp, x) for x in (self.v, self.b[1], self.b[2]))
-        if self.b[2] > 0 and self.b[1] ** 2 == 4 * self.b[0] * self.b[2]:
+        b0, b1, b2, *_ = self.b
+        if b2 > 0 and b1**2 == 4 * b0 * b2:
             # On a line through the saddle one exponential is all there is, and the other is noise.
-            rate = mp.sqrt(b2) if self.v * self.b[1] > 0 else -mp.sqrt(b2)
-            gone = mp.exp(rate * t)
-            return b1 / (2 * b2) * (gone - 1), v * gone
-        (c, s), (_, half) = waves(mp, b2, t), waves(mp, b2, t / 2)
-        return v * s + b1 * half**2, v * c + b1 * s / 2
+            rate = arb(b2).sqrt() if self.v * b1 > 0 else -arb(b2).sqrt()
+            gone = rate * t
+            return b1 / (2 * b2) * gone.expm1(), self.v * gone.exp()
+        (c, s), (_, half) = waves(b2, t), waves(b2, t / 2)
+        return self.v * s + b1 * half**2, self.v * c + b1 * s / 2
 
-    @property
-    def between_saddles(self) -> Fraction | None:
-        """The double root d > 0 of 4w³ − g₂w − g₃, where A and B both vanish at ℘ = d."""
-        g2, g3 = self.invariants
-        if self.delta or g2 * g3 >= 0:
-            return None
+    def _between_saddles(self, double: fmpq) -> bool:
+        """Whether A and B both vanish where ℘ tends to, the double root d > 0."""
         b0, b1, b2, b3, b4 = self.b
-        apart = -3 * g3 / (2 * g2) - b2 / 12
+        apart = double - b2 / 12
         vanish = b1 * apart / 2 + b0 * b3 / 4, 2 * apart**2 - b0 * b4 / 2
-        return None if any(vanish) else -3 * g3 / (2 * g2)
+        return bool(double > 0 and not any(vanish))
 
-    def heteroclinic(self, mp: Context, t: Number, double: Fraction) -> tuple[Number, Number]:
+    def heteroclinic(self, t: arb, double: fmpq) -> tuple[Real, Real]:
         """A/B divided by ε = ℘ − d, which becomes exponentially small; ℘'/ε = −2κ coth κt."""
-        square, apart = number(mp, 3 * double), number(mp, double - self.b[2] / 12)
-        v, b1 = number(mp, self.v), number(mp, self.b[1])
-        c, s = waves(mp, square, t)
-        if s == 0:
-            return mp.mpf(0), v
+        c, s = waves(3 * double, t)
         small, ratio = 1 / s**2, -2 * c / s
-        above, below = b1 / 2 - v * ratio, 2 * small + 4 * apart
-        d_above, d_below = -2 * v * small, 2 * small * ratio
+        above = self.b[1] / 2 - self.v * ratio
+        below = 2 * small + 4 * (double - self.b[2] / 12)
+        d_above, d_below = -2 * self.v * small, 2 * small * ratio
         return above / below, (d_above * below - above * d_below) / below**2
 
     # -- where the motion goes --------------------------------------------------------------------
@@ -173,55 +142,51 @@ class Curve:
 
         At a simple root of f the motion turns; a multiple one it never reaches.
         """
+        if self.b[4] < 0:
+            return 0  # V rises without end on both sides
         towards = 1 if (sign * self.v or self.b[1]) > 0 else -1
         kept = self.b if self.v else self.b[1:]  # y = 0 is a root: the motion turns there
         # Mirrored so that the motion goes to the right.
-        powers = [
-            sympy.Rational(x.numerator, x.denominator) * towards**k for k, x in enumerate(kept)
-        ]
-        f = sympy.Poly(powers[::-1], sympy.Symbol("y"))
-        if f.degree() < 1 or f.count_roots(inf=0) == 0:
-            return towards
-        if self.v == 0 or f.count_roots(sup=0) or _nearest_is_multiple(f):
-            return 0
-        return -towards
+        f = fmpq_poly([x * towards**k for k, x in enumerate(kept)])
+        bits = 64
+        while True:
+            with working_precision(bits):
+                found: Any = f.numer().complex_roots()
+            roots = [(r.real, n) for r, n in found if r.imag == 0]
+            ahead = [(x, n) for x, n in roots if x > 0]
+            if len(ahead) == 0 and all(x < 0 for x, _ in roots):
+                return towards
+            # Those that may be the nearest, and whether each is multiple.
+            nearest = {n > 1 for x, n in ahead if not any(y < x for y, _ in ahead)}
+            if len(nearest) == 1 and all(x > 0 or x < 0 for x, _ in roots):
+                turns_back = self.v == 0 or len(ahead) < len(roots)
+                return 0 if turns_back or nearest == {True} else -towards
+            bits *= 2
 
-    def time_to_infinity(self, mp: Context, sign: int, end: int) -> Number:
+    def time_to_infinity(self, sign: int, end: int) -> Real:
         """|t| at which y is infinite, forwards or backwards in time, at the end ±∞."""
-        _, b1, b2, b3, b4 = (number(mp, x) for x in self.b)
-        v, root = sign * number(mp, self.v), end * mp.sqrt(b4)
-        value, slope = b2 / 12 + v * root / 2, -(b3 * v + b1 * root) / 4
-        return self.function(mp).inverse(value, slope)
-
-
-def _nearest_is_multiple(f: sympy.Poly) -> bool:
-    """Whether the least of the positive roots of f, which has some, and not 0, is multiple.
-
-    By counting roots (Sturm) rather than finding them: numbers of any size take no longer.
-    """
-    multiple = f.gcd(f.diff()).sqf_part()
-    if multiple.degree() != 1:
-        return bool(multiple.degree() == 2)  # then f is a square
-    lead, rest = multiple.all_coeffs()
-    root = -rest / lead
-    while f.rem(multiple).is_zero:
-        f = f.quo(multiple)
-    return bool(root > 0 and (f.degree() < 1 or f.count_roots(inf=0, sup=root) == 0))
+        _, b1, b2, b3, b4 = self.b
+        v, root = sign * self.v, end * arb(b4).sqrt()
+        slope = -(b3 * v + b1 * root)
+        if (b3 * v) ** 2 == b1**2 * b4 and b3 * v * b1 * end <= 0:
+            side = 0
+        elif slope > 0 or slope < 0:
+            side = 1 if slope > 0 else -1
+        else:
+            return NOT_KNOWN
+        return self.function().inverse(b2 / 12 + v * root / 2, side)
 
 
 def biermann(
-    v: Number,
-    b: tuple[Number, Number, Number, Number, Number],
-    g2: Number,
-    function: tuple[Number, Number],
-) -> tuple[Number, Number]:
+    v: Real, b: tuple[Real, Real, Real, Real, Real], g2: Real, function: tuple[Real, Real]
+) -> tuple[Real, Real]:
     """y and y' from the values of ℘ and ℘'; see the module's formula. ℘'' = 6℘² − g₂/2."""
     b0, b1, b2, b3, b4 = b
     w, slope = function
-    bend = 6 * w**2 - g2 / 2
+    speed, half = arb(v), arb(b1) / 2
+    bend = 6 * w * w - g2 / 2
     x = w - b2 / 12
-    above = -v * slope + b1 * x / 2 + b0 * b3 / 4
-    below = 2 * x**2 - b0 * b4 / 2
-    d_above = -v * bend + b1 * slope / 2
-    d_below = 4 * x * slope
-    return above / below, (d_above * below - above * d_below) / below**2
+    above = half * x - speed * slope + b0 * b3 / 4
+    below = 2 * x * x - b0 * b4 / 2
+    y = above / below
+    return y, (half * slope - speed * bend - 4 * y * x * slope) / below

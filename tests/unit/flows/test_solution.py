@@ -5,8 +5,11 @@ from typing import Any
 
 import mpmath
 import pytest
+from flint import arb
 
+from verify.arithmetic.arb import around
 from verify.arithmetic.exact import plain
+from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.flows import solution as module
 from verify.flows.closed_form import MOST_DIGITS, evaluate
@@ -15,7 +18,7 @@ from verify.flows.solution import NOT_KNOWN, Solution, exact_solution, leaves
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.known_flows import closed_form, named, potential
-from verify.hamiltonians.motion import Motion
+from verify.hamiltonians.motion import Motion, exactly
 
 DUFFING = "p**2/2 + q**2/2 + delta*q**4/4"
 PENDULUM = "p**2/2 - cos(q)"
@@ -67,18 +70,43 @@ def test_without_a_closed_form_it_goes_back_to_where_it_came_from() -> None:
     assert abs(back.p - Fraction(1, 10)) + abs(back.q - Fraction(3, 2)) < Fraction(1, 10**24)
 
 
-def test_a_method_that_never_agrees_with_itself_has_no_digits() -> None:
-    noise = iter(range(1, 1000))
-    motion = Motion(lambda mp, t: (mp.mpf(next(noise)), mp.mpf(1)), "noise")
+@pytest.mark.parametrize("noise", [arb(1, 1e-9), arb.nan(), arb.pos_inf()])
+def test_a_ball_that_no_precision_makes_narrow_has_no_digits(noise: Any) -> None:
+    motion = Motion(lambda _: (noise, arb(1)), "noise")
     with pytest.raises(NoFlowError, match="loses more than"):
         evaluate(motion, (Fraction(1), Fraction(1)), Fraction(1), 20)
 
 
-def test_two_evaluations_in_which_a_modulus_rounds_to_1_are_not_taken() -> None:
+def test_a_modulus_that_rounds_to_1_takes_more_precision() -> None:
     """At 2 ± 10⁻¹⁰⁰ the pendulum's two fates part at t ≈ 230; 30 digits do not see it."""
     over, under = (solve(PENDULUM, 2 + Fraction(x, 10**100), 0, 1000, 10) for x in (1, -1))
     assert over.q > 28
     assert under.q < 4
+
+
+@pytest.mark.parametrize("time", ["1e4", "1e40"])
+@pytest.mark.parametrize("formula", [PENDULUM, "p**2/2 + q**2/2 + q**4/4"])
+def test_a_long_time_keeps_h_within_its_enclosure(formula: str, time: str) -> None:
+    """Energy at the end, in balls around what is told, holds that at the start."""
+    for p, q in (("1/3", "3/2"), ("5/2", "1"), ("-3", "-7/2")):
+        found = solve(formula, p, q, time, 40)
+        assert found.enclosed
+        with working_precision(500):
+            before = energy(formula, arb(exactly(Fraction(p))), arb(exactly(Fraction(q))))
+            after = energy(formula, *(around(x, found.bound) for x in (found.p, found.q)))
+            assert after.overlaps(before)
+            wrong = around(found.p + 100 * found.bound, found.bound)
+            off = energy(formula, wrong, around(found.q, found.bound))
+            assert not off.overlaps(before), "the control: a state outside of its bound"
+
+
+def energy(formula: str, p: Any, q: Any) -> Any:
+    return p**2 / 2 - q.cos() if formula == PENDULUM else p**2 / 2 + q**2 / 2 + q**4 / 4
+
+
+def test_what_a_numerical_flow_finds_is_not_called_enclosed() -> None:
+    assert not solve(LENNARD_JONES, "1/10", "3/2", 2).enclosed
+    assert solve(PENDULUM, "1/10", "3/2", 2).enclosed
 
 
 # -- what is recognised ---------------------------------------------------------------------------
@@ -170,8 +198,7 @@ def test_backwards_the_time_of_the_end_is_another() -> None:
 def test_past_the_end_in_time_a_formula_still_has_values_and_they_are_not_given() -> None:
     found = closed_form(Hamiltonian.parse(CUBIC), Fraction(0), Fraction(3, 2))
     assert found is not None
-    with mpmath.workdps(30):
-        assert found[0].state(mpmath.mp, mpmath.mpf(4))[1] < 100
+    assert found.state(arb(4))[1] < 100
     with pytest.raises(NoFlowError, match="blows up"):
         solve(CUBIC, 0, "3/2", 4)
 

@@ -164,7 +164,7 @@ def _flow_point(
             size = _size(start["q"], start["p"])
             p, q = (_rounded((x, at.bound), digits, last, size) for x in (at.p, at.q))
             if p and q:
-                kind: Kind = "estimated" if at.bound else "enclosed"
+                kind: Kind = "enclosed" if at.enclosed else "estimated"
                 return FlowPoint(step=step, time=text(time), status="finished", kind=kind, p=p, q=q)
     except InputError as error:
         if error.name != "digits":

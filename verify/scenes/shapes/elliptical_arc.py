@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
-from verify.hamiltonians.motion import Context, Number, number
+from verify.arithmetic.float_context import Context, Number, number
 from verify.scenes.shapes.outline import Arc, Point
 
 

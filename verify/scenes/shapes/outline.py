@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
 
-from verify.hamiltonians.motion import Context, Number, number
+from verify.arithmetic.float_context import Context, Number, number
 
 Arc = Callable[[Context, Number], tuple[Number, Number]]
 """(mp, s) ↦ (x, y), smooth on 0 ≤ s ≤ 1; x is drawn to the right (q), y upwards (p)."""

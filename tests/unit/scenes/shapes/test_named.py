@@ -8,9 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from verify.arithmetic.float_context import FLOAT
+from verify.arithmetic.float_context import FLOAT, number
 from verify.errors import InputError
-from verify.hamiltonians.motion import number
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Arc, Outline
 

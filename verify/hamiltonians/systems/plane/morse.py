@@ -10,12 +10,12 @@ With ξ = e^(a(q − q₀)) and g = e^(−a q₀) the equation is linear: ξ'' =
 
 from fractions import Fraction
 
-import flint
+from flint import arb, fmpq
 
 from verify.arithmetic.flint_precision import sign_of
-from verify.hamiltonians.motion import Context, Motion, Number, State, Values, at_rest, number
+from verify.hamiltonians.elliptic import waves
+from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
 from verify.hamiltonians.named_system import System
-from verify.hamiltonians.weierstrass import waves
 
 
 def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
@@ -23,36 +23,34 @@ def _motion(values: Values, p: Fraction, q: Fraction) -> Motion | None:
     if depth <= 0 or a == 0:  # V is a barrier, from which orbits fall, or no potential at all
         return None
 
-    def state(mp: Context, t: Number) -> State:
-        rate, start, g = number(mp, a), number(mp, p), mp.exp(number(mp, -a * q))
-        pull = 2 * rate**2 * number(mp, depth) * g
-        square = (rate * start) ** 2 + pull * (g - 2)
-        c, s = waves(mp, square, t)
-        _, half = waves(mp, square, t / 2)
-        xi = c + rate * start * s + 2 * pull * half**2
-        slope = square * s + rate * start * c + pull * s
-        if xi <= 0:
-            raise ValueError("too few digits")  # ξ > 0
-        return slope / (rate * xi), number(mp, q) + mp.log(xi) / rate
-
     if p == q == 0:
         return at_rest(p, q)
-    return Motion(state, "closed form: elementary functions", goes=lambda: _goes(depth, a, p, q))
+    rate, start, well = exactly(a), exactly(p), exactly(depth)
 
+    def growth() -> arb | fmpq:
+        return arb(exactly(-a * q)).exp() if q else fmpq(1)
 
-def _goes(depth: Fraction, a: Fraction, p: Fraction, q: Fraction) -> str | None:
-    """Whether it dissociates: E − D = p²/2 + D (g² − 2g) ≥ 0."""
-    kinetic, rate, size = (
-        flint.fmpq(x.numerator, x.denominator) for x in (p**2 / 2, -a * q, depth)
-    )
+    def state(t: arb) -> State:
+        g = growth()
+        pull = 2 * rate**2 * well * g
+        square = (rate * start) ** 2 + pull * (g - 2)
+        c, s = waves(square, t)
+        _, half = waves(square, t / 2)
+        xi = c + rate * start * s + 2 * pull * half**2
+        slope = square * s + rate * start * c + pull * s
+        return slope / (rate * xi), exactly(q) + xi.log() / rate
 
-    def above() -> flint.arb:
-        g = flint.arb(rate).exp()
-        return kinetic + size * g * (g - 2)
+    def above() -> arb:
+        g = arb(growth())
+        return start**2 / 2 + well * g * (g - 2)
 
-    if (p**2 / 2 < depth) if q == 0 else (sign_of(above) < 0):
-        return None
-    return f"q goes to {'+' if a > 0 else '−'}∞ as t grows: the energy is not below D"
+    def goes() -> str | None:
+        """Whether it dissociates: E − D = p²/2 + D (g² − 2g) ≥ 0."""
+        if (p**2 / 2 < depth) if q == 0 else (sign_of(above) < 0):
+            return None
+        return f"q goes to {'+' if a > 0 else '−'}∞ as t grows: the energy is not below D"
+
+    return Motion(state, "closed form: elementary functions", goes=goes)
 
 
 SYSTEM = System(

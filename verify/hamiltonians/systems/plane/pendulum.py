@@ -11,40 +11,36 @@ N = 1 − s² sn². By Lindemann's theorem q = 0, p = ±2 is the one rational po
 
 from fractions import Fraction
 
-import flint
+from flint import arb
 
 from verify.arithmetic.flint_precision import sign_of
-from verify.hamiltonians.motion import Context, Motion, Number, State, Values, at_rest, number
+from verify.hamiltonians.elliptic import NOT_KNOWN, Real, jacobi, quarter_period
+from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
 from verify.hamiltonians.named_system import System
-from verify.hamiltonians.weierstrass import jacobi
 
 
 def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     separatrix = q == 0 and abs(p) == 2
+    start, d = exactly(q), exactly(p) / 2
 
-    def state(mp: Context, t: Number) -> State:
-        start, d = number(mp, q), number(mp, p) / 2
-        turns = mp.nint(start / (2 * mp.pi))
-        s, c = mp.sin(start / 2 - turns * mp.pi), mp.cos(start / 2 - turns * mp.pi)
-        m = s**2 + d**2
-        if m == 1 and not separatrix:
-            raise ValueError("too few digits")
-        if m <= 1:
-            s, c, d = _added(mp, s, c, d, t, m)
-            return 2 * d, 2 * (mp.atan2(s, c) + turns * mp.pi)
-        period = 2 * mp.ellipk(1 / m) / mp.sqrt(m)  # in which q goes on by 2π
-        whole = mp.floor(t / period)
-        rest = t - whole * period
-        s1, c1, d1 = _added(mp, s, c, d, rest, m)
-        sign = mp.sign(d)
-        angle = sign * 2 * mp.atan2(s1 * c - c1 * s, c1 * c + s1 * s)  # gone on, up to 2π
-        gone = angle - 2 * mp.pi * mp.floor(angle / (2 * mp.pi))
-        near = mp.ldexp(1, -mp.prec // 3)
-        if rest < period / 2 and gone > 2 * mp.pi - near:
-            gone -= 2 * mp.pi
-        elif rest > period / 2 and gone < near:
-            gone += 2 * mp.pi
-        return 2 * d1, start + sign * (gone + 2 * mp.pi * whole)
+    def state(t: arb) -> State:
+        turns = (start / (2 * arb.pi()) + 0.5).mid().floor()
+        half = start / 2 - turns * arb.pi()
+        s, c = half.sin_cos()
+        m = arb(1) if separatrix else s**2 + d**2
+        s1, c1, d1 = _added(s, c, d, t, m)
+        if separatrix or m < 1:
+            # s and c tell the angle between −π and π, where it stays; c > 0 tells that it is there.
+            return 2 * d1, 2 * ((s1 / c1).atan() + turns * arb.pi() if c > 0 else NOT_KNOWN)
+        if not m > 1:
+            return NOT_KNOWN, NOT_KNOWN
+        # q/2 goes on as the amplitude, which is π/2 at most beside its even rate (DLMF 22.16), so
+        # that two such differ by less than π.
+        root = m.sqrt()
+        even = (1 if d > 0 else -1) * arb.pi() * root * t / (2 * quarter_period(1 / m))
+        x, y = c1 * c + s1 * s, s1 * c - c1 * s
+        sin, cos = even.sin_cos()
+        return 2 * d1, start + 2 * (even + arb.atan2(y * cos - x * sin, x * cos + y * sin))
 
     if p == q == 0:
         return at_rest(p, q)
@@ -53,10 +49,8 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     return Motion(state, "closed form: Jacobi's elliptic functions", goes=lambda: _goes(p, q))
 
 
-def _added(
-    mp: Context, s: Number, c: Number, d: Number, t: Number, m: Number
-) -> tuple[Number, Number, Number]:
-    sn, cn, dn = jacobi(mp, t, m)
+def _added(s: Real, c: Real, d: Real, t: arb, m: Real) -> tuple[Real, Real, Real]:
+    sn, cn, dn = jacobi(t, m)
     n = 1 - (s * sn) ** 2
     return (
         (s * cn * dn + c * d * sn) / n,
@@ -67,8 +61,8 @@ def _added(
 
 def _goes(p: Fraction, q: Fraction) -> str | None:
     """Whether it goes round: p²/2 − cos q > 1, where it is not 1."""
-    height, angle = (flint.fmpq(x.numerator, x.denominator) for x in (p**2 / 2 - 1, q))
-    if sign_of(lambda: height - flint.arb(angle).cos()) < 0:
+    height, angle = exactly(p**2 / 2 - 1), exactly(q)
+    if sign_of(lambda: height - arb(angle).cos()) < 0:
         return None
     return f"q goes to {'+' if p > 0 else '−'}∞ as t grows: the pendulum goes round"
 

@@ -2,14 +2,17 @@
 
 from fractions import Fraction
 
-from verify.hamiltonians.motion import Context, Motion, Number, State, Values, at_rest, number
+from flint import arb
+
+from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
 from verify.hamiltonians.named_system import System
 
 
 def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
-    def state(mp: Context, t: Number) -> State:
-        x, y, angle = number(mp, p), number(mp, q), number(mp, p**2 + q**2) * t
-        c, s = mp.cos(angle), mp.sin(angle)
+    x, y = exactly(p), exactly(q)
+
+    def state(t: arb) -> State:
+        s, c = ((x**2 + y**2) * t).sin_cos()
         return x * c - y * s, y * c + x * s
 
     if p == q == 0:

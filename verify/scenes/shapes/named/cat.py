@@ -7,7 +7,7 @@ falls geometrically, and the trapezoidal rule converges so on them.
 
 from fractions import Fraction
 
-from verify.hamiltonians.motion import Context, Number, number
+from verify.arithmetic.float_context import Context, Number, number
 from verify.scenes.shapes.outline import Arc, Outline, Shape, angle
 
 Point = tuple[str, str]  # x, y as exact decimals

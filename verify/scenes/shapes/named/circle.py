@@ -1,6 +1,6 @@
 """The unit circle."""
 
-from verify.hamiltonians.motion import Context, Number
+from verify.arithmetic.float_context import Context, Number
 from verify.scenes.shapes.outline import Outline, Shape, angle
 
 
