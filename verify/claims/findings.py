@@ -7,16 +7,12 @@ from typing import Protocol
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import CriterionResult
-from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.separation import SeparationResult
-from verify.scenes.scene import Grid, Scene
+from verify.scenes.scene import Scene
 from verify.studies.criteria import judge
-from verify.studies.kinds.grid import grid_task
-from verify.studies.kinds.growth import growth_task
+from verify.studies.kinds.grid import grid_runs
 from verify.studies.kinds.proofs import proof_task
-from verify.studies.kinds.separation import separation_task
 
 
 class _Speaking(Protocol):
@@ -54,33 +50,7 @@ class Findings:
 
     def runs(self, scene: Scene, scheme: str) -> list[RunResult]:
         """The grid's runs by initial value, then step size; empty where none were needed."""
-        if scene.grid is None:
-            return []
-        names = [
-            grid_task(scene, scheme, h, start).key
-            for start in range(len(scene.grid.initial_values))
-            for h in scene.grid.step_sizes
-        ]
-        found = [self.results.get(name) for name in names]
-        return [r for r in found if isinstance(r, RunResult)]
-
-    def separations(self, scene: Scene, scheme: str, grid: Grid) -> list[SeparationResult]:
-        """The separations over a grid by initial value, then step size."""
-        names = [
-            separation_task(scene, scheme, grid, h, start).key
-            for start in range(len(grid.initial_values))
-            for h in grid.step_sizes
-        ]
-        found = [self.results.get(name) for name in names]
-        return [r for r in found if isinstance(r, SeparationResult)]
-
-    def growth_laws(self, scene: Scene, scheme: str) -> list[AverageResult]:
-        """The growth laws of the grid's orbits, by initial value; empty where none were asked."""
-        if scene.grid is None:
-            return []
-        starts = range(len(scene.grid.initial_values))
-        found = [self.results.get(growth_task(scene, scheme, start).key) for start in starts]
-        return [r for r in found if isinstance(r, AverageResult)]
+        return grid_runs(scene, scheme, self.results)
 
     def criterion(self, scene: Scene, scheme: str, number: int) -> CriterionResult:
         return judge(number, self.proof(scene, scheme), self.runs(scene, scheme))

@@ -22,7 +22,7 @@ from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Grid, Scene
 from verify.scenes.values import AUTO, Digits, InitialValue, Number, Steps, StepSize, Time
-from verify.studies.kinds.grid import grid_task
+from verify.studies.kinds.grid import grid_tasks
 from verify.verdict import Verdict
 
 _LEAST_DIGITS = 20  # certified of every value, unless the claim asks for more or fewer
@@ -114,11 +114,7 @@ class RunClaim(Claim):
     # -- what it needs, and its verdict -----------------------------------------------------------
 
     def tasks(self, scene: Scene) -> Iterable[Task]:
-        grid = scene.grid
-        if grid is not None:
-            for start in range(len(grid.initial_values)):
-                for h in grid.step_sizes:
-                    yield grid_task(scene, self.scheme, h, start)
+        return grid_tasks(scene, self.scheme)
 
     def judge(self, findings: Findings) -> ClaimResult:
         """ENCLOSED for what was measured where all runs have rigorous bounds."""
