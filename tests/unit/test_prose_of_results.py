@@ -9,13 +9,21 @@ from tests.helpers.parts_of_prose import UNMARKED, proses, unmarked
 from verify.claims.theorems import check_theorem
 from verify.claims.theorems import names as theorems
 from verify.execution.keeping import NOTHING
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.check import check_integrator
+from verify.integrators.results import Claims
+from verify.integrators.step import Step
 from verify.proof.every import prove_every
 from verify.proof.symmetry import prove_symmetry
-from verify.prose import Formula, Prose, prose
+from verify.prose import Formula, Number, Prose, prose
+from verify.scenes.frozen import PLAIN
 from verify.schemes import get
 from verify.schemes import names as schemes
 from verify.studies.criteria import judge
 from verify.studies.proofs.one import ProofTask
+from verify.studies.separation.growth import growth
+from verify.studies.stability.results import run_result
+from verify.studies.stability.trail import Run
 
 OWN = "p_next = p - h*q**2; q_next = q + h*p"
 HAMILTONIANS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
@@ -72,3 +80,43 @@ def test_what_is_no_prose_is_not_looked_at() -> None:
     found: Any = {"formula": "h**3", "n": Fraction(1, 3), "text": Prose("fine")}
     assert unmarked(found) == []
     assert list(proses(found)) == ["fine"]
+
+
+# -- what was measured -----------------------------------------------------------------------------
+
+DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
+STEPS = {
+    "a power": lambda p, q, h: (p - h * (q + q**3), q + h * (p - h * (q + q**3))),
+    "rounded": lambda p, q, h: (p - 0.3333333333333333 * h * q, q + h * p),
+    "frozen": lambda p, q, _: (p, q),
+    "raises": lambda p, q, h: (p, q / (h - h)),
+    "of floats": lambda p, q, h: (float(p) - h * float(q + q**3), float(q) + h * float(p)),
+}
+
+
+@pytest.mark.parametrize("step", STEPS.values(), ids=STEPS)
+@pytest.mark.parametrize("claims", [Claims(), Claims(order=2, area_order=3), Claims(2, 3, True)])
+def test_what_is_found_of_a_step_is_marked(step: Any, claims: Claims) -> None:
+    found = check_integrator(Step(step), DUFFING, claims)
+    said = [found.reason, *found.notes]
+    assert unmarked(said) == []
+    assert list(proses(said)) == said
+
+
+@pytest.mark.parametrize("h", ["1/10", "1/2", "9/4"])
+@pytest.mark.parametrize("q", ["1/2", "30"])
+def test_stability_is_marked(h: str, q: str) -> None:
+    run = Run(DUFFING, "symplectic-euler", Fraction(h), Fraction(q), Fraction(0), 200)
+    found = run_result(run)
+    assert unmarked(found) == []
+    assert len(list(proses(found))) == 2
+    assert not [name for name in found.model_dump(context=PLAIN) if name.endswith("_parts")]
+    assert {"detail_parts", "exact_orbit_parts"} <= set(found.model_dump())
+
+
+def test_a_growth_of_rounding_is_marked() -> None:
+    marks = list(range(100, 100_001, 100))
+    for power in (Fraction(0), Fraction(-1)):
+        found = growth(marks, [1 + power * Fraction(1, n) for n in marks], Fraction(1, 10**30))
+        assert [type(part) for part in found.reason.parts].count(Number) == 2
+        assert unmarked(found) == []
