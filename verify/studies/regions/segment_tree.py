@@ -3,6 +3,10 @@
 A node's box holds segments that follow each other along the curves, so that boxes are small where
 curves are smooth, however often they wind. Plain loops over float64 arrays, compiled by numba when
 first used.
+
+scipy's cKDTree finds the nearest vertex, which may be far away where the segment is near: from
+(5, −0.1) the boundary of 0 ≤ x ≤ 10, 0 ≤ y ≤ 1 is at 0.1 and its nearest vertex at 5. It also
+cannot be called from the compiled loop that divides segments and asks for a few points at a time.
 """
 
 from collections.abc import Sequence
