@@ -51,6 +51,8 @@ class Case:
 
     def state(self, time: Fraction) -> tuple[Any, Any]:
         """The middles of the balls at a time, one the motion has, as mpf."""
+        if time == 0:
+            return number(self.p), number(self.q)
         with working_precision(BITS):
             p, q = self.motion.state(flint.arb(exactly(time)))
         assert all(x.rad() < (1 + abs(x)) * flint.arb(10) ** (20 - WORKING) for x in (p, q))

@@ -44,7 +44,7 @@ def evaluate(motion: Motion, start: Start, time: Fraction, digits: int) -> Evalu
 
     Raises NoFlowError where the solution blows up before, and where the digits are not reached.
     """
-    if motion.rest:
+    if motion.rest or time == 0:
         return Evaluation(*start, Fraction(0))
     ends_after(motion, time)
     least, at = max(map(abs, start)), exactly(time)
