@@ -1,4 +1,4 @@
-"""What the templates of every format are set with: the same filters, so that all say the same."""
+"""What the templates are set with, for the page and for the Markdown that is made of them."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,19 +6,18 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from verify.pages.figures.captioned_plot import Plot
 from verify.pages.text import mathml, typography, words
+from verify.pages.text.signs import SIGNS
 
 TEMPLATES = Path(__file__).parent / "templates"
 
 
-def environment(
-    *, autoescape: bool = True, finalize: Callable[[object], object] | None = None
-) -> Environment:
-    """`finalize` sets what each expression gives, in a format that is not HTML."""
+def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Environment:
+    """`drawn`: a picture as the format has it."""
     made = Environment(
         loader=FileSystemLoader(TEMPLATES, encoding="utf-8"),
-        autoescape=autoescape,  # noqa: S701 - off only for what is not HTML
-        finalize=finalize,
+        autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -36,7 +35,7 @@ def environment(
         plain=mathml.plain,
         every=every,
     )
-    made.globals.update(equation=_equation, words=words)
+    made.globals.update(equation=_equation, words=words, signs=SIGNS, drawn=drawn)
     return made
 
 

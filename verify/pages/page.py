@@ -10,8 +10,7 @@ from markupsafe import Markup
 
 from verify.execution.keeping import write_atomically
 from verify.pages.environment import TEMPLATES, environment
-from verify.pages.sections.first_screen import SIGNS
-from verify.pages.sections.views import page_view
+from verify.pages.page_view import page_view
 from verify.scenes.results.report import Report
 
 PAGE, DATA = "index.html", "results.json"
@@ -32,7 +31,7 @@ def render(report: Report) -> str:
     return (
         _environment()
         .get_template("page.html")
-        .render(page=page_view(report), signs=SIGNS, script=Markup(script), digest=_digest(script))  # noqa: S704
+        .render(page=page_view(report), script=Markup(script), digest=_digest(script))  # noqa: S704
     )
 
 

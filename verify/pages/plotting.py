@@ -23,8 +23,8 @@ from verify.pages.figures import work_precision_figure as work_figure
 from verify.pages.figures.svg import styled
 from verify.pages.figures.work_precision_plots import error_panels
 from verify.pages.sections.claim_view import ClaimView
-from verify.pages.sections.growth_view import orbits
-from verify.pages.sections.scene_plots import rows_of
+from verify.pages.sections.scheme.growth import orbits
+from verify.pages.sections.scheme_plots import rows_of
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.growth import GrowthLawResult
 from verify.scenes.results.regions import FlowResult

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from markupsafe import escape
 
 from verify.pages.markdown.markup import Node, tree
+from verify.pages.markdown.mathml_to_html import html_of_math
 from verify.pages.markdown.mathml_to_tex import tex
-from verify.pages.text.typography import prose
 
 _MARKS = re.compile(r"[\\`*_\[\]|~#]")
 _AT_THE_START = re.compile(
@@ -19,7 +19,7 @@ _AT_THE_START = re.compile(
 )  # a list, an underline, a table's alignment
 _ENTITIES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
 _KEPT = {"sub": "sub", "sup": "sup", "b": "b", "strong": "b", "em": "i", "i": "i", "code": "code"}
-_ASIDES = {"bound", "muted"}  # what the page sets smaller beside or below a number
+_ASIDES = {"bound", "beside"}  # what the page sets smaller beside or below a number
 _SAFE_LINK = re.compile(r"#[A-Za-z0-9_.-]+|results\.json")
 
 
@@ -34,7 +34,7 @@ def markdown(found: object) -> Markdown:
     if isinstance(found, Markdown):
         return found
     if hasattr(found, "__html__"):
-        return Markdown(_started(_inline(tree(found.__html__())).strip(" ")))
+        return line([tree(found.__html__())])
     return escaped("" if found is None else str(found))
 
 
@@ -44,21 +44,26 @@ def escaped(text: str) -> Markdown:
     return Markdown(_started(_quoted(line).replace("\ue000", "\u00a0")))
 
 
-def in_html(text: str) -> Markdown:
-    """A sentence as HTML, for a <summary>, in which Markdown's marks mean nothing.
+def line(found: Iterable[Node | str], *, started: bool = True) -> Markdown:
+    """Pieces of markup in one line; one that is not `started` begins with its own marks."""
+    text = re.sub(" {2,}", " ", "".join(map(_inline, found)).strip(" "))
+    return Markdown(_started(text) if started else text)
 
-    A formula could not be set there: a text that holds one is given as it is.
-    """
-    set_out = tree(prose(text))
-    plain = "math" in {child.tag for child in set_out.children if isinstance(child, Node)}
-    return Markdown(_html(text if plain else set_out).strip())
+
+def in_html(node: Node) -> Markdown:
+    """What stands in it as HTML, for a <summary>, in which Markdown's marks mean nothing."""
+    return Markdown(re.sub(" {2,}", " ", _html(node)).strip())
 
 
 def _html(node: Node | str) -> str:
     if isinstance(node, str):
         return escape(re.sub(r"[\s\x00-\x1f]+", " ", node)).replace("$", "<span>$</span>")
+    if node.tag == "math":
+        return _html(html_of_math(node))
     inner = "".join(_html(child) for child in node.children)
-    kept = _KEPT.get(node.tag)
+    if node.attributes.get("aria-hidden"):
+        inner += " "
+    kept = "b" if "badge" in node.classes else _KEPT.get(node.tag)
     return f"<{kept}>{inner}</{kept}>" if kept else inner
 
 
@@ -90,11 +95,14 @@ def _inline(node: Node | str) -> str:
     if node.attributes.get("class") == "digits":
         return _quoted(node.text)  # the groups are the style sheet's
     inner = "".join(_inline(child) for child in node.children)
-    if node.tag in _KEPT:
-        return f"<{_KEPT[node.tag]}>{inner}</{_KEPT[node.tag]}>"
+    kept = "b" if "badge" in node.classes else _KEPT.get(node.tag)
+    if kept:
+        return f"<{kept}>{inner}</{kept}>"
     if node.tag == "a" and _SAFE_LINK.fullmatch(node.attributes.get("href", "")):
         return f"[{inner}]({node.attributes['href']})"
-    if node.attributes.get("class") in _ASIDES and not inner.startswith("±"):
+    if node.attributes.get("aria-hidden"):
+        return f"{inner} "  # a sign, which the style sheet sets apart from what it stands before
+    if _ASIDES & set(node.classes) and not inner.startswith("±"):
         return f"({inner})"
     return inner
 

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 from markupsafe import Markup
 
-_VOID = {"br"}
+_VOID = {"br", "img"}
 
 
 @dataclass(frozen=True)
@@ -15,6 +15,11 @@ class Node:
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
     children: list["Node | str"] = field(default_factory=list)
+
+    @property
+    def classes(self) -> list[str]:
+        """Its classes."""
+        return self.attributes.get("class", "").split()
 
     @property
     def text(self) -> str:

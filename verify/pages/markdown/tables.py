@@ -1,135 +1,74 @@
-"""The views' tables as Markdown: one table an initial value or a scheme, since a Markdown table has
-no rows of headings inside."""
+"""A table of the page → tables of Markdown, which know no head of two rows and no rows of headings.
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING
+One table a group of rows, with the group's heading above it.
+"""
 
-from verify.pages.markdown.from_markup import Markdown, escaped, table
-from verify.pages.sections.claim_view import ClaimView
-from verify.pages.sections.run_table import RunTable
-from verify.pages.text.typography import cell, sentence
-from verify.scenes.results.claim import CriterionResult
-from verify.verdict import Verdict
+from collections.abc import Iterator, Sequence
+from itertools import product
 
-if TYPE_CHECKING:
-    from verify.pages.sections.flow_view import Cell, RegionView
-    from verify.pages.sections.growth_view import GrowthView
-    from verify.pages.sections.separation_view import SeparationView
-    from verify.pages.sections.stability_view import StabilityView
-    from verify.pages.sections.work_precision_view import WorkPrecisionView
+from verify.pages.markdown.from_markup import Markdown, line, table
+from verify.pages.markdown.markup import Node
+
+_Rows = list[list[Node]]
 
 
-def criteria(
-    found: Sequence[tuple[CriterionResult, str]], badge: Callable[[Verdict], Markdown]
-) -> list[tuple[object, ...]]:
-    return [(f"{c.number}. {asked}", badge(c.verdict), sentence(c.evidence)) for c, asked in found]
+def tables(node: Node) -> Iterator[Markdown]:
+    """The caption, and then each group with its heading."""
+    (head,) = _inside(node, "thead")
+    heads = _heads(_rows(head))
+    for caption in _inside(node, "caption"):
+        yield line(caption.children)
+    groups = [list(_groups(_rows(body))) for body in _inside(node, "tbody")]
+    all_rows = [row for body in groups for _, rows in body for row in rows]
+    heads += [Markdown("")] * (max(map(len, all_rows), default=0) - len(heads))
+    columns = ([row[i] for row in all_rows if len(row) > i] for i in range(len(heads)))
+    places = "".join(map(_place, columns))
+    for label, rows in (group for body in groups for group in body):
+        if label:
+            yield Markdown(f"<b>{label}</b>")
+        yield table(heads, [[line(cell.children) for cell in row] for row in rows], places)
 
 
-def details(claim: ClaimView) -> Markdown:
-    """The numbers behind a claim: the first row is the head."""
-    head, *rows = claim.result.details
-    widest = max(len(row) for row in claim.result.details)
-    heads = [*map(cell, head), *[""] * (widest - len(head))]
-    return table(heads, [[cell(entry) for entry in row] for row in rows], "l")
+def _inside(node: Node, *tags: str) -> list[Node]:
+    return [c for c in node.children if isinstance(c, Node) and c.tag in tags]
 
 
-def printed_and_computed(claim: ClaimView) -> Markdown:
-    """A printed table: each printed number beside those computed for it."""
-    heads = ("h", "printed", *(cell(row[0]) for row in claim.computed))
-    return table(heads, [(h, *map(cell, entries)) for h, entries in claim.by_step_size])
+def _rows(node: Node) -> _Rows:
+    return [_inside(row, "td", "th") for row in _inside(node, "tr")]
 
 
-def runs(view: RunTable) -> Markdown:
-    heads = ("h", "N", *view.columns)
-    return _joined(
-        (label, table(heads, [(r.step_size, r.steps, *(r.cells or (r.failure,))) for r in rows]))
-        for label, rows in view.groups
-    )
+def _groups(rows: _Rows) -> Iterator[tuple[Markdown, _Rows]]:
+    """The rows below each heading, "" where there is none."""
+    label = Markdown("")
+    own: _Rows = []
+    for row in rows:
+        if row and row[0].attributes.get("scope") == "rowgroup":
+            if own:
+                yield label, own
+            label, own = line(row[0].children), []
+        else:
+            own.append(row)
+    yield label, own
 
 
-def growth_law(view: "GrowthView") -> Markdown:
-    heads = ("h", "N", "boundary", "secular", "Λ predicted", "Λ measured", "difference")
-    return _joined(
-        (f"{g.label} ({g.orbit})", table(heads, [(r.step_size, r.steps, *r.cells) for r in g.rows]))
-        for g in view.groups
-    )
+def _heads(rows: _Rows) -> list[Markdown]:
+    """What all cells above a column say, from above."""
+    said: dict[tuple[int, int], Markdown | None] = {}
+    for r, row in enumerate(rows):
+        for cell in row:
+            c = next(c for c in range(len(said) + 1) if (r, c) not in said)
+            for down, right in product(range(_span(cell, "row")), range(_span(cell, "col"))):
+                said[r + down, c + right] = None if down else line(cell.children)
+    columns = range(max((c for _, c in said), default=-1) + 1)
+    found = ([said.get((r, c)) for r in range(len(rows))] for c in columns)
+    return [Markdown(", ".join(filter(None, each))) for each in found]
 
 
-def separation(view: "SeparationView") -> Markdown:
-    heads = ("h", "N", "truncation", "rounding, plain", "input", "trajectory", "determinant",
-             "product", "rounding, closed form")  # fmt: skip
-    found = []
-    for group in view.groups:
-        rows: list[Sequence[object]] = []
-        for r in group.parts:
-            values = (r.failure,) if r.failure else (r.truncation, r.plain, *r.parts, r.closed_form)
-            rows.append((r.step_size, r.steps, *values))
-        found.append((group.label, table(heads, rows)))
-    return _joined(found)
+def _span(cell: Node, way: str) -> int:
+    return int(cell.attributes.get(f"{way}span", "1"))
 
 
-def rounding_growth(view: "SeparationView") -> Markdown:
-    heads = ("h", "N", "the plain way", "closed form")
-    return _joined(
-        (g.label, table(heads, [(r.step_size, r.steps, *r.ways) for r in g.growth]))
-        for g in view.groups
-        if g.growth
-    )
-
-
-def schemes(view: "WorkPrecisionView") -> Markdown:
-    heads = ("scheme", "order claimed", "order of the error", "order of Λ", "operations",
-             "gradient", "compilation, s")  # fmt: skip
-    return table(heads, [(row.name, *row.cells) for row in view.schemes], "l")
-
-
-def systems(view: "WorkPrecisionView") -> Markdown:
-    heads = ("number system", "digits asked", "certified", "least, s", "median, s", "bound")
-    return table(heads, [(row.name, *row.cells) for row in view.systems], "lrrrrl")
-
-
-def work(view: "WorkPrecisionView") -> Markdown:
-    heads = ("h or tolerance", "N", "error", "its rounding part", "energy error", "Λ", "Λ, plain",
-             "least, s", "median, s", "limited by")  # fmt: skip
-    return _joined(
-        (
-            f"{group.name}, {group.about} s",
-            table(
-                heads,
-                [
-                    (r.label, r.steps, *((r.failure,) if r.failure else (*r.cells, r.limited)))
-                    for r in group.rows
-                ],
-                "rrrrrrrrrl",
-            ),
-        )
-        for group in view.groups
-    )
-
-
-def largest_steps(view: "StabilityView") -> Markdown:
-    heads = ("scheme", "measured", "linear theory", "ratio")
-    return table(heads, [(r.scheme, r.measured, r.linear, r.ratio) for r in view.largest], "l")
-
-
-def stability_table(view: "StabilityView") -> Markdown:
-    heads = ("case", "scheme", "h", "N", "verdict", "evidence")
-    rows = [(r.name, r.scheme, r.step_size, r.steps, r.verdict, r.detail) for r in view.runs]
-    return table(heads, rows, "llrrll")
-
-
-def region_table(view: "RegionView") -> Markdown:
-    heads = ("map", "N", "t", "change of area", "mean of Λ", "distance", "arithmetic")
-    rows = [
-        (r.map, r.steps, r.time, _pair(r.change), _pair(r.mean), _pair(r.distance), r.arithmetic)
-        for r in view.rows
-    ]
-    return table(heads, rows, "lrrrrrl")
-
-
-def _pair(found: "Cell") -> str:
-    return f"{found.value} ± {found.error}" if found.error else found.value
-
-
-def _joined(parts: Iterable[tuple[str, Markdown]]) -> Markdown:
-    return Markdown("\n\n".join(f"<b>{escaped(label)}</b>\n\n{found}" for label, found in parts))
+def _place(column: Sequence[Node]) -> str:
+    """Words stand at the left, numbers at the right."""
+    alone = [cell.text.strip() for cell in column if _span(cell, "col") == 1]
+    return "l" if any(text[:1].isalpha() for text in alone) else "r"

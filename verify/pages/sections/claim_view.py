@@ -1,14 +1,16 @@
-"""A claim as the page shows it: its anchor, and its table's printed row where it has one."""
+"""A claim as the page shows it: its anchor, its table's printed row where it has one, its group."""
 
 import re
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.section import Counts
 from verify.scenes.results.claim import ClaimResult
+from verify.verdict import Verdict
 
-if TYPE_CHECKING:
-    from verify.pages.figures.captioned_plot import Plot
-
+_NUMBERED = re.compile(r"\d+(?:\.\d+)*(?=\D|$)")
 _PRINTED = "printed"  # how the printed row of a table claim's details begins
 
 
@@ -20,7 +22,7 @@ class ClaimView:
     anchor: str
     scene_anchor: str
     scene_title: str
-    plot: "Plot | None" = None
+    plot: Plot | None = None
 
     @property
     def name(self) -> str:
@@ -57,6 +59,16 @@ class ClaimView:
         return list(zip(self.step_sizes, columns, strict=True))
 
 
+@dataclass(frozen=True)
+class ClaimGroup:
+    """The claims of one section of the paper; `title` is empty where no claim names a section."""
+
+    title: str
+    anchor: str
+    claims: tuple[ClaimView, ...]
+    counts: Counts
+
+
 class Anchors:
     """Ids that are unique on the page and safe in a link, whatever the names are."""
 
@@ -71,3 +83,28 @@ class Anchors:
             anchor = f"{kind}-{slug}-{count}"
         self._taken.add(anchor)
         return anchor
+
+
+# -- the sections of the paper --------------------------------------------------------------------
+
+
+def groups(claims: Sequence[ClaimView], anchors: Anchors) -> list[ClaimGroup]:
+    """The claims by section, sections in the order of their numbers, those without one last."""
+    by_section: dict[str, list[ClaimView]] = {}
+    for claim in claims:
+        by_section.setdefault(claim.result.section, []).append(claim)
+    found = []
+    for section in sorted(by_section, key=_place):
+        own = by_section[section]
+        title = section or ("Other claims" if len(by_section) > 1 else "")
+        counted = Counter(c.result.verdict for c in own)
+        counts = tuple((v, counted[v]) for v in Verdict if counted[v])
+        found.append(ClaimGroup(title, anchors.take("section", title or "all"), tuple(own), counts))
+    return found
+
+
+def _place(section: str) -> tuple[int, list[int]]:
+    """Sorts 4.2 before 4.10, then sections without a number, then what names none."""
+    if match := _NUMBERED.match(section):
+        return 0, [int(n) for n in match[0].split(".")]
+    return (1 if section else 2), []

@@ -1,12 +1,11 @@
 """What every format of the report says in the same words: the terms, and what its tables hold."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 
 from markupsafe import Markup
 
 from verify import arithmetic as number_systems
 from verify.pages.text.typography import listed, whole
-from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import KINDS, Kind
 
 RUNS = (
@@ -39,7 +38,7 @@ ROUNDING_GROWTH = (
 COSTS = "Orders, and what one step executes (a subexpression that occurs twice is computed once)"
 WORK = "Errors at T and run times, by scheme and step size; the first four known digits"
 
-_ALWAYS = {
+ALWAYS = {
     "ΔJ": Markup(
         "det J − 1, by how much one step changes area, with J the Jacobian matrix of the step map "
         "(p, q) → (p′, q′). It is evaluated from its closed form, not as a difference from 1, "
@@ -53,7 +52,8 @@ _ALWAYS = {
         "at first."
     ),
 }
-_SEPARATED = {
+# Terms that several sections need.
+SEPARATED = {
     "Truncation, rounding": Markup(
         "Truncation is Λ in exact arithmetic from the exact inputs: all that the scheme itself "
         "does to area, since the exact flow has Λ = 0. Rounding is all that float64 adds to it, "
@@ -63,39 +63,7 @@ _SEPARATED = {
         "<code>product</code>, their product (or sum of logarithms) rounded."
     ),
 }
-_CROSSED = {
-    "Crossover h*": Markup(
-        "The step size below which rounding is larger than truncation, interpolated in logarithms "
-        "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
-    ),
-}
-_GROWN = {
-    "Growth law": Markup(
-        "log(1 + Λ) as a bounded part, a secular part that grows with T, and a remainder of proved "
-        "order. X is the derivative along the exact flow; [F] is F at the end of the run minus F "
-        "at its start; X G is the leading coefficient of ΔJ; ⟨g⟩ is the time average of g along "
-        "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
-    ),
-}
-_CARRIED = {
-    "Change of area": Markup(
-        "The area inside the image of a closed outline, less that inside the outline, divided by "
-        "the latter: ∮ p dq along both, refined until the quadrature’s own error is far below the "
-        "change. It equals the mean of Λ over the region, which is computed beside it without any "
-        "area."
-    ),
-    "Distance of outlines": Markup(
-        "Hausdorff’s: the farthest that a point of either outline is from the other one."
-    ),
-}
-_TIMED = {
-    "Limited by rounding": Markup(
-        "The float64 run differs from the same steps in exact arithmetic by a part of its error "
-        "that counts: smaller steps make it no better. Such points are hollow, and no slope is "
-        "fitted to them."
-    ),
-}
-_RAN = {
+RAN = {
     "Enclosed, estimated": Markup(
         "How an error bound was got. <em>Enclosed</em>: rigorous, the value is proved to lie "
         "within it. <em>Estimated</em>: from a rerun at higher precision, which certifies nothing "
@@ -108,29 +76,6 @@ _RAN = {
         )
     ),
 }
-
-
-def terms(scenes: Sequence[SceneResult], *, gallery: bool = False) -> Iterator[tuple[str, Markup]]:
-    """The terms that the scenes' results, and a gallery of them, need, with what each means."""
-    yield from _ALWAYS.items()
-    separated = any(s.separations or s.crossovers for s in scenes)
-    if separated or gallery:
-        yield from _SEPARATED.items()
-    if separated:
-        yield from _CROSSED.items()
-    if any(s.growth_laws for s in scenes):
-        yield from _GROWN.items()
-    if any(s.flows for s in scenes):
-        yield from _CARRIED.items()
-    if any(s.work_precision for s in scenes):
-        yield from _TIMED.items()
-    if gallery or any(_ran(s) for s in scenes):
-        yield from _RAN.items()
-
-
-def _ran(s: SceneResult) -> bool:
-    return bool(s.runs or s.series or s.separations or s.crossovers or s.work_precision)
-
 
 # -- counts of judged runs in a sentence ----------------------------------------------------------
 

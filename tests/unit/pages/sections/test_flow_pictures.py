@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from tests.helpers.constructed.flows import FAILED, circle, exact, flow, image, outline, spiral
+from tests.unit.pages.test_page import scene
 from verify.pages.figures.flow_figure import grid_of
 from verify.pages.figures.label_place import place_of
-from verify.pages.sections.flow_view import flow_view
+from verify.pages.sections.scene import flow as section
 from verify.scenes.results.regions import FlowResult
 
 
 def finding_of(made: FlowResult) -> str:
-    return flow_view((made,), "x").regions[0].finding.replace("\xa0", " ")
+    return section.SECTION.view(scene(flows=(made,)), "x").regions[0].finding.replace("\xa0", " ")
 
 
 def caption_of(made: FlowResult) -> str:
-    plot = flow_view((made,), "x").regions[0].plot
+    plot = section.SECTION.view(scene(flows=(made,)), "x").regions[0].plot
     assert plot is not None
     return plot.caption.replace("\xa0", " ")
 

@@ -37,7 +37,7 @@ def test_a_scene_without_regions_shows_nothing_of_them() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.sections.flow_view", "numpy"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.flow_figure", "numpy"}),
         ("scene(flows=(flow(FAILED),))", {"verify.pages.figures.flow_figure", "matplotlib"}),
     ],
 )

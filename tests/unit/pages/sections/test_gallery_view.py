@@ -42,7 +42,7 @@ def test_without_a_hunt_nothing_of_it_is_shown() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("report((scene(),))", {"verify.pages.sections.gallery_view", "matplotlib"}),
+        ("report((scene(),))", {"verify.pages.figures.gallery_figure", "matplotlib"}),
         ("report(gallery=gallery())", {"verify.pages.figures.gallery_figure", "matplotlib"}),
     ],
 )

@@ -27,7 +27,7 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.sections.growth_view"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.growth_figure"}),
         ("scene(growth_laws=(LOST,))", {"verify.pages.figures.growth_figure", "matplotlib"}),
     ],
 )

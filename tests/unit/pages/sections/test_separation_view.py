@@ -50,7 +50,7 @@ def test_a_page_without_runs_has_no_terms_of_runs() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.sections.separation_view", "matplotlib"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.crossover_figure", "matplotlib"}),
         ("scene(separations=(BELOW,))", {"verify.pages.figures.crossover_figure", "matplotlib"}),
     ],
 )

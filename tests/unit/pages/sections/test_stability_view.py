@@ -22,7 +22,7 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
 @pytest.mark.parametrize(
     ("made", "absent"),
     [
-        ("scene(runs=(run(),))", {"verify.pages.sections.stability_view"}),
+        ("scene(runs=(run(),))", {"verify.pages.figures.stability_figure"}),
         ("scene(stability=(LEFT,))", {"verify.pages.figures.stability_figure", "matplotlib"}),
     ],
 )

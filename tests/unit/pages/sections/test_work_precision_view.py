@@ -43,7 +43,6 @@ def test_a_scene_that_did_not_ask_shows_nothing_of_it() -> None:
         (
             "scene(runs=(run(),))",
             {
-                "verify.pages.sections.work_precision_view",
                 "verify.pages.figures.work_precision_plots",
             },
         ),

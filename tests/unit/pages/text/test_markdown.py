@@ -24,7 +24,7 @@ from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real
 from verify.pages.markdown.from_markup import Markdown, escaped, markdown, table
 from verify.pages.markdown.page import render, write
 from verify.pages.page import render as page_as_html
-from verify.pages.sections.views import page_view
+from verify.pages.page_view import page_view
 from verify.pages.text import mathml
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
@@ -247,7 +247,8 @@ def test_the_tiles_and_the_counts_of_a_section_are_the_pages() -> None:
 def test_a_claim_that_is_closed_shows_its_statement() -> None:
     for statement, shown in (
         ("ΔJ = O(h^n), *a*", "ΔJ = O(h<sup>n</sup>), *a*"),
-        ("It is 3*p**2*q.", "It is 3*p**2*q."),  # a formula cannot be set in a <summary>
+        ("It is 3*p**2*q.", "It is 3 p<sup>2</sup> q."),  # no MathML in a <summary>
+        ("It is p*sqrt(q)/(1 + h*q).", "(p √q)/(1+h q)"),
         (f"{EVIL} $x$", "&lt;script&gt;"),
     ):
         text, _ = render(report(claims=(claim(statement=statement),)))

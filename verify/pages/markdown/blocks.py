@@ -1,0 +1,147 @@
+"""The page's own markup → blocks of GitHub flavoured Markdown.
+
+Only the elements that the templates write are known; of any other what stands in it is set. What
+is for a screen alone is passed over. Text reaches Markdown through `from_markup`, or as code.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+
+from verify.pages.markdown.from_markup import Markdown, in_html, line
+from verify.pages.markdown.markup import Node
+from verify.pages.markdown.tables import tables
+
+_ON_SCREEN = {"mark", "kind"}  # classes of what nothing is lost without
+_STRONG = {"finding", "label"}  # what the page sets in other letters
+_CONTAINERS = {"article", "div", "figure", "header", "section"}
+_LINES = {"p", "figcaption"}
+_HEADINGS = {f"h{level}": "#" * level for level in range(1, 7)}
+_OWN = {"details", "dl", "footer", "img", "pre", "table", "ul"}
+_BLOCKS = {*_OWN, *_CONTAINERS, *_LINES, *_HEADINGS}
+
+
+def document(root: Node) -> str:
+    """All that stands in it. Places that a link of its own leads to can be linked to."""
+    links = {a.attributes.get("href", "").removeprefix("#") for a in _all(root) if a.tag == "a"}
+    return "\n\n".join(_Writer(links).inside(root)) + "\n"
+
+
+def _all(node: Node) -> Iterator[Node]:
+    yield node
+    for child in node.children:
+        if isinstance(child, Node):
+            yield from _all(child)
+
+
+class _Writer:
+    def __init__(self, links: set[str]) -> None:
+        self._links = links - {""}
+
+    def inside(self, node: Node) -> list[Markdown]:
+        """What stands in it, block after block; texts and what is set within a line together."""
+        return self._each(node.children)
+
+    def _each(self, children: Iterable[Node | str]) -> list[Markdown]:
+        found: list[Markdown] = []
+        pending: list[Node | str] = []
+        for child in children:
+            if isinstance(child, str) or not _is_block(child):
+                pending.append(child)
+            else:
+                found += [*_paragraph(pending), *self._block(child)]
+                pending = []
+        return [*found, *_paragraph(pending)]
+
+    def _block(self, node: Node) -> Iterator[Markdown]:
+        if _ON_SCREEN & set(node.classes):
+            return
+        if (place := node.attributes.get("id", "")) in self._links:
+            yield Markdown(f'<a id="{place}"></a>')
+        if node.tag in _HEADINGS:
+            yield from _heading(node)
+        elif node.tag in _LINES:
+            strong = _STRONG & set(node.classes)
+            yield from _paragraph([Node("b", {}, node.children)] if strong else node.children)
+        elif node.tag == "img":
+            yield _image(node)
+        elif node.tag == "math":
+            yield _display(node)
+        elif node.tag == "pre":
+            yield _code(node)
+        elif node.tag == "table":
+            yield from tables(node)
+        elif node.tag == "details":
+            yield from self._details(node)
+        elif node.tag == "ul":
+            yield _list(self.inside(item) for item in _children(node, "li"))
+        elif node.tag == "dl":
+            yield _list(map(self._defined, _children(node, "div")))
+        elif node.tag == "footer":
+            yield from (Markdown("---"), *self.inside(node))
+        else:
+            yield from self.inside(node)
+
+    def _details(self, node: Node) -> Iterator[Markdown]:
+        (head,) = _children(node, "summary")
+        rest = [c for c in node.children if c is not head]
+        yield Markdown(f"<details>\n<summary>{in_html(head)}</summary>")
+        yield from self._each(rest)
+        yield Markdown("</details>")
+
+    def _defined(self, node: Node) -> list[Markdown]:
+        """A term and what it means, which goes on in the same line where it begins with one."""
+        (term,), (meaning,) = _children(node, "dt"), _children(node, "dd")
+        found = self.inside(meaning)
+        first = next((c for c in meaning.children if isinstance(c, Node) or c.strip()), "")
+        said = isinstance(first, str) or first.tag in _LINES or not _is_block(first)
+        head = f"<b>{line(term.children)}</b>:"
+        if said and found:
+            return [Markdown(f"{head} {found[0]}"), *found[1:]]
+        return [Markdown(head), *found]
+
+
+def _children(node: Node, tag: str) -> list[Node]:
+    return [c for c in node.children if isinstance(c, Node) and c.tag == tag]
+
+
+def _is_block(node: Node) -> bool:
+    return node.tag in _BLOCKS or node.attributes.get("display") == "block"
+
+
+def _paragraph(children: Iterable[Node | str]) -> list[Markdown]:
+    found = line(child for child in children if not _is_for_screen(child))
+    return [found] if found else []
+
+
+def _is_for_screen(child: Node | str) -> bool:
+    return isinstance(child, Node) and bool(_ON_SCREEN & set(child.classes))
+
+
+def _heading(node: Node) -> Iterator[Markdown]:
+    """The heading, and below it verdicts that are counted in it."""
+    counted = [c for c in node.children if isinstance(c, Node) and "tally" in c.classes]
+    yield Markdown(f"{_HEADINGS[node.tag]} {line(c for c in node.children if c not in counted)}")
+    yield from _paragraph(counted)
+
+
+def _image(node: Node) -> Markdown:
+    return Markdown(f"![{line([node.attributes['alt']])}]({node.attributes['src']})")
+
+
+def _display(node: Node) -> Markdown:
+    return Markdown(line([node], started=False).strip())
+
+
+def _code(node: Node) -> Markdown:
+    """Between fences that are longer than any row of backticks in it."""
+    language = next((c.removeprefix("language-") for n in _all(node) for c in n.classes), "")
+    longest = max(map(len, re.findall("`+", node.text)), default=0)
+    fence = "`" * max(3, longest + 1)
+    return Markdown(f"{fence}{language}\n{node.text.strip(chr(10))}\n{fence}")
+
+
+def _list(items: Iterable[list[Markdown]]) -> Markdown:
+    """Each item with what belongs to it below its text."""
+    shown = ["\n\n".join(item).replace("\n", "\n  ") for item in items]
+    between = "\n\n" if any("\n" in item for item in shown) else "\n"
+    return Markdown(between.join(f"- {item}" for item in shown))

@@ -1,0 +1,109 @@
+"""Report → what the page's templates show. Nothing is computed anew."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+
+from markupsafe import Markup
+
+from verify.pages.figures.captioned_plot import Plot
+from verify.pages.first_screen import FirstScreen, first_screen
+from verify.pages.sections import page as of_page
+from verify.pages.sections import scene as of_scene
+from verify.pages.sections import scheme_plots
+from verify.pages.sections.claim_view import Anchors, ClaimGroup, ClaimView, groups
+from verify.pages.sections.given import Given, SceneView
+from verify.pages.sections.section import Place, Shown, shown, terms, walk
+from verify.pages.text import mathml, words
+from verify.pages.text.typography import listed, whole
+from verify.scenes.results.report import Report, SceneResult
+
+
+@dataclass(frozen=True)
+class PageView:
+    """The first screen, and after it the sections of the page with the terms that they need."""
+
+    report: Report
+    first: FirstScreen
+    claims: tuple[ClaimView, ...]
+    groups: tuple[ClaimGroup, ...]
+    sections: tuple[Shown, ...]
+    terms: Mapping[str, Markup]
+
+    def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
+        """Those with a claim on this scene."""
+        return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
+
+    def kept_at(self, plot: Plot) -> Place | None:
+        """The one place where it stands, if there is a section that keeps it."""
+        return next((place for kept, place in self._kept if kept is plot), None)
+
+    @cached_property
+    def _kept(self) -> Sequence[tuple[Plot, Place]]:
+        return [each for s in walk(self.sections) for each in s.section.keeps(s.view)]
+
+
+def page_view(report: Report) -> PageView:
+    """All of it; pictures are drawn here."""
+    own = _given(report)
+    sections = shown(of_page.FILES, Place("", ""), own)
+    return PageView(
+        report=report,
+        first=first_screen(report, own.claims, sections),
+        claims=own.claims,
+        groups=own.groups,
+        sections=sections,
+        terms=words.ALWAYS | terms(sections),
+    )
+
+
+# -- claims and scenes with their places -----------------------------------------------------------
+
+
+def _given(report: Report) -> Given:
+    """The report's claims and scenes, as all sections of the page speak of them."""
+    anchors = Anchors()
+    own = [anchors.take("system", scene.name) for scene in report.scenes]
+    claims = _claims(report, own, anchors)
+    scenes = tuple(_scene(scene, at) for scene, at in zip(report.scenes, own, strict=True))
+    return Given(report, anchors, claims, tuple(groups(claims, anchors)), scenes)
+
+
+def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[ClaimView, ...]:
+    scenes = {s.name: (anchor, s.title) for s, anchor in zip(report.scenes, own, strict=True)}
+    found = []
+    for result in report.claims:
+        anchor = anchors.take("claim", result.id)
+        claim = ClaimView(result, anchor, *scenes.get(result.scene, ("", "")))
+        if claim.is_table:
+            claim = replace(claim, plot=scheme_plots.table(claim, name=f"table-of-{anchor}"))
+        found.append(claim)
+    return tuple(found)
+
+
+def _scene(scene: SceneResult, anchor: str) -> SceneView:
+    names = mathml.free_names(scene.hamiltonian)
+    return SceneView(
+        result=scene,
+        anchor=anchor,
+        symbols=tuple(n for n in names if n not in scene.parameters),
+        floors=_floors(scene),
+        sections=shown(of_scene.FILES, Place(anchor, scene.title), scene, anchor),
+    )
+
+
+def _floors(scene: SceneResult) -> str:
+    """Which step sizes do not divide the time, with the N that is taken instead."""
+    if scene.time is None:
+        return ""
+    time = Fraction(scene.time)
+    rest = {
+        r.step_size: r.steps
+        for r in (*scene.runs, *scene.series)
+        if time // Fraction(r.step_size) == r.steps and r.steps * Fraction(r.step_size) != time
+    }
+    if not rest:
+        return ""
+    shown = listed(f"h = {h} gives N = {whole(n)}" for h, n in rest.items())
+    return f"Where T/h is not a whole number, N is T/h rounded down: {shown}."

@@ -1,0 +1,30 @@
+"""The scenes, each with its own sections."""
+
+from collections.abc import Iterator
+
+from verify.pages.sections.given import Given, SceneView
+from verify.pages.sections.section import Entry, Section
+
+_FEW = 3  # scenes whose sections stand in the contents
+
+
+def _view(given: Given) -> tuple[SceneView, ...] | None:
+    return given.scenes or None
+
+
+def _entries(scenes: tuple[SceneView, ...]) -> Iterator[Entry]:
+    for scene in scenes:
+        inner = (entry for each in scene.sections for entry in each.entries)
+        yield Entry(
+            scene.anchor,
+            scene.result.title,
+            inner=tuple(inner) if len(scenes) <= _FEW else (),
+        )
+
+
+SECTION = Section(
+    order=40,
+    view=_view,
+    entries=_entries,
+    inner=lambda view: (each for scene in view for each in scene.sections),
+)

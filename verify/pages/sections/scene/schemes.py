@@ -1,0 +1,47 @@
+"""The schemes on a scene, each with its own sections."""
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from verify.pages.sections import scheme as of_scheme
+from verify.pages.sections.section import Entry, Place, Section, Shown, shown
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import SceneResult
+
+
+@dataclass(frozen=True)
+class SchemeView:
+    """A scheme with its place on the page."""
+
+    proof: ProofResult
+    anchor: str
+    sections: tuple[Shown, ...]
+
+    @property
+    def entry(self) -> Entry:
+        """Its place in the contents."""
+        return Entry(self.anchor, Markup("<code>{}</code>").format(self.proof.scheme))
+
+
+def _view(scene: SceneResult, anchor: str) -> tuple[SchemeView, ...] | None:
+    return (
+        tuple(
+            _scheme(scene, proof, f"scheme-{index}-of-{anchor}")
+            for index, proof in enumerate(scene.proofs)
+        )
+        or None
+    )
+
+
+def _scheme(scene: SceneResult, proof: ProofResult, anchor: str) -> SchemeView:
+    place = Place(anchor, proof.scheme)
+    return SchemeView(proof, anchor, shown(of_scheme.FILES, place, scene, proof, anchor))
+
+
+SECTION = Section(
+    order=40,
+    view=_view,
+    entries=lambda view: (scheme.entry for scheme in view),
+    inner=lambda view: (each for scheme in view for each in scheme.sections),
+)

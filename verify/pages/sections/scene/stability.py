@@ -1,0 +1,197 @@
+"""How stable a scene's schemes are, as the page shows it: sentences, pictures, tables."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from markupsafe import Markup
+
+from verify.arithmetic.exact import plain, short
+from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.section import Picture, Section
+from verify.pages.text.typography import listed, number, step, whole
+from verify.pages.text.words import counts_of
+from verify.scenes.results.report import SceneResult
+from verify.scenes.results.stability import (
+    KINDS,
+    Kind,
+    LargestStepResult,
+    StabilityMapResult,
+    StabilityResult,
+)
+
+MEANINGS: dict[Kind, str] = {
+    "stable": "stays within the exact orbit’s bounds, and no drift of its energy is seen",
+    "drifts": "stays within them, but its energy moves on in one direction",
+    "unstable: scheme": "leaves them with 40 and with 80 digits too: the scheme’s doing",
+    "unstable: arithmetic": "parts from the same scheme in high precision: float64’s rounding",
+    "escapes": "the exact solution itself leaves",
+    "overflow": "a number is beyond float64’s range, and 53 bits with wider exponents stay",
+    "underflow": "numbers vanish in float64 that wider exponents keep",
+    "undecided": "no two precisions agree, or the run is too long for high precision",
+}
+
+
+@dataclass(frozen=True)
+class RunRow:
+    name: str
+    scheme: str
+    step_size: str
+    steps: str
+    verdict: str
+    detail: str
+
+
+@dataclass(frozen=True)
+class LargestRow:
+    scheme: str
+    measured: str
+    linear: str
+    ratio: str
+
+
+@dataclass(frozen=True)
+class StabilityView:
+    """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded."""
+
+    finding: tuple[str, ...]
+    kinds: tuple[Kind, ...]
+    runs: tuple[RunRow, ...]
+    largest: tuple[LargestRow, ...]
+    bound: str
+    plots: tuple[tuple[StabilityMapResult, Plot], ...]
+
+
+def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
+    runs, steps, maps = scene.stability, scene.largest_steps, scene.stability_maps
+    if not (runs or steps or maps):
+        return None
+    seen = {run.kind for run in runs} | {kind for over in maps for kind in over.counted()}
+    return StabilityView(
+        finding=tuple(_finding(runs, steps)),
+        kinds=tuple(kind for kind in KINDS if kind in seen),
+        runs=tuple(map(_run_row, runs)),
+        largest=tuple(map(_largest, steps)),
+        bound=_bound(steps),
+        plots=tuple(zip(maps, _plots(maps, anchor), strict=True)),
+    )
+
+
+def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:
+    if runs:
+        counted = Counter(run.kind for run in runs)
+        yield f"Of {whole(len(runs))} runs: {counts_of(counted)}."
+    drifting = sorted(
+        (run for run in runs if run.rate), key=lambda run: -abs(Fraction(run.rate or 0))
+    )
+    if drifting:
+        worst = drifting[0]
+        yield (
+            f"The fastest drift is that of {worst.scheme} at h = {step(worst.step_size)}: its "
+            f"energy changes by {number(worst.rate or '0')} of its own scale in a unit of time."
+        )
+    beyond = [s for s in steps if s.bounded and s.linear and Fraction(s.linear) > 0]
+    if beyond:
+        ratios = [Fraction(s.bounded or 0) / Fraction(s.linear or 1) for s in beyond]
+        low, high = (f"{float(x):.2g}" for x in (min(ratios), max(ratios)))
+        yield (
+            f"Where linear theory allows steps at all, the largest step with bounded motion is "
+            f"{low} to {high} times the one that it predicts from where the orbit is stiffest."
+        )
+    never = [s.scheme for s in steps if s.linear and Fraction(s.linear) == 0 and s.bounded]
+    if never:
+        yield (
+            f"For {listed(never)} it allows none, and what is bounded over this time is so for "
+            "this time only."
+        )
+
+
+def _run_row(run: StabilityResult) -> RunRow:
+    return RunRow(
+        name=_name(run),
+        scheme=run.scheme,
+        step_size=step(short(Fraction(run.step_size))),
+        steps=whole(run.steps),
+        verdict=run.verdict,
+        detail=run.detail,
+    )
+
+
+def _name(run: StabilityResult) -> str:
+    """What its id says beside the scene, the scheme and the step size: section, initial value."""
+    _, *parts = run.id.split("/")
+    own = (run.scheme, f"h={short(Fraction(run.step_size))}")
+    return ", ".join(part for part in parts if part not in own)
+
+
+def _largest(found: LargestStepResult) -> LargestRow:
+    linear, ratio = "no limit", "–"
+    if found.linear is not None:
+        linear = _four(found.linear) if Fraction(found.linear) else "none is stable"
+        if found.bounded and Fraction(found.linear):
+            ratio = f"{float(Fraction(found.bounded) / Fraction(found.linear)):.3f}"
+    measured = _four(found.bounded) if found.bounded else found.detail
+    return LargestRow(found.scheme, measured, linear, ratio)
+
+
+def _four(x: str) -> str:
+    return number(plain(Fraction(x), 4))
+
+
+def _bound(steps: Sequence[LargestStepResult]) -> str:
+    times = dict.fromkeys(number(s.time) for s in steps)
+    return f"until t = {listed(list(times))}" if times else ""
+
+
+def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[Plot]:
+    """The drawing, and with it matplotlib, is imported only where there is a map."""
+    if not maps:
+        return
+    from verify.pages.figures.stability_figure import plane_of, stability_plane
+
+    for index, over in enumerate(maps):
+        lead = f"Stability of {over.scheme} over the step size h and {over.parameter}"
+        svg = stability_plane(
+            plane_of(over), name=f"stability-{index}-of-{anchor}", label=f"{lead}."
+        )
+        yield Plot(svg, f"{lead}.", _caption(over))
+
+
+def _caption(over: StabilityMapResult) -> str:
+    parts = counts_of(over.counted())
+    limit = ""
+    if any(h and Fraction(h) > 0 for h in over.linear):
+        limit = (
+            " The line is where h times the orbit’s greatest frequency reaches the limit of linear "
+            "theory."
+        )
+    elif any(over.linear):
+        limit = " Linear theory has no stable step for this scheme."
+    return (
+        f"Each mark is a run of {whole(over.steps)} steps from q = {number(over.q)}, "
+        f"p = {number(over.p)}: {parts}.{limit}"
+    )
+
+
+def _pictures(view: StabilityView) -> Iterator[Picture]:
+    """That with the most kinds of run tells the most."""
+    for over, plot in view.plots:
+        yield Picture((1, -len(over.counted())), plot)
+
+
+def _terms(views: Sequence[StabilityView]) -> dict[str, Markup]:
+    """The verdicts on runs that occur."""
+    seen = {kind for view in views for kind in view.kinds}
+    each = (
+        Markup("<div><dt>{}</dt><dd>{}</dd></div>").format(kind, meaning)
+        for kind, meaning in MEANINGS.items()
+        if kind in seen
+    )
+    listed = Markup('<dl class="kinds" id="kinds">{}</dl>').format(Markup("\n").join(each))
+    return {"Verdicts on runs": listed} if seen else {}
+
+
+SECTION = Section(
+    order=30, title="Stability", anchor="stability", view=_view, pictures=_pictures, terms=_terms
+)

@@ -1,0 +1,230 @@
+"""Error against run time as the page shows it: sentences, figures and tables, all from the data."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+
+from markupsafe import Markup, escape
+
+from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.sections.section import Picture, Section
+from verify.pages.text import words
+from verify.pages.text.typography import NBSP, number, start, step, whole
+from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.report import SceneResult
+from verify.scenes.results.work_precision import (
+    CostResult,
+    SlopeResult,
+    SystemPoint,
+    WorkLine,
+    WorkPoint,
+    WorkPrecisionResult,
+)
+
+LIMITS = {
+    "truncation": "truncation",
+    "rounding": "rounding",
+    "undecided": "undecided",
+    "tolerance": "its tolerance",
+    "failed": "failed",
+}
+_UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
+
+
+@dataclass(frozen=True)
+class PointRow:
+    """One run; `failure` stands in place of its values."""
+
+    label: str
+    steps: str
+    cells: tuple[Markup, ...]  # error, rounding part, energy, Λ, Λ plain, min, median
+    limited: str
+    failure: str
+
+
+@dataclass(frozen=True)
+class LineGroup:
+    name: str
+    about: str
+    rows: tuple[PointRow, ...]
+
+
+@dataclass(frozen=True)
+class SchemeRow:
+    name: str
+    cells: tuple[str | Markup, ...]  # order claimed, measured, of Λ, operations, gradients, time
+
+
+@dataclass(frozen=True)
+class SystemRow:
+    name: str
+    cells: tuple[str, ...]  # digits asked, certified, min, median, bounds
+
+
+@dataclass(frozen=True)
+class WorkPrecisionView:
+    finding: tuple[str, ...]
+    comparisons: tuple[str, ...]
+    plots: tuple[Plot, ...]
+    schemes: tuple[SchemeRow, ...]
+    groups: tuple[LineGroup, ...]
+    systems: tuple[SystemRow, ...]
+    systems_of: str
+    count: int
+    computed: str
+    left_out: tuple[tuple[str, str], ...]
+
+
+def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
+    found = scene.work_precision
+    if found is None:
+        return None
+    from verify.pages.figures.work_precision_plots import plots
+
+    own = [line for line in found.lines if not line.peer]
+    return WorkPrecisionView(
+        finding=tuple(_finding(found)),
+        comparisons=tuple(each.sentence for each in found.comparisons),
+        plots=tuple(plots(found, name=anchor)),
+        schemes=tuple(_scheme(line) for line in own),
+        groups=tuple(_group(line) for line in found.lines),
+        systems=tuple(_system(point) for point in found.systems),
+        systems_of=f"{found.systems_scheme} at h = {found.systems_step_size}",
+        count=sum(len(line.points) for line in found.lines),
+        computed=_computed(found),
+        left_out=found.left_out,
+    )
+
+
+# -- sentences ------------------------------------------------------------------------------------
+
+
+def _finding(found: WorkPrecisionResult) -> Iterator[str]:
+    yield (
+        f"The error is that of the float64 state at T = {number(found.time)} from {start(found)}, "
+        "against the exact solution, which is known to within "
+        f"{number(found.reference_bound)}."
+    )
+    points = [point for line in found.lines if not line.peer for point in line.points]
+    rounded = sum(point.limited_by == "rounding" for point in points)
+    lost = sum(point.limited_by == "failed" for point in points)
+    if rounded:
+        yield (
+            f"Of {whole(len(points))} runs, {whole(rounded)} "
+            f"{'is' if rounded == 1 else 'are'} limited by rounding: hollow, and in no slope."
+        )
+    if lost:
+        yield f"{whole(lost)} {'run' if lost == 1 else 'runs'} left the range of float64."
+
+
+def _computed(found: WorkPrecisionResult) -> str:
+    return (
+        f"Reference: {found.reference}, its bound estimated by a second evaluation with more "
+        "digits. "
+        f"Run times: {found.clock} on {found.machine}, the least and the median of "
+        f"{found.repeats} rounds over all points in turn, after a warm-up; what an empty call "
+        "takes is subtracted, compilation is apart. The loops are compiled and step the state "
+        f"alone. A point is limited by rounding where that may be more than "
+        f"{100 * float(found.rounding_share):g}{NBSP}% of its error. At equal run time only runs "
+        f"are compared whose error is not larger than the orbit itself, {number(found.scale)}."
+    )
+
+
+# -- tables ---------------------------------------------------------------------------------------
+
+
+def _scheme(line: WorkLine) -> SchemeRow:
+    cells = (
+        "–" if line.order is None else str(line.order),
+        _slope(line.error_slope),
+        "0, proved" if line.area_preserving else _slope(line.lambda_slope),
+        *_operations(line.cost),
+        _seconds(line.compile_seconds),
+    )
+    return SchemeRow(line.name, cells)
+
+
+def _slope(found: SlopeResult) -> str:
+    if found.value is None:
+        return "–"
+    return f"{float(found.value):.2f}{NBSP}±{NBSP}{float(found.standard_error or 0):.2f}"
+
+
+def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
+    if cost is None:
+        return "–", "–"
+    shown = _UNIT.sub(rf"\1{NBSP}", cost.text)
+    if cost.gradient is None:
+        return shown, "–"
+    counted = (
+        Markup("{}{}H<sub>{}</sub>").format(n, NBSP, name[-1]) for name, n in cost.gradient.items()
+    )
+    return shown, Markup(", ").join(counted)
+
+
+def _group(line: WorkLine) -> LineGroup:
+    about = "compiled in " if not line.peer else "made ready in "
+    return LineGroup(
+        line.name, f"{about}{_seconds(line.compile_seconds)}", tuple(map(_row, line.points))
+    )
+
+
+def _row(point: WorkPoint) -> PointRow:
+    label = step(point.step_size) if point.step_size else number(point.tolerance or "")
+    failure = ""
+    if point.limited_by == "failed":
+        at = f" at step {whole(point.failed_step)}" if point.failed_step else ""
+        failure = f"failed{at}: {point.reason}"
+    values = (point.error, point.rounding, point.energy, point.lam, point.lam_plain)
+    return PointRow(
+        label,
+        "–" if point.steps is None else whole(point.steps),
+        (
+            *map(_value, values),
+            escape(_seconds(point.seconds_min)),
+            escape(_seconds(point.seconds_median)),
+        ),
+        LIMITS[point.limited_by],
+        failure,
+    )
+
+
+def _value(value: Value | None) -> Markup:
+    if value is None:
+        return Markup("–")
+    if Decimal(value.value) == 0 and value.bound != "0":
+        return Markup("|·|{0}≤{0}{1}").format(NBSP, few(value.bound))
+    return Markup("{}").format(few(value.value))
+
+
+def _system(point: SystemPoint) -> SystemRow:
+    cells = (
+        str(point.digits),
+        point.certified or f"– ({point.reason})",
+        _seconds(point.seconds_min),
+        _seconds(point.seconds_median),
+        f"{point.error_kind} ({point.reason})" if point.reason else point.error_kind,
+    )
+    return SystemRow(point.arithmetic, cells)
+
+
+def _seconds(seconds: float | None) -> str:
+    return "–" if seconds is None else number(f"{seconds:.2e}")
+
+
+_TERMS = {
+    "Limited by rounding": Markup(
+        "The float64 run differs from the same steps in exact arithmetic by a part of its error "
+        "that counts: smaller steps make it no better. Such points are hollow, and no slope is "
+        "fitted to them."
+    ),
+}
+SECTION = Section(
+    order=10,
+    title="Error against run time",
+    anchor="work",
+    view=_view,
+    pictures=lambda view: [Picture((5,), plot) for plot in view.plots],
+    terms=lambda _: _TERMS | words.RAN,
+)

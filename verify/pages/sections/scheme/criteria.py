@@ -1,0 +1,17 @@
+"""The four criteria of area preservation, for one scheme."""
+
+from verify.pages.sections.section import Section
+from verify.scenes.results.claim import CriterionResult
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import SceneResult
+from verify.studies.criteria import NAMES
+
+CriteriaView = tuple[tuple[CriterionResult, str], ...]  # each with what it asks for
+
+
+def _view(scene: SceneResult, proof: ProofResult, _: str) -> CriteriaView | None:
+    own = (c for c in scene.criteria if c.scheme == proof.scheme)
+    return tuple((c, NAMES.get(c.number, "")) for c in own) or None
+
+
+SECTION = Section(order=30, view=_view)

@@ -1,0 +1,42 @@
+"""What holds of a scheme for every Hamiltonian, where that was asked for."""
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from verify.pages.sections.section import Section
+from verify.pages.text.typography import prose, sentence
+from verify.scenes.results.proof import EveryResult, ProofResult
+from verify.scenes.results.report import SceneResult
+
+_LONGEST_POTENTIAL = 200  # characters of a G that stands in a sentence
+
+
+@dataclass(frozen=True)
+class EveryView:
+    """The result, and what it says in sentences."""
+
+    result: EveryResult
+    finding: Markup
+
+
+def _view(scene: SceneResult, proof: ProofResult, _: str) -> EveryView | None:
+    own = next((each for each in scene.every if each.scheme == proof.scheme), None)
+    return EveryView(own, _finding(own)) if own else None
+
+
+def _finding(every: EveryResult) -> Markup:
+    found = [sentence(every.reason)]
+    if every.formula:
+        found.append(sentence(f"It is {every.formula}"))
+    if every.telescopes:
+        found.append(Markup("Along an orbit it telescopes, for it is X·G with"))
+        if every.potential and len(every.potential) < _LONGEST_POTENTIAL:
+            found.append(prose(f"G = {every.potential}") + ":")
+        found.append(sentence(every.why))
+    elif every.telescopes is False:
+        found.append(Markup("It does not telescope: {}").format(sentence(every.why)))
+    return Markup(" ").join(found)
+
+
+SECTION = Section(order=20, view=_view)

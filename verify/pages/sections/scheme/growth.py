@@ -1,0 +1,264 @@
+"""The growth law of Λ as the page shows it: sentences, a figure and a table, all from the data."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.figures.logarithm import lg
+from verify.pages.sections.section import Section
+from verify.pages.text import mathml
+from verify.pages.text.typography import NBSP, listed, number, start, step, superscript, whole
+from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import SceneResult
+
+if TYPE_CHECKING:
+    from verify.pages.figures.growth_figure import Orbit
+
+MOST_ROWS = 600
+
+
+@dataclass(frozen=True)
+class PredictionRow:
+    step_size: str
+    steps: str
+    cells: tuple[str, ...]  # boundary, secular, predicted, measured, difference
+
+
+@dataclass(frozen=True)
+class OrbitGroup:
+    """One initial value: its orbit in a sentence, and its runs."""
+
+    label: str
+    orbit: str
+    rows: tuple[PredictionRow, ...]
+
+
+@dataclass(frozen=True)
+class GrowthView:
+    scheme: str
+    law: Markup
+    finding: tuple[str, ...]
+    plots: tuple[Plot, ...]
+    groups: tuple[OrbitGroup, ...]
+    count: int
+    computed: str
+
+
+def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | None:
+    laws = [each for each in scene.growth_laws if each.law.scheme == proof.scheme]
+    if not laws:
+        return None
+    return GrowthView(
+        scheme=proof.scheme,
+        law=_law(laws[0].law),
+        finding=tuple(_finding(laws, scene.growth_explains)),
+        plots=tuple(_plots(laws, anchor)),
+        groups=tuple(_groups(laws)),
+        count=sum(len(each.predictions) for each in laws),
+        computed=_computed(laws),
+    )
+
+
+# -- sentences ------------------------------------------------------------------------------------
+
+
+def _law(law: AverageResult) -> Markup:
+    """The law with its G and g."""
+    if not law.power:
+        return Markup("There is no growth law: {}.").format(law.reason)
+    n = law.power
+    g = Markup("g = {}").format(mathml.formula(law.g))
+    if not law.potential:
+        return Markup(
+            "log(1 + Λ) = {0} (T ⟨g⟩ + [B]) + a remainder, with {1}: the leading coefficient of "
+            "ΔJ does not telescope."
+        ).format(_h(n), g)
+    return Markup(
+        "log(1 + Λ) = {0} [G] + {1} (T ⟨g⟩ + [B − ½ X G]) + a remainder, with G = {2}, whose "
+        "derivative along the flow is the leading coefficient of ΔJ, and {3}, the next one."
+    ).format(_h(n - 1), _h(n), mathml.formula(law.potential), g)
+
+
+def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
+    known = [each.law for each in laws if each.law.average]
+    if not laws[0].law.power:
+        return
+    yield (
+        "What stands in brackets is a difference between the two ends of the run: it is bounded "
+        "whatever T is, and goes up and down with where on its orbit the run happens to end. "
+        f"log(1 + Λ) grows at the rate {_h(laws[0].law.power)} ⟨g⟩, and ⟨g⟩, the time average "
+        "along the exact orbit, is decided by the initial value alone."
+    )
+    if len(known) > 1:
+        rates = sorted((Fraction(law.average.value) for law in known if law.average), key=abs)
+        low, high = (_few(rate) for rate in (rates[0], rates[-1]))
+        yield f"⟨g⟩ is {low} … {high} over the {len(known)} orbits."
+    if explains:
+        yield (
+            f"That is the pattern in {explains}: at one h, the Λ of different initial values are "
+            "as their ⟨g⟩, and only the bounded part looks irregular."
+        )
+    yield from _agreement([p for each in laws for p in each.predictions])
+    unknown = len(laws) - len(known)
+    if unknown:
+        have = "has" if unknown == 1 else "have"
+        count = f"Of {len(laws)} initial values, {unknown}"
+        yield f"{count} {have} no known average; the table says why."
+
+
+def _agreement(found: Sequence[PredictionResult]) -> Iterator[str]:
+    gaps = [(abs(Fraction(p.difference.value)), p) for p in found if p.difference]
+    if not gaps:
+        return
+    worst, at = max(gaps, key=lambda gap: gap[0])
+    ratio = max(gap / Fraction(p.step_size) for gap, p in gaps)
+    runs = "the one run" if len(gaps) == 1 else f"the {whole(len(gaps))} runs"
+    yield (
+        f"Over {runs}, predicted and measured Λ differ by at most {_few(worst)} of Λ "
+        f"(at h = {step(at.step_size)}), and by at most {_few(ratio)} h of it."
+    )
+    shares = [share for p in found if (share := _share(p)) is not None]
+    if shares:
+        low, high = _percent(min(shares)), _percent(max(shares))
+        parts = low if low == high else f"{low} to {high}"
+        yield f"The bounded part is {parts} as large as the secular one."
+
+
+def _share(p: PredictionResult) -> Fraction | None:
+    secular = abs(Fraction(p.secular.value))
+    return abs(Fraction(p.boundary.value)) / secular if secular else None
+
+
+def _computed(laws: Sequence[GrowthLawResult]) -> str:
+    methods = dict.fromkeys(
+        f"{each.law.error_kind} ({each.law.error_method})" for each in laws if each.law.average
+    )
+    if not methods:
+        return ""
+    return (
+        f"⟨g⟩ by quadrature over one period of the exact flow; its error is {listed(methods)}. "
+        "The difference has no bound of its own: it is the law’s remainder."
+    )
+
+
+def _h(power: int) -> str:
+    return "h" if power == 1 else f"h{superscript(power)}"
+
+
+def _few(value: Fraction) -> str:
+    size = float(value)
+    if value and not 1e-3 <= abs(size) < 1e4:
+        return number(f"{size:.2e}")
+    return number(f"{size:.3g}")
+
+
+def _percent(value: Fraction) -> str:
+    return f"{float(100 * value):.2g}{NBSP}%" if value < 10 else f"{float(value):.2g} times"
+
+
+# -- figure ---------------------------------------------------------------------------------------
+
+
+def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
+    """|Λ| predicted and measured, where there are step sizes to compare."""
+    drawable = [each for each in laws if len(_orbit_figure(each)) > 1]
+    if not drawable:
+        return
+    from verify.pages.figures import growth_figure
+
+    lead = "Λ as the growth law predicts it and as measured, against the step size h"
+    svg = growth_figure.predicted_against_measured(
+        orbits(laws), name=f"growth-of-{name}", label=lead
+    )
+    yield Plot(svg, f"{lead}.", _caption(drawable[0].law))
+
+
+def orbits(laws: Sequence[GrowthLawResult]) -> "list[Orbit]":
+    """Those along which two step sizes and more can be drawn."""
+    return [_orbit(each) for each in laws if len(_orbit_figure(each)) > 1]
+
+
+def _caption(law: AverageResult) -> str:
+    drift = ""
+    if law.potential:
+        drift = (
+            f", which for this scheme is O({_h(law.power)} T) of it: there the slope is {law.power}"
+        )
+    return (
+        f"(a) Each line is {_h(law.power)} T ⟨g⟩ and the bounded part at the run’s own end. (b) By "
+        "what they differ, as a part of the measured Λ. The law’s remainder is O(h) of the secular "
+        "part (grey: the slope of h), and beyond that what the slow drift of the energy makes of "
+        f"⟨g⟩{drift}."
+    )
+
+
+def _orbit_figure(each: GrowthLawResult) -> list[PredictionResult]:
+    """Those of whose Λ and difference a digit is known."""
+    return [
+        p
+        for p in each.predictions
+        if p.difference
+        and all(isfinite(lg(v.value)) for v in (p.difference, p.predicted, p.measured))
+    ]
+
+
+def _orbit(each: GrowthLawResult) -> "Orbit":
+    from verify.pages.figures import growth_figure
+    from verify.pages.figures.figures import Line
+
+    def line(values: Iterator[tuple[str, Value | None]]) -> Line:
+        placed = ((h, lg(value.value)) for h, value in values if value)
+        return Line(start(each.law), tuple(placed))
+
+    points = _orbit_figure(each)
+    return growth_figure.Orbit(
+        predicted=line((p.step_size, p.predicted) for p in points),
+        measured=line((p.step_size, p.measured) for p in points),
+        difference=line((p.step_size, p.difference) for p in points),
+    )
+
+
+# -- table ----------------------------------------------------------------------------------------
+
+
+def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[OrbitGroup]:
+    left = MOST_ROWS
+    for each in laws:
+        shown = each.predictions[:left]
+        left -= len(shown)
+        yield OrbitGroup(start(each.law), _about(each.law), tuple(_row(p) for p in shown))
+
+
+def _about(law: AverageResult) -> str:
+    if law.average is None:
+        return law.reason
+    period = f", P = {few(law.period.value)}" if law.period else ""
+    rate = few(law.average.value)
+    if Decimal(law.average.value) == 0 and law.average.bound != "0":
+        rate = f"0 to within {number(law.average.bound)}"
+    return f"{law.orbit}{period}, ⟨g⟩ = {rate}"
+
+
+def _row(p: PredictionResult) -> PredictionRow:
+    values = (p.boundary, p.secular, p.predicted, p.measured, p.difference)
+    cells = tuple(few(v.value) if v else "–" for v in values)
+    return PredictionRow(step(p.step_size), whole(p.steps), cells)
+
+
+_TERMS = {
+    "Growth law": Markup(
+        "log(1 + Λ) as a bounded part, a secular part that grows with T, and a remainder of proved "
+        "order. X is the derivative along the exact flow; [F] is F at the end of the run minus F "
+        "at its start; X G is the leading coefficient of ΔJ; ⟨g⟩ is the time average of g along "
+        "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
+    ),
+}
+SECTION = Section(order=60, title="Growth law of Λ", view=_view, terms=lambda _: _TERMS)

@@ -1,0 +1,32 @@
+"""What is proved of a scheme: its map, its Jacobian matrix, ΔJ and both orders."""
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from verify.pages.sections.section import Section
+from verify.pages.text import mathml
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import SceneResult
+
+
+@dataclass(frozen=True)
+class ProofView:
+    """`matrix` and `leading` are None where they are not known or too long to be shown."""
+
+    proof: ProofResult
+    matrix: Markup | None
+    leading: Markup | None
+
+
+def _view(_: SceneResult, proof: ProofResult, __: str) -> ProofView:
+    return ProofView(
+        proof=proof,
+        matrix=mathml.matrix(mathml.NAMED["J"], proof.jacobian) if proof.jacobian else None,
+        leading=(
+            None if proof.order is None else mathml.order_equation(proof.leading, proof.order)
+        ),
+    )
+
+
+SECTION = Section(order=10, view=_view)

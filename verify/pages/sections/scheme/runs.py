@@ -1,0 +1,121 @@
+"""The runs of one scheme as a table, and in sentences: arithmetic, certainty, fallbacks."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from verify.pages.figures.captioned_plot import computed
+from verify.pages.sections.section import Section
+from verify.pages.text import words
+from verify.pages.text.typography import number, start, value, whole
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import SceneResult
+from verify.scenes.results.run import RunResult
+
+MOST_ROWS = 600  # of a table of runs; the others are in results.json
+_COLUMNS = {
+    "mse": "MSE",
+    "delta_j_max": "max |ΔJ|",
+    "lambda": "Λ by closed form",
+    "lambda_plain": "Λ the plain way",
+}
+
+
+@dataclass(frozen=True)
+class RunRow:
+    step_size: str
+    steps: str
+    cells: tuple[Markup, ...]  # empty where there is nothing to show but `failure`
+    failure: str
+
+
+@dataclass(frozen=True)
+class RunTable:
+    """The runs of one scheme: a column an observable, a group an initial value."""
+
+    scheme: str
+    columns: tuple[str, ...]
+    groups: tuple[tuple[str, tuple[RunRow, ...]], ...]
+    count: int
+    shown: int
+    computed: str
+    certainty: str  # which of the bounds are rigorous
+    fallbacks: tuple[str, ...]  # where another arithmetic was taken than the one asked for
+    proved: tuple[str, ...]  # the columns that a proof gave, for all runs
+
+
+def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
+    runs = [run for run in scene.runs if run.scheme == proof.scheme]
+    names = [n for n in _COLUMNS if any(n in run.values for run in runs)]
+    if not names and all(run.status == "finished" for run in runs):
+        return None
+    shown = runs[:MOST_ROWS]
+    return RunTable(
+        scheme=proof.scheme,
+        columns=tuple(_COLUMNS[n] for n in names) or ("outcome",),
+        groups=tuple(_groups(shown, names)),
+        count=len(runs),
+        shown=len(shown),
+        computed=computed(runs),
+        certainty=_certainty(runs),
+        fallbacks=tuple(_fallbacks(runs)),
+        proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),
+    )
+
+
+def _certainty(runs: Sequence[RunResult]) -> str:
+    """How many of the runs are certified, in a sentence."""
+    finished = [run for run in runs if run.status == "finished"]
+    certain = sum(run.error_kind == "enclosed" for run in finished)
+    if not finished:
+        return ""
+    if certain == len(finished):
+        every = "The run is" if certain == 1 else f"All {whole(certain)} runs are"
+        return (
+            f"{every} certified: the error bounds are rigorous (enclosed), so each value is proved "
+            "to lie within its bound."
+        )
+    if certain == 0:
+        return "The error bounds are estimates, not certificates."
+    return (
+        f"{whole(certain)} of {whole(len(finished))} runs are certified, with rigorous (enclosed) "
+        "error bounds; the bounds of the others are estimates."
+    )
+
+
+def _fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
+    """Each reason for another arithmetic than the one asked for, with its runs."""
+    groups: dict[tuple[str, str], list[RunResult]] = {}
+    for run in runs:
+        if run.fallback:
+            groups.setdefault((run.arithmetic, run.fallback), []).append(run)
+    for (arithmetic, reason), held in groups.items():
+        sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in held))
+        count = "One run" if len(held) == 1 else f"{whole(len(held))} runs"
+        yield f"{count} (h = {sizes}) went to {arithmetic} instead: {reason}"
+
+
+def _groups(
+    runs: Sequence[RunResult], names: Sequence[str]
+) -> Iterator[tuple[str, tuple[RunRow, ...]]]:
+    groups: dict[str, list[RunRow]] = {}
+    for run in runs:
+        groups.setdefault(start(run), []).append(_row(run, names))
+    for label, rows in groups.items():
+        yield label, tuple(rows)
+
+
+def _row(run: RunResult, names: Sequence[str]) -> RunRow:
+    failure = ""
+    if run.status == "left range":
+        failure = f"left the range of {run.arithmetic}"
+        if run.failed_step is not None:
+            failure += f" at step {whole(run.failed_step)}"
+    elif run.status == "unresolved":
+        failure = f"no digit could be confirmed: {run.error_method}"
+    cells = tuple(value(run.values[n]) if n in run.values else Markup("–") for n in names)
+    return RunRow(run.step_size, whole(run.steps), () if failure else cells, failure)
+
+
+SECTION = Section(order=80, view=_view, terms=lambda _: words.RAN)

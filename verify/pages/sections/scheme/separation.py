@@ -1,0 +1,203 @@
+"""Truncation against rounding in Λ as the page shows it: sentences, figures and tables."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+
+from markupsafe import Markup
+
+from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.figures.separation_caption import WAYS, caption, end_of
+from verify.pages.sections.section import Picture, Section
+from verify.pages.sections.separation_finding import (
+    PARTS,
+    computed,
+    decades_below,
+    finding,
+    greatest_part,
+    growth_finding,
+)
+from verify.pages.text import words
+from verify.pages.text.typography import NBSP, number, start, step, whole
+from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import SceneResult
+from verify.scenes.results.separation import (
+    EvaluationResult,
+    GrowthResult,
+    SeparationGrid,
+    SeparationResult,
+)
+
+MOST_ROWS = 600
+
+
+@dataclass(frozen=True)
+class PartsRow:
+    """One entry: its parts, then under each rounding how it compares with truncation."""
+
+    step_size: str
+    steps: str
+    truncation: Markup
+    plain: Markup
+    parts: tuple[Markup, ...]
+    closed_form: Markup
+    failure: str
+
+
+@dataclass(frozen=True)
+class GrowthRow:
+    step_size: str
+    steps: str
+    ways: tuple[Markup, ...]
+
+
+@dataclass(frozen=True)
+class Group:
+    """The entries of one initial value."""
+
+    label: str
+    parts: tuple[PartsRow, ...]
+    growth: tuple[GrowthRow, ...]
+
+
+@dataclass(frozen=True)
+class SeparationView:
+    scheme: str
+    finding: tuple[str, ...]
+    plots: tuple[Plot, ...]
+    groups: tuple[Group, ...]
+    count: int
+    shown: int
+    growth: str
+    computed: str
+
+
+def _of(grids: Sequence[SeparationGrid], proof: ProofResult) -> list[SeparationGrid]:
+    return [g for g in grids if g.points and g.points[0].scheme == proof.scheme]
+
+
+def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView | None:
+    own, wide = _of(scene.separations, proof), _of(scene.crossovers, proof)
+    if not own and not wide:
+        return None
+    of_grid = [point for grid in own or wide for point in grid.points]
+    rows = [point for grid in (*own, *wide) for point in grid.points]
+    return SeparationView(
+        scheme=proof.scheme,
+        finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
+        plots=tuple(_plots(wide, anchor)),
+        groups=tuple(_groups([*own, *wide])),
+        count=len(rows),
+        shown=min(len(rows), MOST_ROWS),
+        growth=growth_finding(of_grid),
+        computed=computed(rows),
+    )
+
+
+# -- figures --------------------------------------------------------------------------------------
+
+
+def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
+    """A figure for each grid over which truncation and rounding can be drawn."""
+    if not grids:
+        return
+    from verify.pages.figures import crossover_figure
+
+    for index, grid in enumerate(grids):
+        lines, marks = crossover_figure.contents(grid)
+        if len(lines) < 2:
+            continue
+        first = grid.points[0]
+        lead = f"Truncation and rounding in Λ against h, from {start(first)}{end_of(grid.points)}"
+        svg = crossover_figure.truncation_against_rounding(
+            lines, marks, name=f"crossover-{index}-of-{name}", label=f"{lead}."
+        )
+        yield Plot(svg, f"{lead}.", caption(grid, computed(grid.points)))
+
+
+# -- tables ---------------------------------------------------------------------------------------
+
+
+def _groups(grids: Sequence[SeparationGrid]) -> Iterator[Group]:
+    left = MOST_ROWS
+    for grid in grids:
+        points = sorted(grid.points[:left], key=lambda point: Fraction(point.step_size))
+        left -= len(points)
+        if points:
+            yield Group(
+                label=start(points[0]) + end_of(grid.points),
+                parts=tuple(_parts_row(point) for point in points),
+                growth=tuple(_growth_row(point) for point in points if point.plain),
+            )
+
+
+def _parts_row(point: SeparationResult) -> PartsRow:
+    h, steps, none = step(point.step_size), whole(point.steps), Markup("–")
+    if point.plain is None:
+        failure = point.reason or point.status
+        return PartsRow(h, steps, none, none, (), none, failure)
+    parts, closed = point.plain.parts, point.closed_form
+    greatest = greatest_part(point.plain)
+    return PartsRow(
+        step_size=h,
+        steps=steps,
+        truncation=_bounded_number(parts.truncation),
+        plain=_compared(point.plain),
+        parts=tuple(
+            _bounded_number(getattr(parts, name), strong=name == greatest) for name in PARTS
+        ),
+        closed_form=_compared(closed) if closed else none,
+        failure="",
+    )
+
+
+def _bounded_number(found: Value, *, strong: bool = False) -> Markup:
+    """The first of the known digits; where none is known, the bound."""
+    if Decimal(found.value) == 0 and found.bound != "0":
+        return Markup("|·|{0}≤{0}{1}").format(NBSP, few(found.bound))
+    shown = Markup("<b>{}</b>") if strong else Markup("{}")
+    return shown.format(few(found.value))
+
+
+def _compared(evaluation: EvaluationResult) -> Markup:
+    gap = decades_below(evaluation)
+    if gap is None:
+        return _bounded_number(evaluation.parts.total)
+    side = "below" if gap > 0 else "above"
+    kind = "bound" if gap > 0 else "bound over"
+    return Markup('{} <span class="{}">{:.1f} decades {}</span>').format(
+        _bounded_number(evaluation.parts.total), kind, abs(gap), side
+    )
+
+
+def _growth_row(point: SeparationResult) -> GrowthRow:
+    ways = (getattr(point, way) for way in WAYS)
+    return GrowthRow(
+        step(point.step_size),
+        whole(point.steps),
+        tuple(_growth(each.growth["total"]) if each else Markup("–") for each in ways),
+    )
+
+
+def _growth(found: GrowthResult) -> Markup:
+    if found.exponent is None:
+        return Markup('{} <span class="bound">{}</span>').format(found.name, found.reason)
+    exponent = f"{number(found.exponent)}{NBSP}±{NBSP}{found.standard_error}"
+    return Markup('{} <span class="muted beside">{}</span>').format(exponent, found.name)
+
+
+_CROSSED = {
+    "Crossover h*": Markup(
+        "The step size below which rounding is larger than truncation, interpolated in logarithms "
+        "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
+    ),
+}
+SECTION = Section(
+    order=70,
+    title="Truncation against rounding",
+    view=_view,
+    pictures=lambda view: [Picture((3,), plot) for plot in view.plots],
+    terms=lambda _: words.SEPARATED | _CROSSED | words.RAN,
+)

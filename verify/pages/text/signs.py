@@ -1,0 +1,11 @@
+"""The sign that each verdict has beside its colour, and what it means."""
+
+from verify.verdict import Verdict
+
+SIGNS = {
+    Verdict.PROVED: ("✓", "exact algebra shows it"),
+    Verdict.ENCLOSED: ("⊂", "a rigorous numeric enclosure shows it; its error bound is certain"),
+    Verdict.MEASURED: ("≈", "numbers show it; their error bounds are estimates, not certificates"),
+    Verdict.REFUTED: ("✗", "a counterexample, or the proof of the contrary, contradicts it"),
+    Verdict.UNDECIDED: ("?", "neither shown nor contradicted by what was computed"),
+}
