@@ -7,7 +7,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.text import mathml, typography, words
+from verify.pages.text import mathml, prose, typography, words
 from verify.pages.text.signs import SIGNS
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -23,9 +23,9 @@ def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Envi
         lstrip_blocks=True,
     )
     made.filters.update(
-        prose=typography.prose,
-        sentence=typography.sentence,
-        cell=typography.cell,
+        prose=prose.prose,
+        sentence=prose.sentence,
+        cell=prose.cell,
         is_number=typography.is_number,
         number=typography.number,
         whole=typography.whole,

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import prose, sentence
+from verify.pages.text.prose import prose, sentence
+from verify.prose import Formula, Prose
 from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.report import SceneResult
 
@@ -28,11 +29,11 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> EveryView | None:
 def _finding(every: EveryResult) -> Markup:
     found = [sentence(every.reason)]
     if every.formula:
-        found.append(sentence(f"It is {every.formula}"))
+        found.append(sentence(Prose("It is ", Formula(every.formula))))
     if every.telescopes:
         found.append(Markup("Along an orbit it telescopes, for it is X·G with"))
         if every.potential and len(every.potential) < _LONGEST_POTENTIAL:
-            found.append(prose(f"G = {every.potential}") + ":")
+            found.append(prose(Prose("G = ", Formula(every.potential))) + ":")
         found.append(sentence(every.why))
     elif every.telescopes is False:
         found.append(Markup("It does not telescope: {}").format(sentence(every.why)))

@@ -1,0 +1,64 @@
+"""A formula alone, as people write it in prose: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}`.
+
+What is not recognised is escaped as it is.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+
+from markupsafe import Markup, escape
+
+from verify.pages.text.typography import superscript
+
+Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]
+
+
+def notation(text: str) -> Markup:
+    """The formula with its indices and powers set as such.
+
+    >>> str(notation("L_{H_p}(q_k) + O(h^12)"))
+    'L<sub>H<sub>p</sub></sub>(q<sub>k</sub>) + O(h¹²)'
+    """
+    return applied(text, (INDEX, POWER, RAISED))
+
+
+def applied(text: str, rules: Sequence[Rule]) -> Markup:
+    """The text with the rules applied, each to what the ones before it left."""
+    if not rules:
+        return escape(text)
+    (pattern, setting), *others = rules
+    parts, rest = [], 0
+    for match in pattern.finditer(text):
+        parts += [applied(text[rest : match.start()], others), setting(match)]
+        rest = match.end()
+    return Markup("").join([*parts, applied(text[rest:], others)])
+
+
+def _lowered(match: re.Match[str]) -> Markup:
+    return Markup("{}<sub>{}</sub>").format(match[1], notation(_unbracketed(match[2])))
+
+
+def _power(match: re.Match[str]) -> Markup:
+    if match[2] == "1":
+        return escape(match[1])
+    return Markup("{}{}").format(match[1], superscript(int(match[2])))
+
+
+def _raised(match: re.Match[str]) -> Markup:
+    return Markup("<sup>{}</sup>").format(notation(_unbracketed(match[1])))
+
+
+def _unbracketed(text: str) -> str:
+    return text[1:-1] if text[0] in "({" else text
+
+
+# A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}.
+INDEX: Rule = (
+    re.compile(
+        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ])[\u0300-\u036f]?|(?<=[a-z])[A-Z])_"
+        r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
+    ),
+    _lowered,
+)
+POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b"), _power)
+RAISED: Rule = (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+)"), _raised)

@@ -1,0 +1,49 @@
+"""What results say, as the pages set it: a `Prose` by its parts, a plain text as it is read.
+
+Everything here starts from text that others wrote; what is not recognised is escaped as it is.
+"""
+
+import re
+
+from markupsafe import Markup, escape
+
+from verify.pages.text import mathml
+from verify.pages.text.notation import notation
+from verify.pages.text.plain_prose import plain_prose
+from verify.pages.text.typography import is_number, number
+from verify.prose import Formula, Number, Prose
+
+
+def prose(text: str) -> Markup:
+    """Evidence or a statement, with its formulas and numbers set properly.
+
+    >>> str(prose(Prose("2 * 3 of ", Formula("e^(Nε)"), " below ", Number("1e-9"))))
+    '2 * 3 of e<sup>Nε</sup> below 1\\xa0×\\xa010⁻⁹'
+    """
+    if isinstance(text, Prose):
+        return Markup("").join(map(_part, text.parts))
+    return plain_prose(text)
+
+
+def _part(part: str) -> Markup:
+    if isinstance(part, Number):
+        return escape(number(part))
+    if isinstance(part, Formula):
+        return notation(part) if mathml.read(part) is None else mathml.formula(part)
+    return escape(part)
+
+
+def sentence(text: str) -> Markup:
+    """Prose as a sentence of its own: with a capital, unless it opens with a name, and a stop."""
+    parts = text.parts if isinstance(text, Prose) else (str(text),)
+    opening = parts[0] if parts and type(parts[0]) is str else ""
+    if re.match(r"(?!det )[a-z]{2,}[ ,]", opening):
+        parts = (opening[0].upper() + opening[1:], *parts[1:])
+    if not text.endswith((".", "!", "?")):
+        parts = (*parts, ".")
+    return prose(Prose(*parts) if isinstance(text, Prose) else "".join(parts))
+
+
+def cell(text: str) -> Markup:
+    """A table's cell: a number, or a short text."""
+    return escape(number(text)) if is_number(text) else prose(text)
