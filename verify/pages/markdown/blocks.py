@@ -142,6 +142,6 @@ def _code(node: Node) -> Markdown:
 
 def _list(items: Iterable[list[Markdown]]) -> Markdown:
     """Each item with what belongs to it below its text."""
-    shown = ["\n\n".join(item).replace("\n", "\n  ") for item in items]
+    shown = [re.sub(r"\n(?!\n)", "\n  ", "\n\n".join(item)) for item in items]
     between = "\n\n" if any("\n" in item for item in shown) else "\n"
     return Markdown(between.join(f"- {item}" for item in shown))

@@ -1,6 +1,7 @@
 """MathML, as `verify.pages.text.mathml` sets it → TeX, as a repository page sets it.
 
 Only what `verify.pages.text.mathml` writes is known; of any other element what stands in it is set.
+sympy's LaTeX printer orders terms otherwise than the page does (see there), so it is not used.
 A leaf is never taken for a command: its letters are set one by one or as upright text.
 """
 

@@ -22,7 +22,8 @@ def tables(node: Node) -> Iterator[Markdown]:
     all_rows = [row for body in groups for _, rows in body for row in rows]
     heads += [Markdown("")] * (max(map(len, all_rows), default=0) - len(heads))
     columns = ([row[i] for row in all_rows if len(row) > i] for i in range(len(heads)))
-    places = "".join(map(_place, columns))
+    numbers = "numbers" in node.classes
+    places = "".join(_place(column) if numbers else "l" for column in columns)
     for label, rows in (group for body in groups for group in body):
         if label:
             yield Markdown(f"<b>{label}</b>")
@@ -70,5 +71,7 @@ def _span(cell: Node, way: str) -> int:
 
 def _place(column: Sequence[Node]) -> str:
     """Words stand at the left, numbers at the right."""
+    if any("words" in cell.classes for cell in column):
+        return "l"
     alone = [cell.text.strip() for cell in column if _span(cell, "col") == 1]
     return "l" if any(text[:1].isalpha() for text in alone) else "r"

@@ -3,6 +3,9 @@
 The text is read by the whitelist parser and never evaluated. What that parser refuses (a formula
 longer than its limit, say) is shown as it is written. In which order sums and products go is said
 in `verify.pages.text.terms`.
+
+sympy's own printers, to MathML and to LaTeX, order sums and factors by sympy's rules (3δq² + 1,
+δh³), put every argument in growing brackets, and the first writes a minus as a hyphen.
 """
 
 import re
