@@ -6,6 +6,7 @@ in `verify.pages.text.terms`.
 
 sympy's own printers, to MathML and to LaTeX, order sums and factors by sympy's rules (3δq² + 1,
 δh³), put every argument in growing brackets, and the first writes a minus as a hyphen.
+latex2mathml, over the second, keeps that order, and sets the index of k_max as three letters.
 """
 
 import re
