@@ -3,8 +3,6 @@ given, not when something is drawn."""
 
 from fractions import Fraction
 
-from hypothesis import strategies as st
-
 from verify.arithmetic.exact import Exact, rational, text
 from verify.errors import InputError
 
@@ -36,8 +34,3 @@ def yes_no_either(name: str, value: object) -> bool | None:
     if value is not None and not isinstance(value, bool):
         raise InputError(name, value, "must be True, False, or None for either")
     return value
-
-
-def strategy_or_none(name: str, value: object) -> None:
-    if value is not None and not isinstance(value, st.SearchStrategy):
-        raise InputError(name, value, "is not a hypothesis strategy")

@@ -17,8 +17,10 @@ from typing import NamedTuple
 from hypothesis import strategies as st
 
 from verify.errors import InputError
-from verify.strategies.terms import Drawer, Limits, Sum, monomial, power
-from verify.strategies.user_terms import KINDS, TERMS_BY_KIND, Shape, TermRequest
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.strategies.terms import Drawer, Limits, Sum, combination, monomial, power
+from verify.strategies.user_terms import KINDS as KINDS
+from verify.strategies.user_terms import TERMS_BY_KIND, TermRequest
 
 NAMES = ("a", "b")
 # How often a shape is drawn, the simplest first; whether H → ∞ in every direction (None: unknown).
@@ -27,6 +29,7 @@ _Shapes = dict[str, tuple[int, bool | None]]
 _QUADRATIC: _Shapes = {"elliptic": (1, True), "hyperbolic": (1, False), "parabolic": (1, False)}
 _SHAPES: _Shapes = {"confining": (2, True), "open": (2, False), "free": (2, None)}
 _OPEN_FIRST: _Shapes = {"open": (2, False)} | _SHAPES  # p**2/2 + cos(q) is the simplest
+USUAL = Limits()
 _CHOICES = 16  # as many as the simplest formula of any plan takes
 
 
@@ -37,6 +40,11 @@ class Plan(NamedTuple):
     separable: bool
     shape: str
 
+    @property
+    def needs_term(self) -> bool:
+        """Whether a term has to stand there that makes it of this kind, or mixes p and q."""
+        return self.kind != "polynomial" or not self.separable
+
 
 @dataclass(frozen=True)
 class Formula:
@@ -46,8 +54,24 @@ class Formula:
     parameters: tuple[tuple[str, Fraction], ...]
     separable: bool
 
+    def hamiltonian(self) -> Hamiltonian:
+        return Hamiltonian.parse(self.text, dict(self.parameters))
 
-def plans(
+
+def formulas(
+    kinds: Sequence[str] = KINDS,
+    limits: Limits = USUAL,
+    *,
+    separable: bool | None = None,
+    bounded: bool | None = None,
+    with_parameters: bool = False,
+) -> st.SearchStrategy[Formula]:
+    """As `hamiltonians`, before they are parsed; parameters are names for some coefficients."""
+    tree = _tree(_plans(kinds, limits, separable, bounded))
+    return _formulas(tree, limits, with_parameters)
+
+
+def _plans(
     kinds: Sequence[str], limits: Limits, separable: bool | None, bounded: bool | None
 ) -> list[Plan]:
     """All that is asked for, the simplest first; one that is drawn twice as often stands twice."""
@@ -95,15 +119,8 @@ def _least_degree(plan: Plan) -> int:
 def _least_terms(plan: Plan) -> int:
     """How many terms it has at least."""
     if plan.shape in ("elliptic", "confining"):
-        return 2 + (plan.kind != "polynomial" or not plan.separable)
+        return 2 + plan.needs_term
     return 2 if plan.shape == "hyperbolic" and plan.separable else 1
-
-
-def formulas(
-    choices: Sequence[Plan], limits: Limits, with_parameters: bool
-) -> st.SearchStrategy[Formula]:
-    """A formula of one of the plans; its parameters are names for some of its coefficients."""
-    return _formulas(_tree(choices), limits, with_parameters)
 
 
 @st.composite
@@ -146,14 +163,10 @@ def _quadratic(d: Drawer, plan: Plan) -> Sum:
             made.add(a, f"{d.pick(('p', 'q'))}**2")
         case _:
             k = d.whole(1, 3) * d.pick((1, -1))
-            made.add(a, f"({_line(k)})**2")
+            made.add(a, f"({combination(1, k)})**2")
     if len(made) < d.limits.terms and d.whole(0, 3) == 3:
         made.add(d.signed(), d.pick(("q", "p")))
     return made
-
-
-def _line(k: int) -> str:
-    return f"p {'-' if k < 0 else '+'} {'' if abs(k) == 1 else f'{abs(k)}*'}q"
 
 
 def _definite(d: Drawer, a: Fraction, c: Fraction) -> Fraction:
@@ -211,9 +224,8 @@ def _open(d: Drawer, plan: Plan) -> Sum:
     made, degree = Sum(), d.limits.degree
     x, y = d.pick((("q", "p"), ("p", "q")))
     direction = d.pick((-1, 1))
-    needed = plan.kind != "polynomial" or not plan.separable
-    left = d.limits.terms - needed
-    if left or not needed:
+    left = d.limits.terms - plan.needs_term
+    if left or not plan.needs_term:
         made.add(d.leading(), power(y, min(d.pick((2, 1, 3, 4)), degree)))
         left -= 1
     grows = d.pick((0, 1, 2)) if left > 0 else 0
@@ -227,10 +239,7 @@ def _open(d: Drawer, plan: Plan) -> Sum:
         exponent = 0
     for _ in range(d.whole(0, max(0, left - (exponent > 0)))):
         _beside(d, made, plan, (x, y), exponent)
-    if plan.kind != "polynomial":
-        _add_term_of_kind(d, made, plan, TermRequest("open", not plan.separable, x, y, direction))
-    elif not plan.separable:
-        made.add(d.signed(), _mixed_monomial(d))
+    _add_needed(d, made, plan, TermRequest("open", not plan.separable, x, y, direction))
     return made
 
 
@@ -255,17 +264,21 @@ def _mixed_monomial(d: Drawer) -> str:
 
 def _free(d: Drawer, plan: Plan) -> Sum:
     made, degree = Sum(), d.limits.degree
-    needed = plan.kind != "polynomial" or not plan.separable
-    for _ in range(d.whole(1 - needed, d.limits.terms - needed)):
+    for _ in range(d.whole(1 - plan.needs_term, d.limits.terms - plan.needs_term)):
         if not plan.separable and degree > 1 and d.whole(0, 1):
             made.add(d.signed(), _mixed_monomial(d))
         else:
             made.add(d.signed(), power(d.pick(("p", "q")), d.whole(1, degree)))
+    _add_needed(d, made, plan, TermRequest("free", not plan.separable))
+    return made
+
+
+def _add_needed(d: Drawer, made: Sum, plan: Plan, want: TermRequest) -> None:
+    """What makes it of the plan's kind, or mixes p and q."""
     if plan.kind != "polynomial":
-        _add_term_of_kind(d, made, plan, TermRequest("free", not plan.separable))
+        _add_term_of_kind(d, made, plan, want)
     elif not plan.separable:
         made.add(d.signed(), _mixed_monomial(d))
-    return made
 
 
 def _add_term_of_kind(d: Drawer, made: Sum, plan: Plan, want: TermRequest) -> None:
@@ -273,6 +286,3 @@ def _add_term_of_kind(d: Drawer, made: Sum, plan: Plan, want: TermRequest) -> No
     for _ in range(1 + (len(made) + 1 < d.limits.terms and d.whole(0, 3) == 3)):
         numerator, denominator, positive = TERMS_BY_KIND[plan.kind](d, want)
         made.add(d.positive() if positive else d.signed(), numerator, denominator)
-
-
-__all__ = ["KINDS", "Formula", "Plan", "Shape", "formulas", "plans"]

@@ -9,7 +9,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import whole, yes_no_either
 from verify.strategies.formulas import KINDS as KINDS
-from verify.strategies.formulas import Formula, formulas, plans
+from verify.strategies.formulas import Formula, formulas
 from verify.strategies.terms import Limits
 
 _MOST_TERMS, _MOST_SIZE = 50, 10**9
@@ -44,24 +44,6 @@ def hamiltonians(
     Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
     exists, when it is called and not when it draws.
     """
-    drawn = formula_strategy(kinds, degree, terms, size, separable, bounded, with_parameters)
-    return drawn.map(hamiltonian_from)
-
-
-def hamiltonian_from(formula: Formula) -> Hamiltonian:
-    return Hamiltonian.parse(formula.text, dict(formula.parameters))
-
-
-def formula_strategy(
-    kinds: Sequence[str] = KINDS,
-    degree: int = 6,
-    terms: int = 4,
-    size: int = 9,
-    separable: bool | None = None,
-    bounded: bool | None = None,
-    with_parameters: bool = False,
-) -> st.SearchStrategy[Formula]:
-    """The same, before they are parsed."""
     if isinstance(kinds, str) or not isinstance(kinds, Sequence) or not kinds:
         raise InputError("kinds", kinds, f"is not a list of some of: {', '.join(KINDS)}")
     for kind in kinds:
@@ -76,4 +58,7 @@ def formula_strategy(
     yes_no_either("bounded", bounded)
     if not isinstance(with_parameters, bool):
         raise InputError("with_parameters", with_parameters, "must be True or False")
-    return formulas(plans(kinds, limits, separable, bounded), limits, with_parameters)
+    drawn = formulas(
+        kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters
+    )
+    return drawn.map(Formula.hamiltonian)

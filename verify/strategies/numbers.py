@@ -12,6 +12,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.values import InitialValue
 from verify.strategies.arguments import exactly, whole
+from verify.strategies.terms import signed_quotient
 
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
 _DENOMINATORS = (1, 2, 10, 3, 7, 100)
@@ -39,17 +40,8 @@ def parameters(
             raise InputError("parameter", name, "is not a name")
         parameter_name(name)
     whole("size", size, 1)
-    return st.fixed_dictionaries(dict.fromkeys(names, _signed(size)))
-
-
-def _signed(size: int) -> st.SearchStrategy[Fraction]:
-    """±n/d; the simplest is 1."""
-
-    def value(index: int) -> Fraction:
-        denominator, numerator = divmod(index // 2, size)
-        return Fraction((-1) ** index * (numerator + 1), denominator + 1)
-
-    return st.integers(0, 2 * size**2 - 1).map(value)
+    values = st.integers(0, 2 * size**2 - 1).map(lambda index: signed_quotient(index, size))
+    return st.fixed_dictionaries(dict.fromkeys(names, values))
 
 
 def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrategy[InitialValue]:
@@ -107,10 +99,7 @@ def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStr
 
     def decimal(index: int) -> Fraction:
         digits, down = divmod(index, decades)
-        exponent = magnitude(high) - down
-        return Fraction(_DIGITS[digits]) * (
-            10**exponent if exponent >= 0 else Fraction(1, 10**-exponent)
-        )
+        return _DIGITS[digits] * Fraction(10) ** (magnitude(high) - down)
 
     def within(h: Fraction) -> Fraction:
         return min(max(h, low), high)

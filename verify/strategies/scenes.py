@@ -12,10 +12,9 @@ from verify.scenes.scene import Grid, Scene
 from verify.scenes.values import MAX_STEPS, InitialValue
 from verify.schemes.scheme import Scheme
 from verify.strategies import numbers
-from verify.strategies.arguments import strategy_or_none, whole
-from verify.strategies.formulas import Formula
-from verify.strategies.hamiltonians import formula_strategy, hamiltonian_from
-from verify.strategies.schemes import choices, takers
+from verify.strategies.arguments import whole
+from verify.strategies.formulas import Formula, formulas
+from verify.strategies.schemes import named, takers
 
 
 def scenes(
@@ -40,7 +39,8 @@ def scenes(
     given = {"hamiltonians": hamiltonians, "schemes": schemes, "initial_values": initial_values,
              "step_sizes": step_sizes}  # fmt: skip
     for name, strategy in given.items():
-        strategy_or_none(name, strategy)
+        if strategy is not None and not isinstance(strategy, st.SearchStrategy):
+            raise InputError(name, strategy, "is not a hypothesis strategy")
     if not isinstance(steps, Sequence) or len(steps) != 2:
         raise InputError("steps", steps, "is not a pair: the least and the most steps")
     least, most = (whole("steps", value, 1, MAX_STEPS) for value in steps)
@@ -63,14 +63,14 @@ def _grid(steps: int, step_size: Fraction, initial_value: InitialValue) -> Grid:
 
 
 def _of_formulas(grids: st.SearchStrategy[Grid]) -> st.SearchStrategy[Scene]:
-    found = choices()
+    found = named()
     of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
     of_separable = st.sampled_from(found)
-    formulas = _formulas()
+    any_formula = _formulas()
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
-        formula = draw(formulas)
+        formula = draw(any_formula)
         return _scene(formula, draw(of_separable if formula.separable else of_any), draw(grids))
 
     return drawn()
@@ -87,7 +87,7 @@ def _of_schemes(
         formula = draw(separable if scheme.needs_separable else any_formula)
         if scheme.every_h is not None:
             return _scene(formula, scheme, draw(grids))
-        return _fitting(hamiltonian_from(formula), scheme, draw(grids))
+        return _fitting(formula.hamiltonian(), scheme, draw(grids))
 
     return drawn()
 
@@ -97,7 +97,7 @@ def _of_hamiltonians(
     schemes: st.SearchStrategy[Scheme] | None,
     grids: st.SearchStrategy[Grid],
 ) -> st.SearchStrategy[Scene]:
-    found = choices()
+    found = named()
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
@@ -112,9 +112,7 @@ def _of_hamiltonians(
 
 
 def _formulas(separable: bool | None = None) -> st.SearchStrategy[Formula]:
-    plain, named = (
-        formula_strategy(separable=separable, with_parameters=named) for named in (False, True)
-    )
+    plain, named = (formulas(separable=separable, with_parameters=named) for named in (False, True))
     return st.one_of(plain, plain, named)
 
 

@@ -34,20 +34,7 @@ def schemes(
     Shrinks towards lie1, or the first of `names`. Raises InputError for an unknown name, and where
     no scheme is left.
     """
-    found = choices(names, hamiltonian, area_preserving, explicit, symmetric, order)
-    return st.sampled_from(found)
-
-
-def choices(
-    names: Iterable[str] | None = None,
-    hamiltonian: Hamiltonian | None = None,
-    area_preserving: bool | None = None,
-    explicit: bool | None = None,
-    symmetric: bool | None = None,
-    order: int | None = None,
-) -> list[Scheme]:
-    """The schemes to choose from; one that is to be drawn more often stands there more often."""
-    found = _named(names)
+    found = named(names)
     if hamiltonian is not None and not isinstance(hamiltonian, Hamiltonian):
         raise InputError("hamiltonian", hamiltonian, "is not a Hamiltonian")
     wanted = {"area_preserving": area_preserving, "explicit": explicit, "symmetric": symmetric}
@@ -61,10 +48,11 @@ def choices(
         found = takers(found, hamiltonian)
     if not found:
         raise InputError("schemes", "none", "no scheme claims all of that and takes that H")
-    return found
+    return st.sampled_from(found)
 
 
-def _named(names: Iterable[str] | None) -> list[Scheme]:
+def named(names: Iterable[str] | None = None) -> list[Scheme]:
+    """The schemes to choose from; one that is to be drawn more often stands there more often."""
     if names is None:
         every = catalogue.names()
         family = [name for name in every if eta_of(name)]

@@ -23,13 +23,24 @@ def _range(least: int, most: int) -> st.SearchStrategy[int]:
     return st.integers(least, most)
 
 
+def quotient(index: int, size: int) -> Fraction:
+    """n/d with n, d = 1 … size, of which the index is one of size²; the first is 1."""
+    denominator, numerator = divmod(index, size)
+    return Fraction(numerator + 1, denominator + 1)
+
+
+def signed_quotient(index: int, size: int) -> Fraction:
+    """The same with both signs by turns, of which there are 2·size²; the first is 1."""
+    return (-1) ** index * quotient(index // 2, size)
+
+
 @dataclass(frozen=True)
 class Limits:
     """`degree` of the polynomial part, number of `terms`, `size` of numerators, denominators."""
 
-    degree: int
-    terms: int
-    size: int
+    degree: int = 6
+    terms: int = 4
+    size: int = 9
 
 
 @dataclass
@@ -59,8 +70,8 @@ class Drawer:
 
     def positive(self) -> Fraction:
         """n/d with n, d = 1 … size; the simplest is 1."""
-        numerator, denominator = self._pair(self.whole(0, self.limits.size**2 - 1))
-        return Fraction(numerator, denominator)
+        size = self.limits.size
+        return quotient(self.whole(0, size**2 - 1), size)
 
     def leading(self) -> Fraction:
         """The same, where the simplest is 1/2: H shrinks towards p²/2 + q²/2."""
@@ -71,13 +82,8 @@ class Drawer:
 
     def signed(self) -> Fraction:
         """n/d with n, d = 1 … size and either sign; the simplest is 1."""
-        index = self.whole(0, 2 * self.limits.size**2 - 1)
-        numerator, denominator = self._pair(index // 2)
-        return Fraction(-numerator if index % 2 else numerator, denominator)
-
-    def _pair(self, index: int) -> tuple[int, int]:
-        denominator, numerator = divmod(index, self.limits.size)
-        return numerator + 1, denominator + 1
+        size = self.limits.size
+        return signed_quotient(self.whole(0, 2 * size**2 - 1), size)
 
     def inner(self) -> int:
         """The k of sin(k*q)."""
@@ -104,24 +110,13 @@ class Sum:
         """The formula; `names`: what stands for the coefficient of which term."""
         text = ""
         for index, ((numerator, denominator), value) in enumerate(self.terms.items()):
-            given = index in names
-            minus = value < 0 and not given
-            over = 1 if given else value.denominator
-            many = names[index] if given else str(abs(value.numerator))
-            top = (
-                numerator
-                if many == "1" and numerator
-                else "*".join(filter(None, (many, numerator)))
-            )
-            part = "/".join(
-                [
-                    top,
-                    *([f"({denominator})"] if denominator else []),
-                    *([str(over)] if over > 1 else []),
-                ]
-            )
+            minus, factor, over = value < 0, str(abs(value.numerator)), str(value.denominator)
+            if index in names:
+                minus, factor, over = False, names[index], "1"
+            top = "*".join(x for x in (factor, numerator) if x not in ("", "1")) or "1"
+            below = (f"({denominator})" if denominator else "", "" if over == "1" else over)
             sign = (" - " if minus else " + ") if text else ("-" if minus else "")
-            text += sign + part
+            text += sign + "/".join(filter(None, (top, *below)))
         return text
 
 

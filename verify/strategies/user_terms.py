@@ -14,9 +14,8 @@ from typing import Literal
 from verify.strategies.terms import Drawer, combination, power, times
 
 Shape = Literal["confining", "open", "free"]
-TermShape = tuple[
-    str, str, bool
-]  # numerator, denominator, whether the coefficient has to be positive
+# Numerator, denominator, whether the coefficient has to be positive.
+TermShape = tuple[str, str, bool]
 
 
 @dataclass(frozen=True)
