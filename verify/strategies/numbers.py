@@ -99,7 +99,7 @@ def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStr
 
     def decimal(index: int) -> Fraction:
         digits, down = divmod(index, decades)
-        return _DIGITS[digits] * Fraction(10) ** (magnitude(high) - down)
+        return Fraction(_DIGITS[digits]) * Fraction(10) ** (magnitude(high) - down)
 
     def within(h: Fraction) -> Fraction:
         return min(max(h, low), high)

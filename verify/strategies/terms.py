@@ -31,7 +31,8 @@ def quotient(index: int, size: int) -> Fraction:
 
 def signed_quotient(index: int, size: int) -> Fraction:
     """The same with both signs by turns, of which there are 2·size²; the first is 1."""
-    return (-1) ** index * quotient(index // 2, size)
+    positive = quotient(index // 2, size)
+    return -positive if index % 2 else positive
 
 
 @dataclass(frozen=True)

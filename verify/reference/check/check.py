@@ -27,7 +27,7 @@ from verify.execution.executors import (
 from verify.execution.keeping import versions
 from verify.formats import check_format
 from verify.reference.check import consistency
-from verify.reference.check.difference import Difference, Findings
+from verify.reference.check.difference import Findings
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
 from verify.reference.make.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
@@ -37,6 +37,7 @@ from verify.reference.make.writing import (
     SCHEMAS,
     digest,
     json_text,
+    listed,
     names_of,
     schema_text,
     tables,
@@ -51,15 +52,12 @@ _VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
 
 
 @dataclass
-class Checked:
-    """What a check found. `rows`: of all data; `recomputed`: how many of them were, again."""
+class Checked(Findings):
+    """What a check found. `rows`: of all data; `not_compared`: files, each with the reason."""
 
     files: int = 0
     rows: int = 0
-    recomputed: int = 0
     seed: int = 0
-    differences: list[Difference] = field(default_factory=list)
-    not_recomputed: list[str] = field(default_factory=list)
     not_compared: list[str] = field(default_factory=list)
 
 
@@ -98,10 +96,7 @@ def check(
             if done:
                 done(len(parts), len(calls))
     for call in calls:  # in the order of the files, whoever was first
-        part = parts[call.name]
-        found.recomputed += part.rows
-        found.differences += part.differences
-        found.not_recomputed += part.not_recomputed
+        found.add(parts[call.name])
     return found
 
 
@@ -121,7 +116,7 @@ def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -
             run = data.runs[index]
             steps = run.rows[-1].step
             if steps > left:
-                label = consistency.run_label(run, steps)
+                label = f"{run.label}, step {steps}"
                 why = f"with it, more than {most_steps} steps"
                 found.not_recomputed.append(f"{file}: {label}: {why}; see --most-steps")
                 continue
@@ -140,8 +135,8 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
     if manifest is None:
         return
     contents: dict[str, bytes] = {}
-    for listed in _listed(folder, manifest, found):
-        contents[listed] = content_of(folder / listed)
+    for name in _listed(folder, manifest, found):
+        contents[name] = content_of(folder / name)
         if sum(map(len, contents.values())) > _MOST_BYTES_OF_ALL:
             raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
     read = {}
@@ -152,9 +147,11 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
             rows_of(content, name)
     for each in manifest.files:
         if each.name in contents:
-            content = contents[each.name]
-            _same(each.name, "bytes", str(each.bytes), str(len(content)), found)
-            _same(each.name, "sha256", each.sha256, digest(content), found)
+            there = listed(each.name, contents[each.name])
+            for column in ("bytes", "sha256"):
+                said, is_so = str(getattr(each, column)), str(getattr(there, column))
+                if said != is_so:
+                    found.differs(each.name, "", column, f"{said} (manifest)", is_so)
     for name in SCHEMAS.keys() & contents.keys():
         text = text_of(contents[name], name)
         found.differences += consistency.of_text(schema_text(name), text, name)
@@ -195,7 +192,7 @@ def _model(model: type[M], form: str, content: bytes, name: str, found: Checked)
     except ValidationError as error:
         told = error.errors(include_url=False)[0]
         where, what = ".".join(map(str, told["loc"])), f"as the schema says ({told['msg']})"
-        found.differences.append(Difference(name, where, "", what, str(told["input"])))
+        found.differs(name, where, "", what, str(told["input"]))
         return None
     found.differences += consistency.of_text(json_text(made), text_of(content, name), name)
     return made
@@ -207,21 +204,14 @@ def _listed(folder: Path, manifest: Manifest, found: Checked) -> Iterator[str]:
     names = [each.name for each in manifest.files]
     for name in sorted({*there, *names}):
         if name not in there:
-            found.differences.append(Difference(name, "", "", "a file", "missing"))
+            found.differs(name, "", "", "a file", "missing")
         elif name not in names:
-            found.differences.append(
-                Difference(name, "", "", "in the manifest, or not there", "extra")
-            )
+            found.differs(name, "", "", "in the manifest, or not there", "extra")
         elif names.count(name) > 1:
-            found.differences.append(Difference(MANIFEST, name, "", "listed once", "listed twice"))
+            found.differs(MANIFEST, name, "", "listed once", "listed twice")
         else:
             found.files += 1
             yield name
-
-
-def _same(file: str, column: str, listed: str, there: str, found: Checked) -> None:
-    if listed != there:
-        found.differences.append(Difference(file, "", column, f"{listed} (manifest)", there))
 
 
 def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, Scene]:
@@ -231,15 +221,15 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
         where = MANIFEST, f"scene {each.name}"
         actual = digest(each.toml.encode())
         if each.sha256 != actual:
-            found.differences.append(Difference(*where, "sha256", actual, each.sha256))
+            found.differs(*where, "sha256", actual, each.sha256)
         try:
             scene = scene_from_toml(each.toml, each.name)
         except InputError as error:
-            found.differences.append(Difference(*where, "toml", "a scene", str(error)))
+            found.differs(*where, "toml", "a scene", str(error))
             continue
         if size_of(scene) > MOST_BYTES:  # what it asks for is listed, and would fill all memory
             readable = "a scene whose data can be read"
-            found.differences.append(Difference(*where, "toml", readable, each.toml))
+            found.differs(*where, "toml", readable, each.toml)
             continue
         scenes[each.name] = scene
     if own is not None:
@@ -261,22 +251,22 @@ def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Check
     made = words[:3] == ["verify", "reference", "make"]
     if not made or not all(x.endswith(".toml") for x in files):
         wanted = "verify reference make, and scenes"
-        found.differences.append(Difference(MANIFEST, "command", "", wanted, manifest.command))
+        found.differs(MANIFEST, "command", "", wanted, manifest.command)
     elif files and len(scenes) == len(manifest.scenes):
         for file, each in zip_longest(files, manifest.scenes):
             stem = (file or "").removesuffix(".toml")
             if each is None or scene_from_toml(each.toml, stem).name != each.name:
                 wanted = " ".join(f"{name}.toml" for name in scenes)
                 given = manifest.command
-                found.differences.append(Difference(MANIFEST, "command", "", wanted, given))
+                found.differs(MANIFEST, "command", "", wanted, given)
                 break
     if list(manifest.versions) != list(versions()):
         wanted = ", ".join(versions())
         given = ", ".join(manifest.versions)
-        found.differences.append(Difference(MANIFEST, "versions", "", wanted, given))
+        found.differs(MANIFEST, "versions", "", wanted, given)
     for name, version in manifest.versions.items():
         if not _VERSION.fullmatch(version):
-            found.differences.append(Difference(MANIFEST, "versions", name, "a version", version))
+            found.differs(MANIFEST, "versions", name, "a version", version)
 
 
 def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
@@ -284,9 +274,9 @@ def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> N
     wanted = names_of(scenes, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
     if len(scenes) < len(manifest.scenes):
-        found.differences.append(Difference(MANIFEST, "scenes", "", "one of each name", "two"))
+        found.differs(MANIFEST, "scenes", "", "one of each name", "two")
     for name in sorted(wanted ^ set(names)):
         given = ("listed", "not listed") if name in wanted else ("not listed", "listed")
-        found.differences.append(Difference(MANIFEST, "files", name, *given))
+        found.differs(MANIFEST, "files", name, *given)
     if names != sorted(names):
-        found.differences.append(Difference(MANIFEST, "files", "", "in the order of names", "not"))
+        found.differs(MANIFEST, "files", "", "in the order of names", "not")

@@ -7,7 +7,7 @@ since the same data always give the same bytes, every file follows from its scen
 
 import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
@@ -17,25 +17,15 @@ from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
 from verify.reference.check.difference import Difference
 from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import Data, Flow, Run
+from verify.reference.make.models import Data, Flow, Run, values_of
 from verify.reference.make.reading import rows_of, text_of
-from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
+from verify.reference.make.scene_plan import exact_inputs, orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import Row, csv_text
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 from verify.scenes.scene import Scene
 
-_VALUES = ("p", "q", "delta_j", "mse", "lam")
-_SHOWN = {"lam": "lambda"}
 # A number's text is looked at as a text: as a rational, 1e+999999999 would fill all memory.
 _NUMBER = re.compile(r"-?([1-9](?:\.[0-9]+)?)e([+-][0-9]{2,9})")
-
-
-def run_label(run: Run, step: int) -> str:
-    return f"{run.scheme}, h = {run.step_size}, (q, p) = ({run.q}, {run.p}), step {step}"
-
-
-def flow_label(flow: Flow, step: int) -> str:
-    return f"exact flow, h = {flow.step_size}, (q, p) = ({flow.q}, {flow.p}), step {step}"
 
 
 # -- one scene's data -----------------------------------------------------------------------------
@@ -52,12 +42,10 @@ def of_data(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
         return
     for proof in data.proofs:
         yield from _proof(data, file, proof)
-    for run in data.runs:
-        for row in run.rows:
-            yield from _orbit_row(file, run, row)
-    for flow in data.flow:
-        for point in flow.rows:
-            yield from _flow_row(file, flow, point)
+    tables: tuple[Run | Flow, ...] = (*data.runs, *data.flow)
+    for of in tables:
+        for row in of.rows:
+            yield from _row(file, of, row)
 
 
 def _inputs(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
@@ -65,15 +53,11 @@ def _inputs(data: Data, file: str, scene: Scene) -> Iterator[Difference]:
     written = scene.exact_hamiltonian().texts
     wanted: dict[str, Any] = {"name": scene.name, **written}
     wanted["proofs"] = [task.scheme for task in proof_tasks(scene)]
-    wanted["runs"] = [
-        (t.scheme, text(t.step_size), text(t.q), text(t.p), t.digits, t.steps)
-        for t in orbit_tasks(scene)
-    ]
+    wanted["runs"] = [(t.scheme, *exact_inputs(t).values(), t.steps) for t in orbit_tasks(scene)]
     wanted["flow"] = [
-        (text(t.step_size), text(t.q), text(t.p), t.digits,
-         tuple((n, text(n * t.step_size)) for n in t.steps))
+        (*exact_inputs(t).values(), tuple((n, text(n * t.step_size)) for n in t.steps))
         for t in solution_tasks(scene)
-    ]  # fmt: skip
+    ]
     found: dict[str, Any] = {name: getattr(data, name) for name in ("name", *written)}
     found["proofs"] = [proof.scheme for proof in data.proofs]
     found["runs"] = [
@@ -113,62 +97,41 @@ def _proof(data: Data, file: str, proof: Any) -> Iterator[Difference]:
         yield Difference(file, row, "leading", tight, proof.leading)
 
 
-def _orbit_row(file: str, run: Run, row: OrbitPoint) -> Iterator[Difference]:
-    label = run_label(run, row.step)
-    size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
-    for name in _VALUES:
-        shown, value = _SHOWN.get(name, name), getattr(row, name)
-        must = row.status == "finished" and not (name == "mse" and row.step == 0)
+def _row(file: str, of: Run | Flow, row: OrbitPoint | FlowPoint) -> Iterator[Difference]:
+    label, values = f"{of.label}, step {row.step}", values_of(row)
+    start = {"p": Fraction(of.p), "q": Fraction(of.q)}
+    size = max(map(abs, start.values()))
+    finished = row.status == "finished"
+    for name, value in values.items():
+        must = finished and not (name == "mse" and row.step == 0)
         if value is None and must and name != "delta_j":
-            yield Difference(file, label, shown, "a number", "null")
+            yield Difference(file, label, name, "a number", "null")
         if value is not None and not must:
-            yield Difference(file, label, shown, "null", value.value)
+            yield Difference(file, label, name, "null", value.value)
         if value is not None:
-            scale = size if name in ("p", "q") else Fraction(1)
-            yield from _cell(file, label, shown, value, run.digits, scale)
-    yield from _status(file, label, row)
-    if (row.failed_step is not None) != (row.status == "left range"):
-        wanted = "a step" if row.status == "left range" else "null"
-        yield Difference(file, label, "failed_step", wanted, str(row.failed_step))
-    if row.failed_step is not None and not 1 <= row.failed_step <= row.step:
-        yield Difference(file, label, "failed_step", f"1 … {row.step}", str(row.failed_step))
-    if row.step == 0:
-        start = {"p": Fraction(run.p), "q": Fraction(run.q), "lam": Fraction(0)}
-        yield from _start(file, label, row, start, run.digits)
-
-
-def _flow_row(file: str, flow: Flow, row: FlowPoint) -> Iterator[Difference]:
-    label = flow_label(flow, row.step)
-    size = max(abs(Fraction(flow.p)), abs(Fraction(flow.q)))
-    for name in ("p", "q"):
-        value = getattr(row, name)
-        if (value is not None) != (row.status == "finished"):
-            wanted = "a number" if value is None else "null"
-            yield Difference(file, label, name, wanted, value.value if value else "null")
-        if value is not None:
-            yield from _cell(file, label, name, value, flow.digits, size)
-    yield from _status(file, label, row)
-    if row.step == 0:
-        start = {"p": Fraction(flow.p), "q": Fraction(flow.q)}
-        yield from _start(file, label, row, start, flow.digits)
-
-
-def _status(file: str, label: str, row: OrbitPoint | FlowPoint) -> Iterator[Difference]:
-    if (row.kind is not None) != (row.status == "finished"):
+            scale = size if name in start else Fraction(1)
+            yield from _cell(file, label, name, value, of.digits, scale)
+    if (row.kind is not None) != finished:
         wanted = "enclosed or estimated" if row.kind is None else "null"
         yield Difference(file, label, "kind", wanted, str(row.kind))
+    if isinstance(row, OrbitPoint):
+        yield from _failed_step(file, label, row)
+    if row.step == 0:  # the initial value
+        if not finished or row.kind != "enclosed":
+            given = f"{row.status}, {row.kind}"
+            yield Difference(file, label, "status", "finished, enclosed", given)
+        for name, exact in (start | {"lambda": Fraction(0)}).items():
+            value, known = values.get(name), correctly_rounded(exact, Fraction(0), of.digits)
+            if value and known and value.value != known.value:
+                yield Difference(file, label, name, known.value, value.value)
 
 
-def _start(
-    file: str, label: str, row: Any, wanted: Mapping[str, Fraction], digits: int
-) -> Iterator[Difference]:
-    """The values at N = 0 against the initial value."""
-    if row.status != "finished" or row.kind != "enclosed":
-        yield Difference(file, label, "status", "finished, enclosed", f"{row.status}, {row.kind}")
-    for name, exact in wanted.items():
-        value, must = getattr(row, name), correctly_rounded(exact, Fraction(0), digits)
-        if value and must and value.value != must.value:
-            yield Difference(file, label, _SHOWN.get(name, name), must.value, value.value)
+def _failed_step(file: str, label: str, row: OrbitPoint) -> Iterator[Difference]:
+    left, at = row.status == "left range", row.failed_step
+    if (at is not None) != left:
+        yield Difference(file, label, "failed_step", "a step" if left else "null", str(at))
+    if at is not None and not 1 <= at <= row.step:
+        yield Difference(file, label, "failed_step", f"1 … {row.step}", str(at))
 
 
 def _cell(

@@ -33,14 +33,18 @@ def _short(text: str) -> str:
 
 @dataclass
 class Findings:
-    """What one recomputation found: differences, and what could not be recomputed, and why."""
+    """What was found: rows `recomputed`, differences, what could not be recomputed, and why."""
 
-    rows: int = 0
+    recomputed: int = 0
     differences: list[Difference] = field(default_factory=list)
     not_recomputed: list[str] = field(default_factory=list)
 
+    def differs(self, file: str, row: str, column: str, wanted: str, found: str) -> None:
+        """Takes up a difference, as its parts."""
+        self.differences.append(Difference(file, row, column, wanted, found))
+
     def add(self, other: "Findings") -> None:
         """Takes up what another one found."""
-        self.rows += other.rows
+        self.recomputed += other.recomputed
         self.differences += other.differences
         self.not_recomputed += other.not_recomputed

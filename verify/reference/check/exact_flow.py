@@ -14,7 +14,7 @@ import flint
 
 from verify.arithmetic.exact import short
 from verify.reference.check.taylor import Number, number
-from verify.reference.check.textbook import Field, flow_series
+from verify.reference.check.textbook import Field, flow_series, polynomial
 
 _MORE = 8  # digits, and orders, of the second integration
 _MOST_STEPS = 5_000
@@ -99,10 +99,7 @@ def _power_of_two(exponent: float) -> Fraction:
 
 def _sum(coefficients: list[Number], h: Number) -> Number:
     """The polynomial at h, its rounding forgotten: the other integration tells it."""
-    total = coefficients[-1]
-    for c in reversed(coefficients[:-1]):
-        total = c + h * total
-    return total.mid()
+    return polynomial(coefficients, h).mid()
 
 
 def _largest(z: Sequence[Any]) -> float:

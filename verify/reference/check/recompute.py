@@ -13,21 +13,19 @@ from typing import Any
 import flint
 
 from verify.arithmetic.exact import magnitude
-from verify.reference.check.consistency import flow_label, run_label
-from verify.reference.check.difference import Difference, Findings
+from verify.reference.check.difference import Findings
 from verify.reference.check.exact_flow import BlowsUpError, State, states_at
 from verify.reference.check.recompute_proof import proof_again, shown
 from verify.reference.check.tape import NotReadError
 from verify.reference.check.taylor import Number, number
 from verify.reference.check.textbook import Field, Step, UnknownSchemeError, step_of
-from verify.reference.make.models import Data, Flow, Run
+from verify.reference.make.models import VALUES, Data, Flow, Run, values_of
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 
 _FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
 _SHARP = 5  # digits beyond those printed to which an exact value must be met
 _ESCAPED = 4000  # bits of |z| at which an orbit is said to have left
 _FLOW_DIGITS = (8, 40, 100)  # beyond those printed, in turn
-_VALUES = ("p", "q", "delta_j", "mse", "lam")
 
 
 class _TooWide(Exception):  # noqa: N818 - no error: the same is done with more bits
@@ -67,7 +65,7 @@ def _run(known: Field, run: Run, file: str, found: Findings) -> None:
             continue
         found.add(again)
         return
-    label = run_label(run, run.rows[-1].step)
+    label = f"{run.label}, step {run.rows[-1].step}"
     found.not_recomputed.append(f"{file}: {label}: {bits // 2} bits do not tell")
 
 
@@ -77,12 +75,12 @@ def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> 
     size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
     left: int | None = None
     for row in run.rows:
-        label = run_label(run, row.step)
+        label = f"{run.label}, step {row.step}"
         if left is not None:  # and so it has at all later steps
-            found.rows += 1
+            found.recomputed += 1
             if row.failed_step != left:
                 given = str(row.failed_step)
-                found.differences.append(Difference(file, label, "failed_step", str(left), given))
+                found.differs(file, label, "failed_step", str(left), given)
             continue
         if row.status == "unresolved":
             found.not_recomputed.append(f"{file}: {label}: has no values")
@@ -94,19 +92,18 @@ def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> 
             continue
         orbit.to(row.step)
         values = orbit.values()
-        found.rows += 1
-        for name in _VALUES:
-            cell, shown = getattr(row, name), "lambda" if name == "lam" else name
+        found.recomputed += 1
+        for name, cell in values_of(row).items():
             if name == "mse" and row.step == 0:
                 continue
             if name == "delta_j" and not all(x.is_finite() for x in orbit.ahead()[0]):
                 if not final:
                     raise _TooWide
                 if cell is not None:  # no step begins there
-                    found.differences.append(Difference(file, label, shown, "null", cell.value))
+                    found.differs(file, label, name, "null", cell.value)
                 continue
             scale = size if name in ("p", "q") else Fraction(1)
-            _compare(cell, values[name], run.digits, scale, (file, label, shown), found)
+            _compare(cell, values[name], run.digits, scale, (file, label, name), found)
 
 
 class _Orbit:
@@ -136,7 +133,8 @@ class _Orbit:
 
     def values(self) -> dict[str, Number]:
         mean = self.squares / self.done if self.done else self.squares
-        return {"p": self.p, "q": self.q, "delta_j": self.ahead()[1], "mse": mean, "lam": self.lam}
+        numbers = self.p, self.q, self.ahead()[1], mean, self.lam
+        return dict(zip(VALUES, numbers, strict=True))
 
 
 def _leaves_range(
@@ -161,14 +159,12 @@ def _leaves_range(
             raise _TooWide
     else:
         at = f"{orbit.done} steps"
-        found.differences.append(
-            Difference(file, label, "status", f"defined after {at}", row.status)
-        )
+        found.differs(file, label, "status", f"defined after {at}", row.status)
         return None
-    found.rows += 1
+    found.recomputed += 1
     if orbit.done != row.failed_step:
         wanted, given = str(orbit.done), str(row.failed_step)
-        found.differences.append(Difference(file, label, "failed_step", wanted, given))
+        found.differs(file, label, "failed_step", wanted, given)
     return orbit.done
 
 
@@ -186,12 +182,12 @@ def _compare(
     An exact number must be met to some digits more; 0 to twice the digits, or to `places`.
     """
     if cell is None:
-        found.differences.append(Difference(*where, shown(ball, digits), "null"))
+        found.differs(*where, shown(ball, digits), "null")
         return
     value, radius = flint.arb(cell.value), flint.arb(cell.radius)  # no rationals: 1e+999999999
     low, high = value - radius, value + radius
     if ball < low or ball > high:
-        found.differences.append(Difference(*where, shown(ball, digits), cell.value))
+        found.differs(*where, shown(ball, digits), cell.value)
         return
     if radius == 0:
         ten, exact_zero = flint.arb(10), bool(value == 0)
@@ -212,7 +208,8 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
     rows = [row for row in flow.rows if row.status != "not followed"]
     for row in flow.rows:
         if row.status == "not followed":
-            found.not_recomputed.append(f"{file}: {flow_label(flow, row.step)}: has no values")
+            label = f"{flow.label}, step {row.step}"
+            found.not_recomputed.append(f"{file}: {label}: has no values")
     times = [row.step * Fraction(flow.step_size) for row in rows]
     for more in _FLOW_DIGITS:
         again, digits = Findings(), flow.digits + more
@@ -220,7 +217,7 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
         try:
             with flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
                 for row, state in zip_longest(rows, states):
-                    where = file, flow_label(flow, row.step)
+                    where = file, f"{flow.label}, step {row.step}"
                     if state is None:
                         _not_reached(known, flow, row, why, where, again)
                     else:
@@ -229,7 +226,7 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
             continue
         found.add(again)
         return
-    label = flow_label(flow, flow.rows[-1].step)
+    label = f"{flow.label}, step {flow.rows[-1].step}"
     found.not_recomputed.append(f"{file}: {label}: more digits do not tell")
 
 
@@ -237,13 +234,12 @@ def _reached(
     flow: Flow, row: FlowPoint, state: State, where: tuple[str, str], found: Findings
 ) -> None:
     """A row whose time was reached."""
-    found.rows += 1
+    found.recomputed += 1
     if row.status == "blows up":
-        found.differences.append(Difference(*where, "status", "finished", row.status))
+        found.differs(*where, "status", "finished", row.status)
         return
     size, places = max(abs(Fraction(flow.p)), abs(Fraction(flow.q))), flow.digits + _SHARP
-    for name, ball in zip(("p", "q"), state, strict=True):
-        cell = getattr(row, name)
+    for (name, cell), ball in zip(values_of(row).items(), state, strict=True):
         _compare(cell, ball, flow.digits, size, (*where, name), found, places)
 
 
@@ -257,7 +253,7 @@ def _not_reached(
 ) -> None:
     """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
     if row.status == "blows up" and isinstance(why, BlowsUpError):
-        found.rows += 1
+        found.recomputed += 1
         return
     found.not_recomputed.append(f"{': '.join(where)}: {why}")
     if row.p is not None and row.q is not None:
@@ -266,4 +262,4 @@ def _not_reached(
         first, last = known.energy(*start), known.energy(*ends)
         if first < last or first > last:
             told = f"p and q where H is {shown(first, flow.digits)}"
-            found.differences.append(Difference(*where, "p, q", told, shown(last, flow.digits)))
+            found.differs(*where, "p, q", told, shown(last, flow.digits))

@@ -3,12 +3,14 @@
 The step is done with power series in h for p, q and the Jacobian: their coefficients are balls.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
 import flint
 
-from verify.reference.check.difference import Difference, Findings
+from verify.reference.check.difference import Findings
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, flow_series, step_of
 from verify.reference.make.models import Data, Proof
@@ -28,7 +30,7 @@ def proof_again(known: Field, data: Data, proof: Proof, file: str, found: Findin
     for column, given in (("order", order), ("convergence_order", convergence)):
         if (given or 0) > _ANY_ORDER:
             wanted = f"at most {_ANY_ORDER}"
-            found.differences.append(Difference(*file_row, column, wanted, str(given)))
+            found.differs(*file_row, column, wanted, str(given))
             return
     most = max(_MOST_ORDER if order is None else order, (convergence or 0) + 1)
     looking = _Looking(known, proof, file_row, most, found)
@@ -49,7 +51,7 @@ class _Looking:
         self.looked, self.seen = 0, {"order": False, "convergence_order": False}
 
     def differs(self, column: str, wanted: str, given: str) -> None:
-        self.found.differences.append(Difference(*self.row, column, wanted, given))
+        self.found.differs(*self.row, column, wanted, given)
 
     def at(self, p: Fraction, q: Fraction) -> None:
         area, apart, lead = _powers(self.known, self.step, p, q, self.most, self.leading)
@@ -81,7 +83,7 @@ class _Looking:
             told = f"{self.row[0]}: {self.row[1]}: H is not defined nearby"
             self.found.not_recomputed.append(told)
             return
-        self.found.rows += 1
+        self.found.recomputed += 1
         for column, seen in self.seen.items():
             given = getattr(self.proof, column)
             if given is not None and not seen:
@@ -126,14 +128,11 @@ def _points(data: Data) -> list[tuple[Fraction, Fraction]]:
     return found
 
 
-class _cap:  # noqa: N801 - used as a statement's word
+@contextmanager
+def _cap(length: int) -> Iterator[None]:
     """flint's length of power series, set for a while and given back."""
-
-    def __init__(self, length: int) -> None:
-        self.length = length
-
-    def __enter__(self) -> None:
-        self.before, flint.ctx.cap = flint.ctx.cap, self.length
-
-    def __exit__(self, *_: object) -> None:
-        flint.ctx.cap = self.before
+    before, flint.ctx.cap = flint.ctx.cap, length
+    try:
+        yield
+    finally:
+        flint.ctx.cap = before

@@ -6,7 +6,7 @@ stand here once more.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -76,15 +76,25 @@ def step_of(name: str, field: Field) -> Step:
 
 def flow_series(field: Field, p: Number, q: Number, order: int) -> tuple[list[Any], list[Any]]:
     """The Taylor coefficients of p(t) and q(t) up to t^order, by recursion: (k+1) z_(k+1) = f_k."""
-    known, ps, qs = field.first, [p], [q]
+    ps, qs = [p], [q]
+    for _ in _orders(field, field.first, ps, qs, order):
+        pass
+    return ps, qs
+
+
+def _orders(
+    field: Field, known: Expansion, ps: list[Number], qs: list[Number], order: int
+) -> Iterator[int]:
+    """The orders 0 … order − 1 of `known`; after each, ps and qs have their next coefficient."""
+    p, q = ps[0], qs[0]
     known.begin(p, q)
     for k in range(order):
+        if k > 0:
+            known.more(ps[-1], qs[-1])
         h_p, h_q = known.coefficient(field.h_p, k), known.coefficient(field.h_q, k)
         ps.append(0 * p if h_q is None else -h_q / (k + 1))
         qs.append(0 * q if h_p is None else h_p / (k + 1))
-        if k + 1 < order:
-            known.more(ps[-1], qs[-1])
-    return ps, qs
+        yield k
 
 
 def lie(field: Field, eta: int) -> Step:
@@ -92,19 +102,13 @@ def lie(field: Field, eta: int) -> Step:
     entries = (field.h_pq, field.h_qq, field.h_pp)
 
     def step(p: Number, q: Number, h: Number) -> tuple[State, Matrix]:
-        known, ps, qs, ms = field.both, [p], [q], [IDENTITY]
-        known.begin(p, q)
+        ps, qs, ms = [p], [q], [IDENTITY]
         a: list[list[Number | None]] = []
-        for k in range(eta):
-            h_p, h_q = known.coefficient(field.h_p, k), known.coefficient(field.h_q, k)
-            a.append([known.coefficient(x, k) for x in entries])
-            ps.append(0 * p if h_q is None else -h_q / (k + 1))
-            qs.append(0 * q if h_p is None else h_p / (k + 1))
+        for k in _orders(field, field.both, ps, qs, eta):
+            a.append([field.both.coefficient(x, k) for x in entries])
             ms.append(_variation(a, ms, k))
-            if k + 1 < eta:
-                known.more(ps[-1], qs[-1])
-        z = _polynomial(ps, h), _polynomial(qs, h)
-        return z, tuple(_polynomial([m[i] for m in ms], h) for i in range(4))
+        z = polynomial(ps, h), polynomial(qs, h)
+        return z, tuple(polynomial([m[i] for m in ms], h) for i in range(4))
 
     return step
 
@@ -126,7 +130,8 @@ def _variation(a: list[list[Number | None]], ms: list[Matrix], k: int) -> Matrix
     return tuple(x / (k + 1) for x in total)
 
 
-def _polynomial(coefficients: Sequence[Number], h: Number) -> Number:
+def polynomial(coefficients: Sequence[Number], h: Number) -> Number:
+    """Σ c_k h^k, by Horner's rule."""
     total = coefficients[-1]
     for c in reversed(coefficients[:-1]):
         total = c + h * total

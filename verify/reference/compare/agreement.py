@@ -131,7 +131,7 @@ def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: st
 
 def is_single(value: Fraction, unit: Fraction) -> bool:
     """Whether it is a single-precision number, up to its printing, or one's shortest decimal."""
-    near = _nearest_single(value)
+    near = nearest_single(value)
     return near is not None and (
         abs(Fraction(float(near)) - value) <= unit or _shortest(near, value)
     )
@@ -140,7 +140,7 @@ def is_single(value: Fraction, unit: Fraction) -> bool:
 def chance_of_single(value: Fraction, unit: Fraction) -> float:
     """How likely a number that is not of single precision would pass for one: those of few digits
     do, and everything that is printed with seven."""
-    near = _nearest_single(value)
+    near = nearest_single(value)
     bits = value.denominator.bit_length() + value.numerator.bit_length()
     if near is None or bits < _SHORT_BITS:
         return 1.0
@@ -150,7 +150,8 @@ def chance_of_single(value: Fraction, unit: Fraction) -> float:
     return min(1.0, max(_LEAST_CHANCE, float(room / Fraction(float(np.spacing(abs(near)))))))
 
 
-def _nearest_single(value: Fraction) -> np.float32 | None:
+def nearest_single(value: Fraction) -> np.float32 | None:
+    """The single-precision number nearest to a value; None beyond the largest."""
     try:
         near = np.float32(struct.unpack("f", struct.pack("f", float(value)))[0])
     except OverflowError:

@@ -115,9 +115,8 @@ def compare(
     return found
 
 
-_Off = tuple[
-    bool, Fraction, int, PublishedRun
-]  # whether its run is never lost; how far, when, where
+# Whether its run is never lost; how far, when, where.
+_Off = tuple[bool, Fraction, int, PublishedRun]
 
 
 def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:

@@ -8,14 +8,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-
-import numpy as np
+from typing import Any
 
 from verify import schemes
 from verify.algebra.formula import to_text
 from verify.arithmetic.exact import short
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
+from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
 from verify.schemes.splitting_conditions import Part, Splitting
 
@@ -45,7 +45,8 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
     }  # fmt: skip
     inexact = [n for n, x in doubles.items() if _double(x) not in (x, None)]
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
-    for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *_ones(inexact)]:
+    ones = [(name,) for name in inexact]
+    for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *ones]:
         changed = {n: _double(doubles[n]) for n in names}
         shown = " and ".join(f"{n} is the double nearest to {short(doubles[n])}" for n in names)
         says = f"your {shown}, and not exactly that"
@@ -64,37 +65,40 @@ def of_states(right: Setting) -> Iterator[Mistake]:
 def _of_columns(right: Setting) -> Iterator[Mistake]:
     orbit = right.orbit
     exchanged = replace(orbit, q=orbit.p, p=orbit.q)
-    yield Mistake("swapped-columns", "your columns p and q are swapped",
-                  replace(right, swapped=True))  # fmt: skip
-    yield Mistake("swapped-start", "your initial p and q are swapped",
-                  replace(right, orbit=exchanged))  # fmt: skip
-    yield Mistake("swapped-throughout", "p and q are swapped, in your columns and at the start",
-                  replace(right, orbit=exchanged, swapped=True))  # fmt: skip
-    yield Mistake("negated-p", "your p has the other sign", replace(right, negated=True))
-    yield Mistake("negated-start", "your initial p has the other sign",
-                  replace(right, orbit=replace(orbit, p=-orbit.p)))  # fmt: skip
     backwards = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
-    yield Mistake("backwards", "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p",
-                  replace(right, orbit=replace(orbit, hamiltonian=backwards)))  # fmt: skip
-    for late, says in ((1, "too low"), (-1, "too high")):
-        yield Mistake(f"late{late:+d}", f"your step index is {says} by one",
-                      replace(right, late=late))  # fmt: skip
+    changes: tuple[tuple[str, str, dict[str, Any]], ...] = (
+        ("swapped-columns", "your columns p and q are swapped", {"swapped": True}),
+        ("swapped-start", "your initial p and q are swapped", {"orbit": exchanged}),
+        ("swapped-throughout", "p and q are swapped, in your columns and at the start",
+         {"orbit": exchanged, "swapped": True}),
+        ("negated-p", "your p has the other sign", {"negated": True}),
+        ("negated-start", "your initial p has the other sign",
+         {"orbit": replace(orbit, p=-orbit.p)}),
+        ("backwards", "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p",
+         {"orbit": replace(orbit, hamiltonian=backwards)}),
+        ("late+1", "your step index is too low by one", {"late": 1}),
+        ("late-1", "your step index is too high by one", {"late": -1}),
+    )  # fmt: skip
+    for name, says, change in changes:
+        yield Mistake(name, says, replace(right, **change))
 
 
 def _of_step(right: Setting) -> Iterator[Mistake]:
-    orbit, h = right.orbit, right.orbit.step_size
-    for name, factor, says in (("half", Fraction(1, 2), "half"), ("double", Fraction(2), "twice")):
-        yield Mistake(f"{name}-step", f"your h is {says} what it should be",
-                      replace(right, orbit=replace(orbit, step_size=factor * h)))  # fmt: skip
-    single = {"h": _single(h)}
-    if single["h"] not in (None, h):
-        yield Mistake("single-h", "your h is the single-precision number nearest to it",
-                      replace(right, orbit=_with(orbit, single)))  # fmt: skip
-    for name, value in orbit.hamiltonian.values:
+    h, values = right.orbit.step_size, right.orbit.hamiltonian.values
+    changes: list[tuple[str, str, dict[str, Fraction | None]]] = [
+        ("half-step", "your h is half what it should be", {"h": h / 2}),
+        ("double-step", "your h is twice what it should be", {"h": 2 * h}),
+    ]
+    single = nearest_single(h)
+    if single and Fraction(float(single)) != h:
+        says = "your h is the single-precision number nearest to it"
+        changes.append(("single-h", says, {"h": Fraction(float(single))}))
+    for name, value in values:
         for what, other in (("minus", -value), ("no", Fraction(0))):
             if other != value:
-                yield Mistake(f"{what}-{name}", f"your {name} is {short(other)}",
-                              replace(right, orbit=_with(orbit, {name: other})))  # fmt: skip
+                changes.append((f"{what}-{name}", f"your {name} is {short(other)}", {name: other}))
+    for name, says, change in changes:
+        yield Mistake(name, says, replace(right, orbit=_with(right.orbit, change)))
 
 
 def _of_scheme(right: Setting) -> Iterator[Mistake]:
@@ -165,15 +169,14 @@ def _relatives(name: str) -> Iterator[tuple[str, str]]:
     if isinstance(generic, Splitting):
         parts = generic.parts
         kinds = {"kick": "drift", "drift": "kick"}
-        changes = (
-            ("its parts in the opposite order", parts[::-1]),
-            ("kicks for drifts and drifts for kicks", tuple((kinds[k], x) for k, x in parts)),
-        )
-        for says, changed in changes:
+        changes = {
+            "its parts in the opposite order": parts[::-1],
+            "kicks for drifts and drifts for kicks": tuple((kinds[k], x) for k, x in parts),
+        }
+        for says, changed in changes.items():
             if changed != parts:
-                euler = name == "symplectic-euler"
-                own = _OTHER_EULER if euler else f"{name} with {says}"
-                yield _named(changed), f"your scheme is {own}"
+                own = _OTHER_EULER if name == "symplectic-euler" else f"{name} with {says}"
+                yield _named(changed), f"{_OTHER}{own}"
 
 
 def _named(parts: tuple[Part, ...]) -> str:
@@ -188,15 +191,10 @@ def _named(parts: tuple[Part, ...]) -> str:
 # -- numbers of other sizes -----------------------------------------------------------------------
 
 
-def _ones(names: list[str]) -> list[tuple[str, ...]]:
-    return [(name,) for name in names]
-
-
 def _with(orbit: Orbit, changed: dict[str, Fraction | None]) -> Orbit:
     new = {n: x for n, x in changed.items() if x is not None}
     h, q, p = new.pop("h", orbit.step_size), new.pop("q0", orbit.q), new.pop("p0", orbit.p)
-    values = {**dict(orbit.hamiltonian.values), **new}
-    hamiltonian = Hamiltonian(orbit.hamiltonian.expression).with_values(values)
+    hamiltonian = orbit.hamiltonian.with_values({**dict(orbit.hamiltonian.values), **new})
     return Orbit(hamiltonian, orbit.scheme, h, q, p)
 
 
@@ -205,8 +203,3 @@ def _double(x: Fraction) -> Fraction | None:
         return Fraction(float(x))
     except OverflowError:
         return None
-
-
-def _single(x: Fraction) -> Fraction | None:
-    near = np.float32(float(x))
-    return Fraction(float(near)) if np.isfinite(near) and near else None

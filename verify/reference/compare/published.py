@@ -15,7 +15,7 @@ from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.tangent_map import nearest_double
-from verify.reference.make.models import DATA_FORMAT, Data, Run
+from verify.reference.make.models import DATA_FORMAT, Data, Run, values_of
 from verify.reference.make.reading import content_of, json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitPoint
@@ -45,8 +45,7 @@ class PublishedRun:
 
     @property
     def label(self) -> str:
-        run = self.run
-        return f"{self.scene}: {run.scheme}, h = {run.step_size}, (q, p) = ({run.q}, {run.p})"
+        return f"{self.scene}: {self.run.label}"
 
     @cached_property
     def orbit(self) -> Orbit:
@@ -123,7 +122,7 @@ def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
 def _check_exponents(run: Run, name: str) -> None:
     """InputError for an exponent whose power of ten would fill the memory."""
     for row in run.rows:
-        for known in (row.p, row.q, row.delta_j, row.mse, row.lam):
+        for known in values_of(row).values():
             for text in (known.value, known.radius) if known else ():
                 exponent = text.partition("e")[2].lstrip("+-0")
                 if len(exponent) > _EXPONENT_DIGITS:

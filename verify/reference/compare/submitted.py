@@ -16,7 +16,7 @@ from verify.errors import InputError, without_controls
 from verify.kernels.tangent_map import nearest_double
 from verify.reference.compare.published import KEYS, Published, PublishedRun
 from verify.reference.compare.table import Table, opened
-from verify.reference.make.writing import VALUES
+from verify.reference.make.models import VALUES
 
 _SHOWN = 60  # characters of a text
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered

@@ -5,8 +5,8 @@ import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from verify.arithmetic.exact import text
 from verify.content import content
 from verify.errors import InputError
 from verify.execution.keeping import versions, write_atomically
@@ -21,7 +21,13 @@ from verify.reference.make.models import (
     SceneFile,
 )
 from verify.reference.make.reading import MOST_BYTES
-from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
+from verify.reference.make.scene_plan import (
+    exact_inputs,
+    orbit_tasks,
+    proof_tasks,
+    size_of,
+    solution_tasks,
+)
 from verify.reference.make.writing import (
     MANIFEST,
     SCHEMAS,
@@ -33,9 +39,6 @@ from verify.reference.make.writing import (
     schema_text,
     tables,
 )
-from verify.scenes.frozen import Frozen
-from verify.scenes.results.proof import ProofResult
-from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.scene import Scene, load_scene
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
@@ -76,31 +79,23 @@ def committed_scenes() -> list[Path]:
     return sorted(SCENES.glob("*.toml"))
 
 
-def data_of(scene: Scene, results: Mapping[str, Frozen]) -> Data:
-    """A scene's data from the results of its tasks."""
-    proofs, runs, flows = [], [], []
-    for proof in proof_tasks(scene):
-        known = results[proof.key]
-        assert isinstance(known, ProofResult)  # noqa: S101 - the key is such a task's
-        proofs.append(Proof(**{name: getattr(known, name) for name in Proof.model_fields}))
-    for orbit in orbit_tasks(scene):
-        found = results[orbit.key]
-        assert isinstance(found, OrbitResult)  # noqa: S101 - the key is such a task's
-        given = {"step_size": text(orbit.step_size), "q": text(orbit.q), "p": text(orbit.p)}
-        run = Run(**given, scheme=orbit.scheme, digits=orbit.digits, rows=found.points)
-        runs.append(run)
-    for solution in solution_tasks(scene):
-        solved = results[solution.key]
-        assert isinstance(solved, SolutionResult)  # noqa: S101 - the key is such a task's
-        h, q, p = text(solution.step_size), text(solution.q), text(solution.p)
-        flows.append(Flow(step_size=h, q=q, p=p, digits=solution.digits, rows=solved.points))
+def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
+    """A scene's data from the results of its tasks, by their keys."""
     return Data(
         format=DATA_FORMAT,
         name=scene.name,
         **scene.exact_hamiltonian().texts,
-        proofs=tuple(proofs),
-        runs=tuple(runs),
-        flow=tuple(flows),
+        proofs=tuple(
+            Proof(**{name: getattr(results[t.key], name) for name in Proof.model_fields})
+            for t in proof_tasks(scene)
+        ),
+        runs=tuple(
+            Run(scheme=t.scheme, **exact_inputs(t), rows=results[t.key].points)
+            for t in orbit_tasks(scene)
+        ),
+        flow=tuple(
+            Flow(**exact_inputs(t), rows=results[t.key].points) for t in solution_tasks(scene)
+        ),
     )
 
 

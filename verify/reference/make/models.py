@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import FlowPoint, OrbitPoint
+from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 from verify.verdict import Verdict
 
 DataFormat = Literal["areaproof reference data 1"]
@@ -22,6 +22,17 @@ _H = "the step size h exactly: a decimal or a quotient"
 _Q0, _P0 = "the initial displacement q exactly", "the initial momentum p exactly"
 _DIGITS = "significant digits of each number"
 _SCHEME = "the scheme, by the name that `verify run --scheme` takes"
+
+
+VALUES = ("p", "q", "delta_j", "mse", "lambda")
+
+
+def values_of(row: OrbitPoint | FlowPoint) -> dict[str, Rounded | None]:
+    """The numbers of a row by the names of their columns; None for one that there is not."""
+    if isinstance(row, FlowPoint):
+        return {"p": row.p, "q": row.q}
+    numbers = row.p, row.q, row.delta_j, row.mse, row.lam
+    return dict(zip(VALUES, numbers, strict=True))
 
 
 class Proof(Frozen):
@@ -55,6 +66,11 @@ class Run(Frozen):
     digits: Annotated[int, Field(ge=1, description=_DIGITS)]
     rows: Annotated[tuple[OrbitPoint, ...], Field(description="one a chosen step, ascending")]
 
+    @property
+    def label(self) -> str:
+        """The scheme and its inputs."""
+        return f"{self.scheme}, h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
+
 
 class Flow(Frozen):
     """The exact solution of p' = −H_q, q' = H_p from one initial value, at the times N·h."""
@@ -64,6 +80,11 @@ class Flow(Frozen):
     p: Annotated[Exact, Field(description=_P0)]
     digits: Annotated[int, Field(ge=1, description=_DIGITS)]
     rows: Annotated[tuple[FlowPoint, ...], Field(description="one a chosen step, ascending")]
+
+    @property
+    def label(self) -> str:
+        """The same with "exact flow" for a scheme."""
+        return f"exact flow, h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
 
 
 class Data(Frozen):

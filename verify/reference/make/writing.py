@@ -9,8 +9,17 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from verify.reference.make.models import Data, Flow, ListedFile, Manifest, Proof, Run
-from verify.scenes.results.reference import Rounded
+from verify.reference.make.models import (
+    VALUES,
+    Data,
+    Flow,
+    ListedFile,
+    Manifest,
+    Proof,
+    Run,
+    values_of,
+)
+from verify.scenes.results.reference import FlowPoint, OrbitPoint
 
 MANIFEST = "manifest.json"
 SCHEMAS: dict[str, type[BaseModel]] = {
@@ -18,7 +27,6 @@ SCHEMAS: dict[str, type[BaseModel]] = {
     "manifest.schema.json": Manifest,
 }
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-VALUES = ("p", "q", "delta_j", "mse", "lambda")
 Row = tuple[str, ...]
 
 
@@ -84,7 +92,7 @@ def csv_text(rows: list[Row]) -> str:
 
 
 def _proof_rows(data: Data) -> Iterator[Row]:
-    names = tuple(n for n in Proof.model_fields)
+    names = tuple(Proof.model_fields)
     yield ("hamiltonian", "parameters", *names)
     given = "; ".join(f"{name} = {value}" for name, value in data.parameters.items())
     for proof in data.proofs:
@@ -99,7 +107,7 @@ def _run_rows(runs: tuple[Run, ...]) -> Iterator[Row]:
         given = run.scheme, run.step_size, run.q, run.p, str(run.digits)
         for x in run.rows:
             told = str(x.step), x.status, _cell(x.failed_step), _cell(x.kind)
-            yield (*given, *told, *_numbers(x.p, x.q, x.delta_j, x.mse, x.lam))
+            yield (*given, *told, *_numbers(x))
 
 
 def _flow_rows(flows: tuple[Flow, ...]) -> Iterator[Row]:
@@ -108,14 +116,15 @@ def _flow_rows(flows: tuple[Flow, ...]) -> Iterator[Row]:
     for flow in flows:
         for x in flow.rows:
             given = flow.step_size, flow.q, flow.p, str(flow.digits)
-            yield (*given, str(x.step), x.time, x.status, _cell(x.kind), *_numbers(x.p, x.q))
+            yield (*given, str(x.step), x.time, x.status, _cell(x.kind), *_numbers(x))
 
 
 def _pairs(names: tuple[str, ...]) -> Row:
     return tuple(x for name in names for x in (name, f"{name}_radius"))
 
 
-def _numbers(*values: Rounded | None) -> Row:
+def _numbers(row: OrbitPoint | FlowPoint) -> Row:
+    values = values_of(row).values()
     return tuple(x for v in values for x in ((v.value, v.radius) if v else ("", "")))
 
 

@@ -57,7 +57,7 @@ def test_all_that_is_made_is_found_again(name: str) -> None:
         found = again(data(name), kind, index)
         assert not found.differences, found.differences[0]
         assert not found.not_recomputed
-        rows += found.rows
+        rows += found.recomputed
     left = [x for run in data(name).runs for x in run.rows if x.status == "left range"]
     assert rows == data(name).count
     assert bool(left) is (name == "leaves")
@@ -169,7 +169,7 @@ flow = false
     assert statuses[0] == "finished"
     assert "left range" in statuses
     found = again(of, "run", 0)
-    assert (found.differences, found.not_recomputed, found.rows) == ([], [], 4)
+    assert (found.differences, found.not_recomputed, found.recomputed) == ([], [], 4)
 
 
 def test_an_orbit_that_is_said_to_leave_and_does_not_is_found() -> None:
@@ -187,4 +187,4 @@ def test_a_scheme_that_is_not_known_here_is_named() -> None:
     for kind in ("run", "proof"):
         found = again(of, kind, 0)
         assert "ruth3" in found.not_recomputed[0]
-        assert found.rows == 0
+        assert found.recomputed == 0
