@@ -71,7 +71,7 @@ def claim_property(text: str) -> Property:
 def _holds(claim: Claim, sample: Sample) -> bool:
     """Raises Violation where the claim is refuted for the sample's H and run."""
     separable = getattr(claim, "every", None) == EVERY_SEPARABLE
-    if separable and not sample.hamiltonian.field()[0].separable():
+    if separable and not sample.field.separable():
         return False
     asked = _of_scheme(sample, claim.scheme)
     if asked is None or not asked.ordinary:

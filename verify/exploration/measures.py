@@ -27,7 +27,6 @@ _ROUNDOFF = Fraction(1, 2**53)
 class Measure:
     """`value(sample, digits)`: lg of it, or None; `sentence`: what it is."""
 
-    name: str
     sentence: str
     value: Callable[[Sample, int], float | None]
 
@@ -105,14 +104,9 @@ def _lg(x: Fraction) -> float:
 
 
 MEASURES = {
-    measure.name: measure
-    for measure in (
-        Measure(
-            "rounding-share",
-            "greatest rounding part of Λ over its greatest truncation part",
-            rounding_share,
-        ),
-        Measure("digits-lost", "error of float64's p and q at the end, in roundoffs", digits_lost),
-        Measure("growth", "greatest |Λ| of the run", growth),
-    )
+    "rounding-share": Measure(
+        "greatest rounding part of Λ over its greatest truncation part", rounding_share
+    ),
+    "digits-lost": Measure("error of float64's p and q at the end, in roundoffs", digits_lost),
+    "growth": Measure("greatest |Λ| of the run", growth),
 }

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.scenes.scene import Scene
@@ -49,6 +49,11 @@ class Sample:
             steps=scene.grid.steps_for(h),
             scene=scene,
         )
+
+    @property
+    def field(self) -> VectorField:
+        """H's own, with its derivatives by p and q."""
+        return self.hamiltonian.field()[0]
 
     @cached_property
     def step_map(self) -> StepMap:

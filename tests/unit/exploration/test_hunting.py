@@ -42,7 +42,7 @@ Plant = Callable[[Callable[[Sample], float | None]], None]
 @pytest.fixture
 def plant(monkeypatch: pytest.MonkeyPatch) -> Plant:
     def planted(value: Callable[[Sample], float | None]) -> None:
-        measure = Measure("planted", "planted", lambda sample, _: value(sample))
+        measure = Measure("planted", lambda sample, _: value(sample))
         monkeypatch.setitem(MEASURES, "planted", measure)
 
     return planted
@@ -103,7 +103,7 @@ def test_a_value_that_another_precision_does_not_confirm_is_dropped(
     def value(sample: Sample, digits: int) -> float:
         return float(sample.q) + (digits > 40) * (sample.q > 0)
 
-    monkeypatch.setitem(MEASURES, "planted", Measure("planted", "", value))
+    monkeypatch.setitem(MEASURES, "planted", Measure("", value))
     found = search(task(count=40)).worst
     assert found
     assert all(each.value <= 0 for each in found)

@@ -27,7 +27,7 @@ Point = tuple[Fraction, Fraction]
 def holds(sample: Sample) -> bool:
     if not sample.is_turn(_IN) or not sample.ordinary:
         return False
-    field, _ = sample.hamiltonian.field()
+    field = sample.field
     flow = Flow(field, _DIGITS)
     start = sample.p, sample.q
     try:
@@ -57,10 +57,9 @@ def _potential_must_move(sample: Sample) -> None:
     ring, potential = found.element
     leading = sample.proof.first.element
     assert leading is not None  # noqa: S101 - it has a potential
-    field, _ = sample.hamiltonian.field()
     start = sample.p, sample.q
     try:
-        end = _flow_to(Flow(field, 2 * _DIGITS), start, _INSTANT)
+        end = _flow_to(Flow(sample.field, 2 * _DIGITS), start, _INSTANT)
     except NoFlowError:
         return
     ends = [_value(ring, potential, point) for point in (start, end)]

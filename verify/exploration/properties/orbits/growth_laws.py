@@ -18,9 +18,8 @@ from verify.schemes.every_hamiltonian import TaylorSeries
 
 _STEP, _STEPS = Fraction(1, 2**256), 3
 _BITS_A_POWER, _SPARE = 256, 320
-_WITHIN = Fraction(
-    1, 2**64
-)  # of 1 + |g|: what is left out is 2⁻²⁵⁶ times products of H's derivatives
+# Of 1 + |g|: what is left out is 2⁻²⁵⁶ times products of H's derivatives.
+_WITHIN = Fraction(1, 2**64)
 _MOST_ORDER = 4
 
 

@@ -21,7 +21,7 @@ _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is 
 def holds(sample: Sample) -> bool:
     if not sample.is_turn(_IN) or not sample.polynomial or not sample.ordinary:
         return False
-    field, _ = sample.hamiltonian.field()
+    field = sample.field
     ring = field.ring
     mixed = field.derive(ring.variable("p") * ring.variable("q"))
     start = sample.p, sample.q

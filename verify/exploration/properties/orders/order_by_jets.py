@@ -69,7 +69,7 @@ def _leading(sample: Sample) -> Ball | None:
 
 def _derivatives(sample: Sample, jets: Jets) -> dict[tuple[int, int], Ball] | None:
     """H_ij at the initial value; None where one of them is not defined there."""
-    field, _ = sample.hamiltonian.field()
+    field = sample.field
     ring, found = field.ring, {(1, 0): field.h_p, (0, 1): field.h_q}
     for i, j in sorted(jets.indices, key=sum):
         if (i, j) not in found:

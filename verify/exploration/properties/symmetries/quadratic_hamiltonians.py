@@ -52,7 +52,7 @@ def holds(sample: Sample) -> bool:
 
 def _hessian(sample: Sample) -> tuple[Fraction, Fraction, Fraction] | None:
     """H_pp, H_pq, H_qq at the initial value, rounded; None where they are not ordinary numbers."""
-    field, _ = sample.hamiltonian.field()
+    field = sample.field
     ring, point = field.ring, {"p": sample.p, "q": sample.q}
     found = []
     for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
@@ -79,7 +79,8 @@ def _stability_function(generic: TaylorSeries | RungeKutta) -> Sequence[Fraction
 
 def _product(coefficients: Sequence[Fraction], square: Fraction) -> Fraction:
     """R(x) R(−x), which is even in x: its odd and even parts by x² = `square`."""
-    even = sum((c * square ** (n // 2) for n, c in enumerate(coefficients) if n % 2 == 0),
-               Fraction())  # fmt: skip
-    odd = sum((c * square ** (n // 2) for n, c in enumerate(coefficients) if n % 2), Fraction())
+    even, odd = (
+        sum((c * square**k for k, c in enumerate(coefficients[first::2])), Fraction())
+        for first in (0, 1)
+    )
     return even**2 - square * odd**2
