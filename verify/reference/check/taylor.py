@@ -77,6 +77,7 @@ class Expansion:
         self.count += 1
 
     def value(self, x: int) -> Number:
+        """A node's first coefficient."""
         return self.c[x][0]
 
     def coefficient(self, x: int, k: int) -> Number:
@@ -108,16 +109,10 @@ def _first(kind: str, a: Any, b: Any, c: dict[int, list[Number]], p: Number, q: 
 
 def _power(u: Number, exponent: Fraction) -> Number:
     if exponent.denominator == 1:
-        inverse, result = 1 / u, 1 / u  # a tape's other whole powers are products
-        for _ in range(int(-exponent) - 1):
-            result = result * inverse
-        return result
+        return (1 / u) ** int(-exponent)  # a tape's other whole powers are products
     if not isinstance(u, flint.arb):
         return (u.log() * number(exponent)).exp()
-    root = u.root(exponent.denominator)
-    result = flint.arb(1)
-    for _ in range(abs(exponent.numerator)):
-        result = result * root
+    result = u.root(exponent.denominator) ** abs(exponent.numerator)
     return result if exponent > 0 else 1 / result
 
 

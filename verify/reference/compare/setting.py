@@ -6,6 +6,7 @@ Each mistake of `verify.reference.compare.mistakes` makes another setting of the
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
@@ -13,7 +14,6 @@ from verify.kernels.orbit import Orbit
 from verify.reference.make.orbit_points import orbit_points
 from verify.scenes.results.reference import OrbitPoint
 
-_MOST_KEPT = 4096
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
 Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
@@ -30,7 +30,6 @@ class Points:
     def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""
         self._known = known
-        self._run: dict[tuple[Orbit, int, int], OrbitPoint | None] = {}
 
     def at(self, orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
         """To so many digits and no fewer; None where there is no such state."""
@@ -38,12 +37,7 @@ class Points:
         if have >= digits and step in rows:
             point = rows[step]
             return point if point.status == "finished" else None
-        key = orbit, step, digits
-        if key not in self._run:
-            if len(self._run) > _MOST_KEPT:
-                self._run.clear()
-            self._run[key] = _run_at(*key)
-        return self._run[key]
+        return _run_at(orbit, step, digits)
 
 
 @dataclass(frozen=True)
@@ -78,6 +72,7 @@ class Setting:
         return None if after < 0 else self.points.at(self.orbit, after, digits)
 
 
+@lru_cache(maxsize=4096)
 def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
     if step > _MOST_STEPS:
         return None

@@ -6,7 +6,7 @@ Only what is compared is kept, so that memory does not grow with the file (see
 
 import re
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -160,18 +160,20 @@ class _Keys:
 
     def describe(self, row: list[str]) -> str:
         """What is said of a row's run, by options and by its cells."""
-        named = {name: row[at].strip() for name, at in zip(self.named, self.at, strict=True)}
-        said = {**self.given, **named}
-        return ", ".join(f"{name} = {printable(said[name])}" for name in said)
+        said = self._inputs(row[at] for at in self.at)
+        return ", ".join(f"{name} = {printable(text)}" for name, text in said.items())
 
     def run_of(self, row: list[str], lines: Table) -> PublishedRun | None:
         texts = tuple([row[at] for at in self.at])
         if texts not in self._known:
             if len(self._known) > _MOST_KNOWN:
                 self._known.clear()
-            named = {n: x.strip() for n, x in zip(self.named, texts, strict=True)}
-            self._known[texts] = self._find({**self.given, **named}, lines)
+            self._known[texts] = self._find(self._inputs(texts), lines)
         return self._known[texts]
+
+    def _inputs(self, texts: Iterable[str]) -> dict[str, str]:
+        named = zip(self.named, texts, strict=True)
+        return {**self.given, **{name: text.strip() for name, text in named}}
 
     def step_of(self, row: list[str], run: PublishedRun, lines: Table) -> int | None:
         if "step" in self.places:

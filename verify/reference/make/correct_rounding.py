@@ -5,6 +5,7 @@ computes it again, with any bound that is small enough, gets the same text.
 """
 
 from fractions import Fraction
+from itertools import count
 
 from verify.arithmetic.exact import decimal, magnitude, rounded_units
 from verify.scenes.results.reference import Rounded
@@ -18,6 +19,12 @@ def correctly_rounded(value: Fraction, bound: Fraction, digits: int) -> Rounded 
     Of one digit more where the number is halfway between two of them, as exact decimals can be.
     An exact number (`bound` 0) that has no more digits than that is given itself, with radius 0.
     None where the bound is too large to tell, and so wherever it reaches 0.
+
+    >>> correctly_rounded(Fraction(1, 3), Fraction(1, 10**6), 4)
+    Rounded(value='3.333e-01', radius='5e-05')
+    >>> correctly_rounded(Fraction(1, 3), Fraction(1, 10**4), 4)
+    >>> correctly_rounded(Fraction(1, 4), Fraction(0), 4)
+    Rounded(value='2.5e-01', radius='0')
     """
     if bound == 0 and _short(value, digits):
         return exactly(value)
@@ -25,10 +32,10 @@ def correctly_rounded(value: Fraction, bound: Fraction, digits: int) -> Rounded 
     low, high = value - within, value + within
     if low <= 0 <= high:
         return None
-    for count in (digits, digits + 1):
-        text = decimal(low, count)
-        if text == decimal(high, count):
-            last = magnitude(Fraction(text)) - count + 1  # 9.99… may have become 1.00…e+01
+    for many in (digits, digits + 1):
+        text = decimal(low, many)
+        if text == decimal(high, many):
+            last = magnitude(Fraction(text)) - many + 1  # 9.99… may have become 1.00…e+01
             return Rounded(value=text, radius=f"5e{last - 1:+03d}")
     return None
 
@@ -37,6 +44,9 @@ def near_zero(value: Fraction, bound: Fraction, digits: int, size: Fraction) -> 
     """0 ± 10^(−2·digits) times the power of ten in `size`; None where more may be left than that.
 
     `size`: what the number is small against, such as the initial value; 0 counts as 1.
+
+    >>> near_zero(Fraction(0), Fraction(1, 10**20), 8, Fraction(2))
+    Rounded(value='0', radius='1e-16')
     """
     exponent = (magnitude(size) if size else 0) - 2 * digits
     if abs(value) + bound > Fraction(10) ** exponent:
@@ -45,12 +55,14 @@ def near_zero(value: Fraction, bound: Fraction, digits: int, size: Fraction) -> 
 
 
 def exactly(value: Fraction) -> Rounded:
-    """A number whose decimals end, with all of them and radius 0."""
+    """A number whose decimals end, with all of them and radius 0.
+
+    >>> exactly(Fraction(-1, 8))
+    Rounded(value='-1.25e-01', radius='0')
+    """
     if value == 0:
         return Rounded(value="0", radius="0")
-    digits = 1
-    while not _short(value, digits):
-        digits += 1
+    digits = next(n for n in count(1) if _short(value, n))
     return Rounded(value=decimal(value, digits), radius="0")
 
 
