@@ -52,7 +52,11 @@ def claim_texts(claims: Sequence[Claim]) -> tuple[str, ...]:
 
 
 def scheme_of(text: str) -> str:
-    """The scheme that the claim speaks of."""
+    """The scheme that the claim speaks of.
+
+    >>> scheme_of('{"kind": "order", "scheme": "lie2"}')
+    'lie2'
+    """
     scheme: str = json.loads(text)["scheme"]
     return scheme
 

@@ -69,6 +69,7 @@ class Exploration:
 
     @property
     def looks(self) -> tuple[Property, ...]:
+        """The properties and the claims, as properties."""
         return properties_of(self.properties, self.claims)
 
     @cached_property
@@ -118,7 +119,9 @@ def explore(
 ) -> ExploreReport:
     """Looks at all examples, and shrinks the first failure of each property.
 
-    `earlier`: scenes found before, each with the name of the property that failed.
+    `earlier`: scenes found before, each with the name of the property that failed; they are looked
+    at first. `done` hears of each result. What the store has of the tasks is not computed again.
+    The report depends on what is asked alone, and not on where it is computed.
     """
     again = tuple(_again(asked, earlier))
     plan = asked.plan
@@ -162,7 +165,10 @@ _FOUND = re.compile(r"([A-Za-z0-9_-]+)\.[0-9a-f]{8}\.toml")  # what is written, 
 
 
 def save_failures(report: ExploreReport, folder: Path) -> list[Path]:
-    """Writes each shrunk scene into the folder, under its property's name."""
+    """Writes each shrunk scene into the folder, as PROPERTY.XXXXXXXX.toml; returns the paths.
+
+    X are digits of a hash of the scene's text: what is found twice is one file.
+    """
     written = []
     for failure in report.failures:
         path = folder / f"{slug(failure.property)}.{name_of(failure.scene)[:8]}.toml"

@@ -107,6 +107,8 @@ class Meaningless:
 def meaningless(series: Sequence[PartsAt]) -> Meaningless:
     """Where the greatest |rounding| so far is not below the greatest |truncation| so far.
 
+    `series`: Λ's parts at checkpoints of one run, in the order of steps.
+
     The greatest ones, as Λ itself may pass through 0. A part that is exactly 0, or of which no
     digit is known, is "0": one that is known is then the greater, and nothing is said of two.
     """

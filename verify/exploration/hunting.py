@@ -54,6 +54,7 @@ class Hunt:
 
     @cached_property
     def plan(self) -> Plan:
+        """The tasks, each of an island of 200 scenes at most."""
         plan = Plan()
         for island, first in enumerate(range(0, self.examples, _ISLAND)):
             task = HuntTask(
@@ -79,7 +80,11 @@ class WorstScenes:
 def hunt(
     asked: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
 ) -> WorstScenes:
-    """The worst scenes found on all islands."""
+    """The worst scenes found on all islands, six at most, each of another shape of H.
+
+    Their values are decimal logarithms (see `verify.exploration.measures`), confirmed with twice
+    the digits. What the store has of the islands is not searched again.
+    """
     plan = asked.plan
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]

@@ -65,6 +65,7 @@ class MeasuredScenes:
 
     @property
     def left(self) -> bool:
+        """Whether it may measure one more."""
         return len(self.seen) < self.most
 
     def worst(self) -> list[Worst]:

@@ -57,10 +57,12 @@ class Sample:
 
     @cached_property
     def step_map(self) -> StepMap:
+        """The map of one step, for this H."""
         return self.scheme.step_map(self.hamiltonian)
 
     @cached_property
     def proof(self) -> Proof:
+        """What is proved of the map: orders, the leading coefficient of ΔJ."""
         return prove(self.step_map, self.scheme)
 
     @cached_property

@@ -4,7 +4,11 @@ from verify.scenes.frozen import Frozen
 
 
 class SampleSpace(Frozen):
-    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all)."""
+    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all).
+
+    >>> SampleSpace(kinds=("polynomial",), schemes=("lie2",)).degree
+    6
+    """
 
     kinds: tuple[str, ...] = ()
     degree: int = 6

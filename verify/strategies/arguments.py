@@ -17,7 +17,11 @@ def whole(name: str, value: object, least: int, most: int | None = None) -> int:
 
 
 def exactly(name: str, value: Exact) -> Fraction:
-    """The rational that is written; InputError for a float, which says how to write it."""
+    """The rational that is written; InputError for a float, which says how to write it.
+
+    >>> exactly("most", "1e-3")
+    Fraction(1, 1000)
+    """
     if isinstance(value, float):
         if value != value or value in (float("inf"), float("-inf")):
             raise InputError(name, value, "not a finite number")

@@ -55,6 +55,7 @@ class Formula:
     separable: bool
 
     def hamiltonian(self) -> Hamiltonian:
+        """H of that text, with its parameters' values."""
         return Hamiltonian.parse(self.text, dict(self.parameters))
 
 

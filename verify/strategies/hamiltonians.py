@@ -41,6 +41,11 @@ def hamiltonians(
 
     `with_parameters`: some coefficients are parameters `a` and `b`, with their values.
 
+    >>> from hypothesis import find, settings
+    >>> quietly = settings(database=None)
+    >>> find(hamiltonians(), lambda h: True, settings=quietly).formula
+    'p**2/2 + q**2/2'
+
     Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
     exists, when it is called and not when it draws.
     """

@@ -50,6 +50,11 @@ def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrate
     `extreme`: also exact zeros, 10^−300 … 10^300 of either sign, numbers that differ from whole
     ones by 10^−300 … 0.1, and numbers of 40 digits, all of which may be beyond `most`. Raises
     InputError for most ≤ 0 and for a float.
+
+    >>> from hypothesis import find, settings
+    >>> found = find(initial_values(), lambda z: z.q > 1, settings=settings(database=None))
+    >>> str(found.q), str(found.p)
+    ('2', '0')
     """
     bound = exactly("most", most)
     if bound <= 0:
@@ -88,6 +93,10 @@ def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStr
     decimals, and the two ends. Arguments such as "1e-300" and "1e300" give extreme ones.
 
     Raises InputError for least ≤ 0, least > most, and for a float.
+
+    >>> from hypothesis import find, settings
+    >>> str(find(step_sizes(), lambda h: h < 1, settings=settings(database=None)))
+    '1/10'
     """
     low, high = exactly("least", least), exactly("most", most)
     if low <= 0:

@@ -31,6 +31,11 @@ def schemes(
     may be any that `verify.schemes.get` knows: a family's member such as `lie7`, or formulas of
     one's own. Without names, `lie1` … `lie6` are drawn three times as often as each of the others.
 
+    >>> from hypothesis import find, settings
+    >>> drawn = schemes(area_preserving=True, order=4)
+    >>> find(drawn, lambda scheme: True, settings=settings(database=None)).order
+    4
+
     Shrinks towards lie1, or the first of `names`. Raises InputError for an unknown name, and where
     no scheme is left.
     """
@@ -70,6 +75,7 @@ def takers(found: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
 
 
 def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
+    """Whether the scheme takes this H, which is `separable` or not."""
     if scheme.every_h is not None:
         return separable or not scheme.needs_separable
     try:  # a scheme of the user's own: nothing else is known of it

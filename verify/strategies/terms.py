@@ -30,7 +30,11 @@ def quotient(index: int, size: int) -> Fraction:
 
 
 def signed_quotient(index: int, size: int) -> Fraction:
-    """The same with both signs by turns, of which there are 2·size²; the first is 1."""
+    """The same with both signs by turns, of which there are 2·size²; the first is 1.
+
+    >>> [str(signed_quotient(index, 2)) for index in range(8)]
+    ['1', '-1', '2', '-2', '1/2', '-1/2', '1', '-1']
+    """
     positive = quotient(index // 2, size)
     return -positive if index % 2 else positive
 
@@ -57,16 +61,19 @@ class Drawer:
     choices: int = 0
 
     def whole(self, least: int, most: int) -> int:
+        """A whole number; the simplest is the least. No choice is made of one."""
         if least == most:
             return least
         self.choices += 1
         return self.draw(_range(least, most))
 
     def pad(self, choices: int) -> None:
+        """Makes choices of no meaning until there were so many."""
         while self.choices < choices:
             self.whole(0, 1)
 
     def pick(self, choices: Sequence[T]) -> T:
+        """One of them; the simplest is the first."""
         return choices[self.whole(0, len(choices) - 1)]
 
     def positive(self) -> Fraction:
@@ -102,6 +109,7 @@ class Sum:
     terms: dict[tuple[str, str], Fraction] = field(default_factory=dict)
 
     def add(self, coefficient: Fraction, numerator: str, denominator: str = "") -> None:
+        """Adds a term, unless one of the same text is there."""
         self.terms.setdefault((numerator, denominator), coefficient)
 
     def __len__(self) -> int:
@@ -122,6 +130,7 @@ class Sum:
 
 
 def power(name: str, exponent: int) -> str:
+    """name^exponent, as formulas write it."""
     return name if exponent == 1 else f"{name}**{exponent}"
 
 
@@ -131,9 +140,14 @@ def monomial(i: int, j: int) -> str:
 
 
 def times(factor: int, name: str) -> str:
+    """factor·name, as formulas write it."""
     return {1: name, -1: f"-{name}"}.get(factor, f"{factor}*{name}")
 
 
 def combination(k: int, m: int) -> str:
-    """k·p + m·q, neither of them 0."""
+    """k·p + m·q, neither of them 0.
+
+    >>> combination(1, -2)
+    'p - 2*q'
+    """
     return f"{times(k, 'p')} {'-' if m < 0 else '+'} {times(abs(m), 'q')}"

@@ -30,6 +30,7 @@ class TermRequest:
 
 
 def trigonometric(d: Drawer, want: TermRequest) -> TermShape:
+    """sin or cos of a multiple of p, q or both."""
     function = d.pick(("cos", "sin"))
     if not want.mixed:
         return f"{function}({times(d.inner(), d.pick((want.x, want.y)))})", "", False
@@ -40,6 +41,7 @@ def trigonometric(d: Drawer, want: TermRequest) -> TermShape:
 
 
 def exponential(d: Drawer, want: TermRequest) -> TermShape:
+    """exp, cosh or sinh of a multiple, or a bump exp(−x²)."""
     bump = d.whole(0, 3) == 3
     if want.mixed:
         if bump:

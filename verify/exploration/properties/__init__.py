@@ -20,7 +20,11 @@ def names() -> tuple[str, ...]:
 
 @cache
 def get(name: str) -> Property:
-    """The property of that name; InputError where there is none."""
+    """The property of that name; InputError where there is none.
+
+    >>> print(get("symmetric-schemes").sentence)
+    The step of −h undoes the step of h, for a scheme that claims to be symmetric.
+    """
     if name not in _FILES:
         raise InputError("property", name, f"unknown; allowed: {', '.join(names())}")
     module = _FILES.module(name)

@@ -73,6 +73,7 @@ def check(
 ) -> Checked:
     """Everything of the folder by itself, and a random share of its data computed again.
 
+    `share`: from 0 to 1, of all runs, flows and proofs; `seed` chooses which.
     `own`: the folder of the scenes that it must have been made from, where that is known.
     `most_steps`: how many are done again at most; the runs that want more are named. `done`
     is called with how many recomputations are finished, of how many. InputError where a file cannot

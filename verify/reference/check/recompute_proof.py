@@ -115,6 +115,7 @@ def _coefficients(series: Any, most: int) -> list[Number]:
 
 
 def shown(ball: Number, digits: int) -> str:
+    """The ball's middle, with two digits more than those."""
     return str(ball.str(digits + 2, radius=False))
 
 

@@ -35,12 +35,14 @@ class Tape:
     # -- building -------------------------------------------------------------------------------
 
     def node(self, *content: Any) -> int:
+        """The node of that kind and those operands, made where it is new."""
         if content not in self._known:
             self._known[content] = len(self.nodes)
             self.nodes.append(content)
         return self._known[content]
 
     def const(self, value: Fraction | int) -> int:
+        """A rational."""
         return self.node("const", Fraction(value))
 
     def value(self, x: int) -> Fraction | None:
@@ -49,6 +51,7 @@ class Tape:
         return rest[0] if kind == "const" else None
 
     def add(self, x: int, y: int) -> int:
+        """x + y."""
         a, b = self.value(x), self.value(y)
         if a is not None and b is not None:
             return self.const(a + b)
@@ -57,6 +60,7 @@ class Tape:
         return self.node("add", *sorted((x, y)))
 
     def scale(self, factor: Fraction | int, x: int) -> int:
+        """factor · x."""
         kind, *rest = self.nodes[x]
         if kind == "const":
             return self.const(factor * rest[0])
@@ -67,6 +71,7 @@ class Tape:
         return x if factor == 1 else self.node("scale", Fraction(factor), x)
 
     def mul(self, x: int, y: int) -> int:
+        """x y."""
         for one, other in ((x, y), (y, x)):
             kind, *rest = self.nodes[one]
             if kind == "const":
@@ -76,6 +81,7 @@ class Tape:
         return self.node("mul", *sorted((x, y)))
 
     def power(self, x: int, exponent: Fraction) -> int:
+        """x^exponent; whole positive powers are products."""
         a = self.value(x)
         if exponent == 1:
             return x
@@ -88,6 +94,7 @@ class Tape:
         return self.node("power", Fraction(exponent), x)
 
     def function(self, name: str, x: int) -> int:
+        """A function that formulas have, of x; tan and tanh are quotients, a root is a power."""
         if name in ("tan", "tanh"):
             above, below = ("sin", "cos") if name == "tan" else ("sinh", "cosh")
             inverse = self.power(self.function(below, x), Fraction(-1))

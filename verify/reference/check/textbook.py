@@ -174,6 +174,7 @@ def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Ste
 
 
 def product(x: Matrix, y: Matrix) -> Matrix:
+    """x y, of matrices row by row."""
     a, b, c, d = x
     e, f, g, h = y
     return a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h

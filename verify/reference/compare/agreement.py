@@ -46,6 +46,11 @@ def printing(texts: Iterable[str]) -> Printing:
     A language's shortest decimal drops zeros, and a format with an exponent or with a fixed number
     of places does not: only where all cells have the same number of places, and no exponent, is
     that number taken for the precision.
+
+    >>> printing(["0.1000", "0.2500", "3.0000"])
+    Printing(digits=None, places=4)
+    >>> printing(["0.1", "0.25", "3.14159"])
+    Printing(digits=6, places=None)
     """
     cells = {text.strip() for text in texts}
     found = [match.groups() for match in map(_DIGITS.fullmatch, cells) if match]
@@ -63,6 +68,9 @@ def number(text: str, what: str) -> Fraction | None:
 
     Hexadecimal floats, as C prints them with %a, are numbers, too, and Fortran's 1.5D+00; exponents
     may be as large as those of the reference data, which go beyond ±1000.
+
+    >>> number("0x1.8p+1", "p"), number("1.5D+00", "p"), number("nan", "p")
+    (Fraction(3, 1), Fraction(3, 2), None)
     """
     bare = text.strip()
     if bare.lstrip("+-").casefold() in _NOT_FINITE:
@@ -100,6 +108,7 @@ class Cell:
 
     @property
     def differs(self) -> bool:
+        """Whether a digit that is printed does not agree."""
         return self.theirs is None or self.apart > 0
 
     @property
@@ -130,7 +139,13 @@ def beside(theirs: str, ours: tuple[Fraction, Fraction], how: Printing, what: st
 
 
 def is_single(value: Fraction, unit: Fraction) -> bool:
-    """Whether it is a single-precision number, up to its printing, or one's shortest decimal."""
+    """Whether it is a single-precision number, up to its printing, or one's shortest decimal.
+
+    >>> is_single(Fraction("0.100000001490116"), Fraction(0, 1))
+    False
+    >>> is_single(Fraction("0.100000001490116"), Fraction(1, 10**15))
+    True
+    """
     near = nearest_single(value)
     return near is not None and (
         abs(Fraction(float(near)) - value) <= unit or _shortest(near, value)

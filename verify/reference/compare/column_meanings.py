@@ -37,6 +37,7 @@ def readings(name: str) -> Iterator[tuple[str, str, Reading]]:
 
 
 def value_of(setting: Setting, name: str, step: int, digits: int) -> Bounded | None:
+    """A number of the setting's row, by its column; None where there is none."""
     return number_of(setting.point(step, digits), name)
 
 

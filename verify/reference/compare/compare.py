@@ -80,7 +80,11 @@ class Compared:
 def compare(
     ours: Published, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
 ) -> Compared:
-    """Everything of the table that the reference data have; `done` hears of runs, of how many."""
+    """Everything of the table that the reference data have; `done` hears of runs, of how many.
+
+    Verdicts are of columns, over all runs together; mistakes are looked for where one differs by
+    more than rounding. InputError where the table has no row, or no cell, that the data have.
+    """
     if not theirs.runs:
         steps = f"{theirs.other_steps} rows of other steps" if theirs.other_steps else "no rows"
         raise InputError("table", theirs.first_outside or steps, "has no row of these data")

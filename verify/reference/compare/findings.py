@@ -49,6 +49,7 @@ class RunFindings:
 
     @property
     def verdict(self) -> Verdict:
+        """The worst of its columns."""
         return max((x.verdict for x in self.columns.values()), default=Verdict.AGREES)
 
 
@@ -65,6 +66,7 @@ class Fit:
 
     @property
     def fits(self) -> bool:
+        """Whether rounding explains all of it."""
         return max(self.verdicts.values(), default=Verdict.AGREES) <= Verdict.ROUNDING
 
     @property

@@ -35,6 +35,7 @@ class PublishedRun:
 
     @property
     def inputs(self) -> Inputs:
+        """What it is found by."""
         h, q, p = map(nearest_double, self.exact)
         return self.run.scheme, h, q, p
 
@@ -45,6 +46,7 @@ class PublishedRun:
 
     @property
     def label(self) -> str:
+        """Scene, scheme and inputs, in words."""
         return f"{self.scene}: {self.run.label}"
 
     @cached_property
@@ -55,6 +57,7 @@ class PublishedRun:
 
     @cached_property
     def rows(self) -> dict[int, OrbitPoint]:
+        """Its rows by step."""
         return {row.step: row for row in self.run.rows}
 
 
@@ -94,7 +97,15 @@ class Published:
 
 
 def load(folder: Path, scene: str | None) -> Published:
-    """The runs of a folder's scenes, or of one. InputError for a file that is not as it must be."""
+    """The runs of a folder's scenes, or of one where there is a file of that name.
+
+    InputError for a folder that is not there or has no reference data, and for a file that is of
+    another format, or not as it must be.
+
+    >>> from verify.reference.make.make import PUBLISHED
+    >>> load(PUBLISHED, "duffing").values_of("duffing", "q0")
+    ['0.1', '0.5', '1.5', '0']
+    """
     if not folder.is_dir():
         raise InputError("--data", str(folder), "is no folder")
     names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}

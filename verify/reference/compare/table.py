@@ -48,6 +48,7 @@ class Table:
             raise self.error("is no header: the first line must name the columns")
 
     def error(self, problem: str) -> InputError:
+        """What is wrong with the line that was read last."""
         return InputError("file", self.name, f"line {self.line} {problem}")
 
     def __iter__(self) -> Iterator[list[str]]:

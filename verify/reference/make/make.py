@@ -125,6 +125,7 @@ def files_of(data: Sequence[Data], *, parquet: bool = False) -> dict[str, bytes]
 
 
 def manifest_of(asked: Sequence[SceneText], files: Mapping[str, bytes], command: str) -> Manifest:
+    """The manifest of these files, with the versions that are installed."""
     return Manifest(
         format=MANIFEST_FORMAT,
         command=command,
@@ -137,7 +138,11 @@ def manifest_of(asked: Sequence[SceneText], files: Mapping[str, bytes], command:
 
 
 def command_of(scenes: Sequence[str], parquet: bool) -> str:
-    """What makes the same files again; without scenes, the committed set's are meant."""
+    """What makes the same files again; without scenes, the committed set's are meant.
+
+    >>> command_of(["somewhere/pendulum.toml"], parquet=True)
+    'verify reference make pendulum.toml --parquet'
+    """
     names = [shlex.quote(Path(name).name) for name in scenes]
     return " ".join(["verify reference make", *names, *(["--parquet"] if parquet else [])])
 

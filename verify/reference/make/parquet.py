@@ -9,6 +9,7 @@ from verify.reference.make.writing import Row
 
 
 def installed() -> bool:
+    """Whether pyarrow is there."""
     return find_spec("pyarrow") is not None
 
 
@@ -19,6 +20,7 @@ def require() -> None:
 
 
 def parquet_bytes(rows: list[Row]) -> bytes:
+    """The file of a table, whose first row names the columns."""
     import pyarrow
     from pyarrow import parquet
 

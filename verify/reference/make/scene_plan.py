@@ -14,7 +14,10 @@ from verify.studies.proofs.one import ProofTask
 
 
 def plan_references(scenes: Sequence[Scene]) -> Plan:
-    """What the scenes ask for of reference data, and nothing else of them."""
+    """What the scenes ask for of reference data, and nothing else of them.
+
+    One task a proof, a run and a flow; those that two scenes share are one.
+    """
     plan = Plan()
     for scene in scenes:
         name = scene.name or scene.title or "scene"
@@ -38,6 +41,7 @@ def size_of(scene: Scene) -> int:
 
 
 def schemes_of(scene: Scene, section: Reference) -> tuple[str, ...]:
+    """The section's schemes; the scene's where it names none."""
     return section.schemes or scene.schemes
 
 

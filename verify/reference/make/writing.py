@@ -86,6 +86,7 @@ def names_of(scenes: Iterable[str], *, parquet: bool) -> set[str]:
 
 
 def csv_text(rows: list[Row]) -> str:
+    """A table as CSV, its lines ending with a line feed."""
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
@@ -138,8 +139,10 @@ def _cell(value: Any) -> str:
 
 
 def digest(content: bytes) -> str:
+    """SHA-256, in hexadecimal."""
     return hashlib.sha256(content).hexdigest()
 
 
 def listed(name: str, content: bytes) -> ListedFile:
+    """What a manifest says of a file."""
     return ListedFile(name=name, bytes=len(content), sha256=digest(content))
