@@ -4,13 +4,12 @@ M is a linear map of the plane. Where M carries the flow of H to that of K, a sc
 no coordinates carries its step along, too: Φ_K(M z) = M Φ_H(z).
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.arithmetic.arb import Ball, rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps, unlike
 from verify.exploration.property import Violation
@@ -56,15 +55,12 @@ def same_step(sample: Sample, matrix: Matrix, factor: Fraction, time: Fraction) 
     if theirs is None or not theirs[-1].sharp:
         return False
     with working_precision(BITS):
-        p_next, q_next = _image(matrix, ours[-1].p, ours[-1].q)
+        p_next, q_next = (
+            rational_ball(x) * ours[-1].p + rational_ball(y) * ours[-1].q for x, y in matrix
+        )
     wanted = BallState(p_next, q_next, ours[-1].product)
     _must_overlap(wanted, theirs[-1])
     return True
-
-
-def _image(matrix: Matrix, p: Ball, q: Ball) -> Sequence[Ball]:
-    rows = ([rational_ball(x) for x in row] for row in matrix)
-    return [x * p + y * q for x, y in rows]
 
 
 def _must_overlap(wanted: BallState, found: BallState) -> None:

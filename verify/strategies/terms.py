@@ -18,9 +18,7 @@ _HALF = Fraction(1, 2)
 
 
 # hypothesis makes a strategy of a range anew each time; there are few ranges.
-@lru_cache(maxsize=256)
-def _range(least: int, most: int) -> st.SearchStrategy[int]:
-    return st.integers(least, most)
+_range = lru_cache(maxsize=256)(st.integers)
 
 
 def quotient(index: int, size: int) -> Fraction:

@@ -183,19 +183,11 @@ def product(x: Matrix, y: Matrix) -> Matrix:
 # -- compositions of shears -----------------------------------------------------------------------
 
 
-def _yoshida() -> list[Number]:
-    """1/(2 − 2^(1/3)) and what is left of 1, in flint's present precision."""
+def _yoshida() -> list[tuple[str, Number]]:
+    """Störmer–Verlet steps of 1/(2 − 2^(1/3)) of h, what is left of 1, and the first again."""
     outer = 1 / (2 - flint.arb(2).root(3))
-    return [outer, 1 - 2 * outer, outer]
-
-
-def _verlets(steps: Callable[[], list[Number]]) -> Callable[[], list[tuple[str, Number]]]:
-    """Störmer–Verlet steps of these parts of h, one after the other."""
-
-    def parts() -> list[tuple[str, Number]]:
-        return [x for s in steps() for x in (("kick", s / 2), ("drift", s), ("kick", s / 2))]
-
-    return parts
+    steps = outer, 1 - 2 * outer, outer
+    return [x for s in steps for x in (("kick", s / 2), ("drift", s), ("kick", s / 2))]
 
 
 def _of(*parts: tuple[str, Fraction]) -> Callable[[], list[tuple[str, Number]]]:
@@ -207,7 +199,7 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
     "symplectic-euler": _of(("kick", _ONE), ("drift", _ONE)),
     "stormer-verlet": _of(("kick", _HALF), ("drift", _ONE), ("kick", _HALF)),
     "position-verlet": _of(("drift", _HALF), ("kick", _ONE), ("drift", _HALF)),
-    "yoshida4": _verlets(_yoshida),
+    "yoshida4": _yoshida,
 }
 
 

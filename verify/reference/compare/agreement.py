@@ -112,11 +112,6 @@ class Cell:
         return self.theirs is None or self.apart > 0
 
     @property
-    def agrees(self) -> bool:
-        """Whether all digits that are printed agree."""
-        return not self.differs
-
-    @property
     def digits(self) -> float:
         """−log₁₀ of the relative difference: digits that agree. Infinite where there is none."""
         if self.theirs is None:

@@ -1,6 +1,6 @@
 """A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -149,12 +149,8 @@ def _separated(off: list[_Off]) -> Separated | None:
 
 
 def _printings(theirs: Theirs) -> dict[str, Printing]:
-    cells: Mapping[str, list[str]] = {name: [] for name in theirs.columns}
-    for _, rows in theirs.runs.values():
-        for row in rows.values():
-            for name, text in row.cells.items():
-                cells[name].append(text)
-    return {name: printing(texts) for name, texts in cells.items()}
+    rows = [row for _, own in theirs.runs.values() for row in own.values()]
+    return {name: printing(row.cells[name] for row in rows) for name in theirs.columns}
 
 
 class _Search:

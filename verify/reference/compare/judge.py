@@ -37,10 +37,11 @@ class Judge:
         points: Points,
     ) -> None:
         self.ours, self.how, self._scatters = ours, how, scatters
-        self.cells: dict[tuple[int, str], Cell] = {}
-        for step in sorted(rows):
-            for name, cell in self._cells(step, rows[step]):
-                self.cells[step, name] = cell
+        self.cells = {
+            (step, name): cell
+            for step in sorted(rows)
+            for name, cell in self._cells(step, rows[step])
+        }
         names = {name for _, name in self.cells}
         self.names = tuple(n for n in (*STATE, *AREA) if n in names)
         self.right = Setting(ours.orbit, points)
@@ -65,7 +66,7 @@ class Judge:
         every = {step: cell for (step, n), cell in self.cells.items() if n == name}
         cells = {n: x for n, x in every.items() if fit.lost_from is None or n < fit.lost_from}
         verdict = fit.verdicts[name] if cells else Verdict.LOST
-        if all(cell.agrees for cell in every.values()):
+        if not any(cell.differs for cell in every.values()):
             verdict, cells = Verdict.AGREES, every
         if not cells:
             return Of(verdict, 0, math.inf, min(every), None)

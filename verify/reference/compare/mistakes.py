@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
+from math import isfinite
 from typing import Any
 
 from verify import schemes
@@ -15,6 +16,7 @@ from verify.algebra.formula import to_text
 from verify.arithmetic.exact import short
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
+from verify.kernels.tangent_map import nearest_double
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
 from verify.schemes.splitting_conditions import Part, Splitting
@@ -40,15 +42,14 @@ class Mistake:
 def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
     orbit = right.orbit
-    doubles = {
-        "h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values),
-    }  # fmt: skip
-    inexact = [n for n, x in doubles.items() if _double(x) not in (x, None)]
+    exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
+    doubles = {n: nearest_double(x) for n, x in exact.items()}
+    inexact = [n for n, x in doubles.items() if isfinite(x) and x != exact[n]]
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
     ones = [(name,) for name in inexact]
     for names in subsets if len(inexact) <= _MOST_INEXACT else [tuple(inexact), *ones]:
-        changed = {n: _double(doubles[n]) for n in names}
-        shown = " and ".join(f"{n} is the double nearest to {short(doubles[n])}" for n in names)
+        changed = {n: Fraction(doubles[n]) for n in names}
+        shown = " and ".join(f"{n} is the double nearest to {short(exact[n])}" for n in names)
         says = f"your {shown}, and not exactly that"
         name = f"double-{'-'.join(names)}"
         yield Mistake(name, says, replace(right, orbit=_with(orbit, changed)))
@@ -85,7 +86,7 @@ def _of_columns(right: Setting) -> Iterator[Mistake]:
 
 def _of_step(right: Setting) -> Iterator[Mistake]:
     h, values = right.orbit.step_size, right.orbit.hamiltonian.values
-    changes: list[tuple[str, str, dict[str, Fraction | None]]] = [
+    changes = [
         ("half-step", "your h is half what it should be", {"h": h / 2}),
         ("double-step", "your h is twice what it should be", {"h": 2 * h}),
     ]
@@ -188,18 +189,9 @@ def _named(parts: tuple[Part, ...]) -> str:
     return "; ".join(f"{kind} {to_text(size)}" for kind, size in parts)
 
 
-# -- numbers of other sizes -----------------------------------------------------------------------
-
-
-def _with(orbit: Orbit, changed: dict[str, Fraction | None]) -> Orbit:
-    new = {n: x for n, x in changed.items() if x is not None}
+def _with(orbit: Orbit, changed: dict[str, Fraction]) -> Orbit:
+    """The orbit with other numbers: h, q0, p0 and parameters by their names."""
+    new = dict(changed)
     h, q, p = new.pop("h", orbit.step_size), new.pop("q0", orbit.q), new.pop("p0", orbit.p)
     hamiltonian = orbit.hamiltonian.with_values({**dict(orbit.hamiltonian.values), **new})
     return Orbit(hamiltonian, orbit.scheme, h, q, p)
-
-
-def _double(x: Fraction) -> Fraction | None:
-    try:
-        return Fraction(float(x))
-    except OverflowError:
-        return None

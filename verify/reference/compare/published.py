@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -87,8 +88,7 @@ class Published:
 
     def runs(self) -> Iterator[PublishedRun]:
         """All of them."""
-        for runs in self.by_scene.values():
-            yield from runs
+        return chain.from_iterable(self.by_scene.values())
 
     def values_of(self, scene: str, key: str) -> list[str]:
         """What the scene's runs have for one of `KEYS`, each once."""

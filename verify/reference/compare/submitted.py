@@ -5,7 +5,6 @@ Only what is compared is kept, so that memory does not grow with the file (see
 """
 
 import re
-from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -216,21 +215,22 @@ class _Keys:
         every = sorted(self.ours.by_scene)
         if len(every) == 1:
             return every[0]
-        matching = defaultdict(list)
-        for scene in every:
-            for run in self.ours.scene(scene):
-                if all(self._is(run, name, inputs[name], lines) for name in KEYS if name in inputs):
-                    matching[scene].append(run)
+        known = [name for name in KEYS if name in inputs]
+
+        def fits(run: PublishedRun) -> bool:
+            return all(self._is(run, name, inputs[name], lines) for name in known)
+
+        matching = [scene for scene in every if any(map(fits, self.ours.scene(scene)))]
         if len(matching) > 1:
             names = ", ".join(matching)
             raise InputError("--scene", "", f"is wanted: {len(matching)} have such runs: {names}")
-        return next(iter(matching), None)
+        return matching[0] if matching else None
 
     def _is(self, run: PublishedRun, name: str, text: str, lines: Table) -> bool:
         mine = run.inputs[KEYS.index(name)]
-        return mine == (
-            text if name == "scheme" else nearest_double(self._number(text, name, lines))
-        )
+        if name == "scheme":
+            return mine == text
+        return mine == nearest_double(self._number(text, name, lines))
 
     def _number(self, text: str, name: str, lines: Table) -> Fraction:
         try:

@@ -39,7 +39,6 @@ from verify.schemes.step_map import StepMap
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step
 _ZERO = Fraction(0), Fraction(0)
-_ENCLOSED: Kind = "enclosed"
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 
 
@@ -51,7 +50,8 @@ def orbit_points(orbit: Orbit, *, steps: Sequence[int], digits: int) -> OrbitRes
 def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     for guard in _GUARDS:
-        known, kind = _at_start(orbit), _ENCLOSED
+        known = {"p": (orbit.p, Fraction(0)), "q": (orbit.q, Fraction(0)), "lambda": _ZERO}
+        kind: Kind = "enclosed"
         if step > 0:
             found = _run(orbit, step, digits + guard)
             if found.status == "left range":
@@ -72,10 +72,6 @@ def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
             names = {n: values.get(n) for n in ("p", "q", "delta_j", "mse", "lambda")}
             return OrbitPoint(step=step, status="finished", failed_step=None, kind=kind, **names)
     return _without(step, "unresolved", None)
-
-
-def _at_start(orbit: Orbit) -> dict[str, Bounded]:
-    return {"p": (orbit.p, Fraction(0)), "q": (orbit.q, Fraction(0)), "lambda": _ZERO}
 
 
 def _run(orbit: Orbit, steps: int, digits: int) -> RunResult:

@@ -12,11 +12,7 @@ from verify.verdict import Verdict
 
 _MOST_ORDER = 4  # of a scheme that is proved for every H here
 _IN = 3  # one in so many samples is asked whether its leading coefficient telescopes
-
-
-@lru_cache(maxsize=64)
-def _proved(name: str) -> EveryProof:
-    return prove_every(name)
+_proved = lru_cache(maxsize=64)(prove_every)
 
 
 def holds(sample: Sample) -> bool:

@@ -2,7 +2,7 @@
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, BallState, ball_steps, stepped, unlike
+from verify.exploration.ball_steps import BITS, ball_steps, stepped, unlike
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
@@ -21,15 +21,11 @@ def holds(sample: Sample) -> bool:
     states = ball_steps(sample.step_map, sample.p, sample.q, sample.step_size, 1)
     if states is None:
         return False
-    back = _back(sample, states[-1])
+    with working_precision(BITS):
+        back = stepped(sample.step_map, states[-1], rational_ball(-sample.step_size))
     if back is None or not back.sharp:
         return False
     for name, ball, start in (("p", back.p, states[0].p), ("q", back.q, states[0].q)):
         if not ball.overlaps(start):
             raise Violation(f"{name} comes back as {unlike(ball, start)}")
     return True
-
-
-def _back(sample: Sample, state: BallState) -> BallState | None:
-    with working_precision(BITS):
-        return stepped(sample.step_map, state, rational_ball(-sample.step_size))
