@@ -7,6 +7,7 @@ from verify.studies.proofs.one import ProofTask
 
 
 def proof_task(scene: Scene, scheme: str, *, formulas: bool = True) -> ProofTask:
+    """The proof of one scheme for the scene's H; `formulas`: with ΔJ in closed form."""
     return ProofTask(**scene.hamiltonian_fields(), scheme=scheme, formulas=formulas)
 
 
