@@ -120,5 +120,5 @@ def witness_of(decision: Decision, what: str) -> Prose:
     """`; at q = 1 it is [2 +/- 1e-9]`, or nothing where the decision names no point."""
     if not decision.witness:
         return prose("")
-    at = [prose(f"{name} = ", Number(str(x))) for name, x in decision.witness.items()]
+    at = [prose(Formula(name), " = ", Number(str(x))) for name, x in decision.witness.items()]
     return prose("; at ", joined(", ", at), f" {what} ", Formula(decision.enclosure))

@@ -7,7 +7,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.text import mathml, prose, typography, words
+from verify.pages.text import mathml, notation, prose, typography, words
 from verify.pages.text.signs import SIGNS
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -24,6 +24,8 @@ def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Envi
     )
     made.filters.update(
         prose=prose.prose,
+        quoted=prose.quoted,
+        notation=notation.notation,
         sentence=prose.sentence,
         cell=prose.cell,
         is_number=typography.is_number,

@@ -52,7 +52,7 @@ def _judge(number: int, proof: ProofResult, runs: Sequence[RunResult]) -> tuple[
     if proof.area_preserving:
         return Verdict.PROVED, prose("ΔJ ≡ 0 is proved, so ΔJ, MSE and Λ are exactly 0")
     if proof.order is not None:
-        at = joined(", ", (prose(f"{n} = ", Number(x)) for n, x in proof.witness.items()))
+        at = joined(", ", (prose(Formula(n), " = ", Number(x)) for n, x in proof.witness.items()))
         value = prose("; at ", at, " its coefficient is ", Formula(proof.enclosure))
         where = value if at else Prose()
         if number == 1:

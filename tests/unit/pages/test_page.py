@@ -22,6 +22,7 @@ from verify.execution.executors import THIS_PROCESS
 from verify.pages.environment import TEMPLATES
 from verify.pages.page import render, write
 from verify.pages.text.typography import number
+from verify.prose import Formula, prose
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.proof import ProofResult
@@ -306,10 +307,10 @@ def test_what_holds_for_every_h_is_shown_where_it_was_asked_for() -> None:
 def test_an_argument_on_paper_stands_with_its_claim_and_is_escaped() -> None:
     claim = ClaimResult(
         id="a", kind="theorem", source="Eq. 3", statement="s", scene="", verdict=Verdict.PROVED,
-        evidence="e", proof=f"By H_qq and {EVIL}. ∎",
+        evidence="e", proof=prose("By ", Formula("L_{H_p}"), f" and {EVIL}. ∎"),
     )  # fmt: skip
     page = render(report(claims=(claim,)))
-    assert "By H<sub>qq</sub> and" in page
+    assert "By L<sub>H<sub>p</sub></sub> and" in page
     assert EVIL not in page
     assert "on paper" not in render(report(claims=(claim.model_copy(update={"proof": ""}),)))
 

@@ -265,11 +265,6 @@ def _bracketed(expression: Expr) -> str:
     return f"<mrow>{_OPEN}{inside}{_CLOSE}</mrow>"
 
 
-def is_greek(text: str) -> bool:
-    """Whether a name stands for a Greek letter, with an index or without."""
-    return _parts(text)[0] in _GREEK
-
-
 def identifier(text: str) -> str:
     """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript."""
     stem, below = _parts(text)

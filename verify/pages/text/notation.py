@@ -1,4 +1,5 @@
-"""A formula alone, as people write it in prose: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}`.
+"""A formula alone, as people write it in prose: `h^3`, `H_qq`, `e^(Nε)`, `L_{H_p}`,
+or an interval, `[0.5 +/- 2e-13]`.
 
 What is not recognised is escaped as it is.
 """
@@ -8,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 from markupsafe import Markup, escape
 
-from verify.pages.text.typography import superscript
+from verify.pages.text.typography import NBSP, NUMBER, number, superscript
 
 Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]
 
@@ -19,7 +20,7 @@ def notation(text: str) -> Markup:
     >>> str(notation("L_{H_p}(q_k) + O(h^12)"))
     'L<sub>H<sub>p</sub></sub>(q<sub>k</sub>) + O(h¹²)'
     """
-    return applied(text, (INDEX, POWER, RAISED))
+    return applied(text, (INDEX, INTERVAL, POWER, RAISED))
 
 
 def applied(text: str, rules: Sequence[Rule]) -> Markup:
@@ -36,6 +37,11 @@ def applied(text: str, rules: Sequence[Rule]) -> Markup:
 
 def _lowered(match: re.Match[str]) -> Markup:
     return Markup("{}<sub>{}</sub>").format(match[1], notation(_unbracketed(match[2])))
+
+
+def _interval(match: re.Match[str]) -> Markup:
+    middle, radius = number(match[1]), number(match[2])
+    return Markup('<span class="nowrap">{0}{2}±{2}{1}</span>').format(middle, radius, NBSP)
 
 
 def _power(match: re.Match[str]) -> Markup:
@@ -60,5 +66,6 @@ INDEX: Rule = (
     ),
     _lowered,
 )
+INTERVAL: Rule = (re.compile(rf"\[(-?{NUMBER}) \+/- ({NUMBER})\]"), _interval)
 POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b"), _power)
 RAISED: Rule = (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+)"), _raised)

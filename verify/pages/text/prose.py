@@ -1,6 +1,6 @@
-"""What results say, as the pages set it: a `Prose` by its parts, a plain text as it is read.
+"""What results say, as the pages set it: by its parts, each in its way.
 
-Everything here starts from text that others wrote; what is not recognised is escaped as it is.
+A text is escaped as it is, and nothing is looked for in it.
 """
 
 import re
@@ -9,9 +9,10 @@ from markupsafe import Markup, escape
 
 from verify.pages.text import mathml
 from verify.pages.text.notation import notation
-from verify.pages.text.plain_prose import plain_prose
-from verify.pages.text.typography import is_number, number
-from verify.prose import Formula, Number, Prose
+from verify.pages.text.typography import NBSP, is_number, number
+from verify.prose import Formula, Number, Prose, read_prose
+
+_EQUALS = " = "
 
 
 def prose(text: str) -> Markup:
@@ -20,16 +21,22 @@ def prose(text: str) -> Markup:
     >>> str(prose(Prose("2 * 3 of ", Formula("e^(Nε)"), " below ", Number("1e-9"))))
     '2 * 3 of e<sup>Nε</sup> below 1\\xa0×\\xa010⁻⁹'
     """
-    if isinstance(text, Prose):
-        return Markup("").join(map(_part, text.parts))
-    return plain_prose(text)
+    parts = text.parts if isinstance(text, Prose) else (text,)
+    return Markup("").join(map(_set, parts, (*parts[1:], "")))
 
 
-def _part(part: str) -> Markup:
+def quoted(text: str) -> Markup:
+    """What people write, with its formulas between backticks."""
+    return prose(read_prose(text))
+
+
+def _set(part: str, following: str) -> Markup:
     if isinstance(part, Number):
         return escape(number(part))
     if isinstance(part, Formula):
         return notation(part) if mathml.read(part) is None else mathml.formula(part)
+    if isinstance(following, Number) and part.endswith(_EQUALS):  # q = 0.1 stays on one line
+        return escape(part.removesuffix(_EQUALS)) + f"{NBSP}={NBSP}"
     return escape(part)
 
 
@@ -41,7 +48,7 @@ def sentence(text: str) -> Markup:
         parts = (opening[0].upper() + opening[1:], *parts[1:])
     if not text.endswith((".", "!", "?")):
         parts = (*parts, ".")
-    return prose(Prose(*parts) if isinstance(text, Prose) else "".join(parts))
+    return prose(Prose(*parts))
 
 
 def cell(text: str) -> Markup:

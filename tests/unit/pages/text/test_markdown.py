@@ -26,6 +26,7 @@ from verify.pages.markdown.page import render, write
 from verify.pages.page import render as page_as_html
 from verify.pages.page_view import page_view
 from verify.pages.text import mathml
+from verify.prose import read_prose
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 
@@ -246,12 +247,12 @@ def test_the_tiles_and_the_counts_of_a_section_are_the_pages() -> None:
 
 def test_a_claim_that_is_closed_shows_its_statement() -> None:
     for statement, shown in (
-        ("ΔJ = O(h^n), *a*", "ΔJ = O(h<sup>n</sup>), *a*"),
-        ("It is 3*p**2*q.", "It is 3 p<sup>2</sup> q."),  # no MathML in a <summary>
-        ("It is p*sqrt(q)/(1 + h*q).", "(p √q)/(1+h q)"),
+        ("ΔJ = O(`h^η`), *a*", "ΔJ = O(h<sup>η</sup>), *a*"),
+        ("It is `3*p**2*q`.", "It is 3 p<sup>2</sup> q."),  # no MathML in a <summary>
+        ("It is `p*sqrt(q)/(1 + h*q)`.", "(p √q)/(1+h q)"),
         (f"{EVIL} $x$", "&lt;script&gt;"),
     ):
-        text, _ = render(report(claims=(claim(statement=statement),)))
+        text, _ = render(report(claims=(claim(statement=read_prose(statement)),)))
         (summary,) = re.findall(r"<summary>(.*)</summary>", text)
         assert shown in summary
         assert "<script" not in text
