@@ -34,10 +34,15 @@ def _set(part: str, following: str) -> Markup:
     if isinstance(part, Number):
         return escape(number(part))
     if isinstance(part, Formula):
-        return notation(part) if mathml.read(part) is None else mathml.formula(part)
+        return notation(part) if _short(part) or mathml.read(part) is None else mathml.formula(part)
     if isinstance(following, Number) and part.endswith(_EQUALS):  # q = 0.1 stays on one line
         return escape(part.removesuffix(_EQUALS)) + f"{NBSP}={NBSP}"
     return escape(part)
+
+
+def _short(formula: str) -> bool:
+    """Whether an index or a power is all that is to be set: copied, h³ stays h³."""
+    return "*" not in formula and bool(re.search("[_^]", formula))
 
 
 def sentence(text: str) -> Markup:

@@ -9,11 +9,11 @@ from verify.prose import Formula, Number, Prose
 @pytest.mark.parametrize(
     ("text", "markup"),
     [
-        ("`ΔJ_k` = O(`h^4`)", "ΔJ<sub>k</sub> = O(<math>"),
+        ("`ΔJ_k` = O(`h^4`)", "ΔJ<sub>k</sub> = O(h⁴)"),
         ("`z̄_(k+1)`", "z̄<sub>k+1</sub>"),
         ("`h^η` `X^(η−k)`", "h<sup>η</sup> X<sup>η−k</sup>"),
         ("`(−D)^((η+1)/2)`", "(−D)<sup>(η+1)/2</sup>"),
-        ("(1 + h`L_p`)", "(1 + h<math>"),
+        ("(1 + h`L_p`)", "(1 + hL<sub>p</sub>)"),
         ("from `-21.95` to `2.6e+05`", "from −21.95 to 2.6\xa0×\xa010⁵"),
         ("q = `0.1`, p = `-1`", "q\xa0=\xa00.1, p\xa0=\xa0−1"),
         ("it is `[0.5 +/- 2e-13]`", "0.5\xa0±\xa02\xa0×\xa010⁻¹³"),
@@ -33,11 +33,12 @@ def test_what_people_write_is_set_with_what_they_quote(text: str, markup: str) -
         ("<b>&", "&lt;b&gt;&amp;"),
         (Number("-2.1e-06"), "−2.1\xa0×\xa010⁻⁶"),
         (Formula("h**2*q"), "<math>"),
-        (Formula("h^12"), "<msup><mi>h</mi><mn>12</mn></msup>"),
+        (Formula("h^12"), "h¹²"),
         (Formula("O(hε^12)"), "O(hε<sup>12</sup>)"),
         (Formula("e^(Nε)"), "e<sup>Nε</sup>"),
         (Formula("L_{H_p}"), "L<sub>H<sub>p</sub></sub>"),
-        (Formula("H_qq"), "<msub><mi>H</mi><mi>qq</mi></msub>"),
+        (Formula("H_qq"), "H<sub>qq</sub>"),
+        (Formula("delta"), "<mi>δ</mi>"),
         (Formula("<b>^2"), "&lt;b&gt;"),
     ],
 )
