@@ -244,23 +244,9 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
 
 def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
     """The command and the versions, as far as they can be told to be wrong."""
-    try:
-        words = shlex.split(manifest.command)
-    except ValueError:
-        words = []
-    files = [x for x in words[3:] if x != "--parquet"]
-    made = words[:3] == ["verify", "reference", "make"]
-    if not made or not all(x.endswith(".toml") for x in files):
-        wanted = "verify reference make, and scenes"
+    wanted = _other_command(manifest, scenes)
+    if wanted is not None:
         found.differs(MANIFEST, "command", "", wanted, manifest.command)
-    elif files and len(scenes) == len(manifest.scenes):
-        for file, each in zip_longest(files, manifest.scenes):
-            stem = (file or "").removesuffix(".toml")
-            if each is None or scene_from_toml(each.toml, stem).name != each.name:
-                wanted = " ".join(f"{name}.toml" for name in scenes)
-                given = manifest.command
-                found.differs(MANIFEST, "command", "", wanted, given)
-                break
     if list(manifest.versions) != list(versions()):
         wanted = ", ".join(versions())
         given = ", ".join(manifest.versions)
@@ -268,6 +254,23 @@ def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Check
     for name, version in manifest.versions.items():
         if not _VERSION.fullmatch(version):
             found.differs(MANIFEST, "versions", name, "a version", version)
+
+
+def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
+    """What should stand there for the command; None where that may have made the files."""
+    try:
+        words = shlex.split(manifest.command)
+    except ValueError:
+        words = []
+    files = [x for x in words[3:] if x != "--parquet"]
+    if words[:3] != ["verify", "reference", "make"] or not all(x.endswith(".toml") for x in files):
+        return "verify reference make, and scenes"
+    if files and len(scenes) == len(manifest.scenes):
+        for file, each in zip_longest(files, manifest.scenes):
+            stem = (file or "").removesuffix(".toml")
+            if each is None or scene_from_toml(each.toml, stem).name != each.name:
+                return " ".join(f"{name}.toml" for name in scenes)
+    return None
 
 
 def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:

@@ -6,6 +6,7 @@ and det J is a d − b c of the four entries. The number system is flint's balls
 recomputed of a scheme's orbit is rigorous.
 """
 
+from contextlib import suppress
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
@@ -57,16 +58,13 @@ def _run(known: Field, run: Run, file: str, found: Findings) -> None:
     bits = _FIRST_BITS + _MORE_PER_DIGIT * run.digits
     for attempt in range(_DOUBLINGS):
         again = Findings()
-        try:
-            with flint.ctx.workprec(bits):
-                _orbit(step, run, file, again, final=attempt == _DOUBLINGS - 1)
-        except _TooWide:
-            bits *= 2
-            continue
-        found.add(again)
-        return
+        with suppress(_TooWide), flint.ctx.workprec(bits << attempt):
+            _orbit(step, run, file, again, final=attempt == _DOUBLINGS - 1)
+            found.add(again)
+            return
     label = f"{run.label}, step {run.rows[-1].step}"
-    found.not_recomputed.append(f"{file}: {label}: {bits // 2} bits do not tell")
+    most = bits << (_DOUBLINGS - 1)
+    found.not_recomputed.append(f"{file}: {label}: {most} bits do not tell")
 
 
 def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> None:
@@ -214,18 +212,15 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
     for more in _FLOW_DIGITS:
         again, digits = Findings(), flow.digits + more
         states, why = states_at(known, Fraction(flow.p), Fraction(flow.q), times, digits)
-        try:
-            with flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
-                for row, state in zip_longest(rows, states):
-                    where = file, f"{flow.label}, step {row.step}"
-                    if state is None:
-                        _not_reached(known, flow, row, why, where, again)
-                    else:
-                        _reached(flow, row, state, where, again)
-        except _TooWide:
-            continue
-        found.add(again)
-        return
+        with suppress(_TooWide), flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
+            for row, state in zip_longest(rows, states):
+                where = file, f"{flow.label}, step {row.step}"
+                if state is None:
+                    _not_reached(known, flow, row, why, where, again)
+                else:
+                    _reached(flow, row, state, where, again)
+            found.add(again)
+            return
     label = f"{flow.label}, step {flow.rows[-1].step}"
     found.not_recomputed.append(f"{file}: {label}: more digits do not tell")
 
