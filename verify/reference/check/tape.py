@@ -1,7 +1,8 @@
 """A formula as a list of operations, its derivatives as more of them: for recomputing, and alone.
 
 Nothing of `verify` is used here: the formula is read from Python's syntax tree, and derivatives are
-taken operation by operation. Operations that are the same are one.
+taken operation by operation. Operations that are the same are one. sympy would read and
+differentiate in fewer lines, but the data are made with it: what it gets wrong is to be seen here.
 """
 
 import ast

@@ -2,7 +2,8 @@
 
 Every rule is the textbook's: with u(t) = Σ u_k t^k, k·v_k of v = f(u) follows from v' = f'(u) u'
 (Moore, Interval Analysis, 1966). The coefficients are flint's balls, or power series of balls in
-another variable.
+another variable. flint's own functions of series want all coefficients of u at once; along a
+solution each is known only when those before it have gone through H's derivatives.
 """
 
 from collections.abc import Sequence
