@@ -1,4 +1,9 @@
-"""Processes on this machine, as a place where functions are called."""
+"""Processes on this machine, as a place where functions are called.
+
+Each is a pool of one of `concurrent.futures`. Pebble's pool names a lost call too, but begins its
+workers in a thread of its own: neither signals can be held meanwhile nor the path be made safe, and
+its workers go on after a parent that is killed (both tried with pebble 5.2.3).
+"""
 
 import multiprocessing
 import os
