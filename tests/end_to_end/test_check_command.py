@@ -250,7 +250,7 @@ def test_the_example_of_the_help_is_a_claims_file(
 ) -> None:
     status, out, _ = here(capsys, "check", "--help")
     assert status == 0
-    example = out[out.index("[defaults]") : out.index("Kinds:")]
+    example = out[out.index("[defaults]") : out.index("Options:")]
     lines = [line.strip() for line in example.splitlines()]
     one_h = "\n".join(lines).replace('every = "hamiltonian"', "")
     status, out, err = here(capsys, "check", claims(one_h), "--json")

@@ -18,18 +18,7 @@ REFUTED = 1  # exit status
 _KEYS = ("id", "kind", "source", "statement", "verdict", "evidence")
 
 
-class _Check(click.Command):
-    """Its help names the kinds of claims that there are, which are read only then."""
-
-    def format_epilog(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        from verify.claims.kinds import models
-
-        formatter.write_paragraph()
-        with formatter.indentation():
-            formatter.write_text("Kinds: " + " ".join(models()))
-
-
-@click.command(cls=_Check)
+@click.command()
 @click.argument("claims", metavar="CLAIMS")
 @click.option(
     "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
@@ -48,7 +37,7 @@ def check(
     \b
     [[claim]]
     id = "eq-21"
-    kind = "delta_j"
+    kind = "delta_j"                  # a wrong kind lists them
     formula = "3*h**3*delta*p*q"
     up_to = 4                         # + O(h⁴); without it, exactly
 

@@ -13,7 +13,6 @@ from tests.helpers.sampled.formulas import rationals
 from verify.schemes.free_lie_words import (
     KINDS,
     MOST_ORDER,
-    Part,
     conditions,
     lyndon,
     of_logarithm,
@@ -38,7 +37,7 @@ def times(x: Series, y: Series, most: int) -> dict[str, Fraction]:
     return found
 
 
-def exponential(part: Part, most: int) -> dict[str, Fraction]:
+def exponential(part: Mapping[str, Fraction], most: int) -> dict[str, Fraction]:
     term: dict[str, Fraction] = {"": Fraction(1)}
     total = dict(term)
     for n in range(1, most + 1):
@@ -47,7 +46,7 @@ def exponential(part: Part, most: int) -> dict[str, Fraction]:
     return total
 
 
-def product(parts: Sequence[Part], most: int) -> dict[str, Fraction]:
+def product(parts: Sequence[Mapping[str, Fraction]], most: int) -> dict[str, Fraction]:
     found = {"": Fraction(1)}
     for part in parts:
         found = times(found, exponential(part, most), most)

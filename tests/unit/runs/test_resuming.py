@@ -216,7 +216,7 @@ def test_a_checkpoint_is_written_when_some_seconds_have_passed(
     keeper, ages = Keeper(tmp_path, "task"), []
 
     def tick(done: int) -> None:
-        ages.append([json.loads(p.read_text().partition("\n")[2])["data"]["done"]
+        ages.append([json.loads(p.read_text())["data"]["data"]["done"]
                      for p in tmp_path.glob("*.checkpoint")])  # fmt: skip
         now[0] += 2.0
 

@@ -14,10 +14,10 @@ import pytest
 
 from tests.helpers import fixed_checks
 from tests.helpers.fixed_checks import FRACTION_OF, HARD, Format, Near
+from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide import engine, functions, limbs, newton, products
 from verify.arithmetic.wide.functions import Functions
 from verify.arithmetic.wide.limbs import constant, limb, resized, shifted_up
-from verify.kernels import rounding
 
 WIDTH = 256
 
@@ -251,6 +251,7 @@ def test_an_iteration_that_ends_too_early_is_caught(
 def test_a_bound_that_is_half_of_what_it_should_be_is_caught(
     monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
-    true = rounding._FIXED[kind]
-    monkeypatch.setitem(rounding._FIXED, kind, lambda size: true(size) / flint.arb(2))
+    true = fixed._units()
+    halved = true | {kind: lambda size: true[kind](size) / flint.arb(2)}
+    monkeypatch.setattr(fixed, "_units", lambda: halved)
     assert_caught(operations if kind == "mul" else function(kind))
