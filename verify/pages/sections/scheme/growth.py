@@ -13,6 +13,7 @@ from verify.pages.figures.captioned_plot import Plot, few
 from verify.pages.figures.logarithm import lg
 from verify.pages.sections.section import Section
 from verify.pages.text import mathml
+from verify.pages.text.prose import prose
 from verify.pages.text.typography import NBSP, listed, number, start, step, superscript, whole
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
@@ -73,7 +74,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
 def _law(law: AverageResult) -> Markup:
     """The law with its G and g."""
     if not law.power:
-        return Markup("There is no growth law: {}.").format(law.reason)
+        return Markup("There is no growth law: {}.").format(prose(law.reason))
     n = law.power
     g = Markup("g = {}").format(mathml.formula(law.g))
     if not law.potential:

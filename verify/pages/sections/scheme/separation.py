@@ -19,6 +19,7 @@ from verify.pages.sections.separation_finding import (
     growth_finding,
 )
 from verify.pages.text import words
+from verify.pages.text.prose import prose
 from verify.pages.text.typography import NBSP, number, start, step, whole
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.proof import ProofResult
@@ -183,7 +184,7 @@ def _growth_row(point: SeparationResult) -> GrowthRow:
 
 def _growth(found: GrowthResult) -> Markup:
     if found.exponent is None:
-        return Markup('{} <span class="bound">{}</span>').format(found.name, found.reason)
+        return Markup('{} <span class="bound">{}</span>').format(found.name, prose(found.reason))
     exponent = f"{number(found.exponent)}{NBSP}±{NBSP}{found.standard_error}"
     return Markup('{} <span class="muted beside">{}</span>').format(exponent, found.name)
 
