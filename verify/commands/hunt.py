@@ -53,7 +53,7 @@ def hunt(
     page = write(report, output)
     if as_json:
         show.print_json({"examples": shown.examples, "failures": [], "seed": seed}
-                        | {"gallery": shown.model_dump(mode="json")})  # fmt: skip
+                        | {"gallery": show.plain_json(shown)})  # fmt: skip
     else:
         _print(shown, output, page)
 
