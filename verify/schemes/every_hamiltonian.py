@@ -5,10 +5,10 @@
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeVar, runtime_checkable
 
 import flint
 import sympy
@@ -16,7 +16,8 @@ import sympy
 from verify.algebra.conditions import Condition
 from verify.algebra.jets import Jets, Poly, Series
 
-Matrix = tuple[tuple[Poly, Poly], tuple[Poly, Poly]]
+At = TypeVar("At")
+Slope = TypeVar("Slope")
 
 
 @runtime_checkable
@@ -52,20 +53,40 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class RungeKutta:
-    """An explicit Runge–Kutta method: the rows of its strictly lower triangular matrix, weights."""
+    """An explicit Runge–Kutta method: k_i = f(z + h Σ a_ij k_j), j < i, and z' = z + h Σ b_i k_i.
+
+    `rows[i]`: a_ij for j < i, which has as many entries as there are stages before; `weights`:
+    b_i. ValueError where they do not fit together, or Σ b_i ≠ 1.
+    """
 
     rows: tuple[tuple[Fraction, ...], ...]
     weights: tuple[Fraction, ...]
     separable: bool = False
 
+    def __post_init__(self) -> None:
+        if [len(row) for row in self.rows] != list(range(len(self.weights))):
+            raise ValueError("row i of an explicit tableau has i entries, one row for each weight")
+        if sum(self.weights) != 1:
+            raise ValueError("the weights do not add up to 1")
+
+    def step(
+        self,
+        slope: Callable[[At], Slope],
+        moved: Callable[[Sequence[Fraction], Sequence[Slope]], At],
+    ) -> At:
+        """One step: `slope` is f, and `moved(weights, slopes)` is z + h Σ weights · slopes."""
+        slopes: list[Slope] = []
+        for row in self.rows:
+            slopes.append(slope(moved(row, slopes)))
+        return moved(self.weights, slopes)
+
     def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
         """p' and q' as series up to h^most; see `BySeries`."""
-        slopes: list[tuple[Series, Series]] = []
-        for row in self.rows:
-            at = _moved(jets, slopes, row, most)
-            force = [-x for x in jets.shifted(0, 1, *at)]
-            slopes.append((force, jets.shifted(1, 0, *at)))
-        dp, dq = _moved(jets, slopes, self.weights, most)
+
+        def slope(change: tuple[Series, Series]) -> tuple[Series, Series]:
+            return [-x for x in jets.shifted(0, 1, *change)], jets.shifted(1, 0, *change)
+
+        dp, dq = self.step(slope, lambda row, slopes: _moved(jets, slopes, row, most))
         return [jets.p + dp[0], *dp[1:]], [jets.q + dq[0], *dq[1:]]
 
 

@@ -13,17 +13,41 @@ from functools import lru_cache
 
 import sympy
 
+from verify.algebra.conditions import ByConditions
 from verify.algebra.implicit_unknowns import Matrix, define, unknowns
 from verify.algebra.power_series import Series, at_point, partials
 from verify.algebra.ring import Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.scheme import Scheme
 from verify.schemes.stages import Point, Stages
 from verify.schemes.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
 from verify.schemes.tree_order import order_of
 
 _NAMES_PER_STAGE = 100
 _MU, _SQUARE = sympy.symbols("mu square")  # an eigenvalue of hM, and its square
+
+
+def implicit(
+    name: str,
+    tableau: ImplicitTableau,
+    every_h: BySeries | ByConditions,
+    *,
+    order: int,
+    source: str,
+) -> Scheme:
+    """The scheme of these coefficients, those of a Gauss method: symmetric, and of det J ≡ 1."""
+    return Scheme(
+        name=name,
+        order=order,
+        area_preserving=True,
+        explicit=False,
+        symmetric=True,
+        source=source,
+        build=lambda hamiltonian: implicit_map(hamiltonian, tableau),
+        every_h=every_h,
+    )
 
 
 @lru_cache(maxsize=64)

@@ -1,52 +1,35 @@
-"""Explicit Runge–Kutta schemes: k_i = f(z + h Σ a_ij k_j), j < i, and z' = z + h Σ b_i k_i.
+"""Explicit Runge–Kutta schemes for one H.
 
-The same few lines are read in two ways: with ring elements they make the map, stage by stage, and
-with power series in h its Taylor series.
+The same few lines, `RungeKutta.step`, are read in two ways: with ring elements they make the map,
+stage by stage, and with power series in h its Taylor series.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import TypeVar
 
 from verify.algebra.power_series import Series, at_point, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.scheme import Scheme
 from verify.schemes.stages import Point, Stages
 from verify.schemes.step_map import StepMap, Substep
 
-At = TypeVar("At")
-Slope = TypeVar("Slope")
+
+def explicit(name: str, tableau: RungeKutta, *, order: int, source: str) -> Scheme:
+    """The scheme of these coefficients."""
+    return Scheme(
+        name=name,
+        order=order,
+        area_preserving=False,
+        explicit=True,
+        symmetric=False,
+        source=source,
+        build=lambda hamiltonian: runge_kutta_map(hamiltonian, tableau),
+        every_h=tableau,
+    )
 
 
-@dataclass(frozen=True)
-class Tableau:
-    """`rows[i]`: a_ij for j < i, which has as many entries as there are stages before; `weights`:
-    b_i. ValueError where they do not fit together, or Σ b_i ≠ 1.
-    """
-
-    rows: tuple[tuple[Fraction, ...], ...]
-    weights: tuple[Fraction, ...]
-
-    def __post_init__(self) -> None:
-        if [len(row) for row in self.rows] != list(range(len(self.weights))):
-            raise ValueError("row i of an explicit tableau has i entries, one row for each weight")
-        if sum(self.weights) != 1:
-            raise ValueError("the weights do not add up to 1")
-
-
-def step(
-    tableau: Tableau,
-    slope: Callable[[At], Slope],
-    moved: Callable[[Sequence[Fraction], Sequence[Slope]], At],
-) -> At:
-    """One step: `slope` is f, and `moved(weights, slopes)` is z + h Σ weights · slopes."""
-    slopes: list[Slope] = []
-    for row in tableau.rows:
-        slopes.append(slope(moved(row, slopes)))
-    return moved(tableau.weights, slopes)
-
-
-def runge_kutta_map(hamiltonian: Hamiltonian, tableau: Tableau) -> StepMap:
+def runge_kutta_map(hamiltonian: Hamiltonian, tableau: RungeKutta) -> StepMap:
     """The step map, for any H, in stages."""
     field, _ = hamiltonian.field()
     stages = Stages(field, len(tableau.weights))
@@ -59,11 +42,11 @@ def runge_kutta_map(hamiltonian: Hamiltonian, tableau: Tableau) -> StepMap:
             p, q = p + part * u, q + part * v
         return p, q
 
-    substep = Substep(stages.field, *step(tableau, stages.slope, moved))
+    substep = Substep(stages.field, *tableau.step(stages.slope, moved))
     return StepMap(hamiltonian, (substep,), lambda most: (field, *taylor(field, tableau, most)))
 
 
-def taylor(field: VectorField, tableau: Tableau, most: int) -> tuple[Series, Series]:
+def taylor(field: VectorField, tableau: RungeKutta, most: int) -> tuple[Series, Series]:
     """The Taylor series of p' and q' up to h^most."""
     ring = field.ring
     start = [Series.of(ring, [ring.variable(name)], most) for name in ("p", "q")]
@@ -82,5 +65,5 @@ def taylor(field: VectorField, tableau: Tableau, most: int) -> tuple[Series, Ser
         u, v = (x - x0 for x, x0 in zip(point, start, strict=True))
         return [at_point(partial, u, v) for partial in gradient]
 
-    p, q = step(tableau, slope, moved)
+    p, q = tableau.step(slope, moved)
     return p, q

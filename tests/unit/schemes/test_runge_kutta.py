@@ -22,14 +22,15 @@ from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.runs.derivatives import Derivatives
 from verify.runs.run import run
-from verify.schemes.runge_kutta import Tableau, runge_kutta_map
+from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.runge_kutta import runge_kutta_map
 from verify.verdict import Verdict
 
 ZERO, HALF, ONE = Fraction(0), Fraction(1, 2), Fraction(1)
-CLASSICAL = Tableau(
+CLASSICAL = RungeKutta(
     ((), (HALF,), (ZERO, HALF), (ZERO, ZERO, ONE)), (ONE / 6, ONE / 3, ONE / 3, ONE / 6)
 )
-TABLEAUS = {"rk4": CLASSICAL, "explicit-midpoint": Tableau(((), (HALF,)), (ZERO, ONE))}
+TABLEAUS = {"rk4": CLASSICAL, "explicit-midpoint": RungeKutta(((), (HALF,)), (ZERO, ONE))}
 SYSTEMS = {
     "duffing": "p**2/2 + q**2/2 + (3/4)*q**4/4",
     "pendulum": "p**2/2 - cos(q)",
@@ -52,7 +53,7 @@ class ByHand:
     def __init__(
         self,
         text: str,
-        tableau: Tableau,
+        tableau: RungeKutta,
         number: Callable[[Fraction], Any],
         functions: str = "mpmath",
     ) -> None:
@@ -82,7 +83,7 @@ def to_mpf(x: Fraction) -> Any:
     return mpmath.mpf(x.numerator) / x.denominator
 
 
-def proof_of(text: str, tableau: Tableau, name: str) -> Proof:
+def proof_of(text: str, tableau: RungeKutta, name: str) -> Proof:
     return prove(runge_kutta_map(Hamiltonian.parse(text), tableau), schemes.get(name))
 
 
@@ -102,7 +103,7 @@ def test_a_tableau_that_does_not_fit_together_is_refused(
     rows: tuple[tuple[Fraction, ...], ...], weights: tuple[Fraction, ...]
 ) -> None:
     with pytest.raises(ValueError, match="weight"):
-        Tableau(rows, weights)
+        RungeKutta(rows, weights)
 
 
 # -- the map ----------------------------------------------------------------------------------
@@ -175,7 +176,7 @@ WRONG = {
 def test_a_wrong_coefficient_is_refuted(
     rows: tuple[tuple[Fraction, ...], ...], weights: tuple[Fraction, ...]
 ) -> None:
-    proof = proof_of(SYSTEMS["pendulum"], Tableau(rows, weights), "rk4")
+    proof = proof_of(SYSTEMS["pendulum"], RungeKutta(rows, weights), "rk4")
     assert proof.verdict is Verdict.REFUTED
     assert "rk4 claims order 4" in proof.reason
 

@@ -33,10 +33,10 @@ def proof_of(scheme_name: str, hamiltonian: Hamiltonian) -> Proof:
 
 @pytest.mark.parametrize("file", FILES.names)
 def test_each_file_answers_to_its_names_and_to_no_other(file: str) -> None:
-    module = FILES.module(file)
-    answered = [name for name in (*NAMES, *USERS_OWN) if module.make(name) is not None]
+    answered = [name for name in (*NAMES, *USERS_OWN) if schemes._made(file, name) is not None]
     assert answered, "an orphan: no name reaches this file"
-    assert [name for name in answered if name not in USERS_OWN] == list(module.EXAMPLES)
+    told = getattr(FILES.module(file), "EXAMPLES", [file])
+    assert [name for name in answered if name not in USERS_OWN] == list(told)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -2,29 +2,19 @@
 
 import sympy
 
-from verify.schemes.implicit_runge_kutta import implicit_map
+from verify.schemes.implicit_runge_kutta import implicit
 from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.scheme import Scheme
 from verify.schemes.tree_conditions import TreeConditions
 
-EXAMPLES = ("gauss4",)
 _QUARTER, _HALF, _ROOT = sympy.Rational(1, 4), sympy.Rational(1, 2), sympy.sqrt(3)
 TABLEAU = ImplicitTableau.of(
     rows=((_QUARTER, _QUARTER - _ROOT / 6), (_QUARTER + _ROOT / 6, _QUARTER)),
     weights=(_HALF, _HALF),
 )
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return Scheme(
-        name=name,
-        order=4,
-        area_preserving=True,
-        explicit=False,
-        symmetric=True,
-        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
-        build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
-        every_h=TreeConditions(TABLEAU),
-    )
+SCHEME = implicit(
+    "gauss4",
+    TABLEAU,
+    TreeConditions(TABLEAU),
+    order=4,
+    source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
+)

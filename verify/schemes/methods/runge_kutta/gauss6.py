@@ -2,12 +2,10 @@
 
 import sympy
 
-from verify.schemes.implicit_runge_kutta import implicit_map
+from verify.schemes.implicit_runge_kutta import implicit
 from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.scheme import Scheme
 from verify.schemes.tree_conditions import TreeConditions
 
-EXAMPLES = ("gauss6",)
 _OUTER, _INNER, _ROOT = sympy.Rational(5, 36), sympy.Rational(2, 9), sympy.sqrt(15)
 TABLEAU = ImplicitTableau.of(
     rows=(
@@ -17,18 +15,10 @@ TABLEAU = ImplicitTableau.of(
     ),
     weights=(2 * _OUTER, 2 * _INNER, 2 * _OUTER),
 )
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return Scheme(
-        name=name,
-        order=6,
-        area_preserving=True,
-        explicit=False,
-        symmetric=True,
-        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
-        build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
-        every_h=TreeConditions(TABLEAU),
-    )
+SCHEME = implicit(
+    "gauss6",
+    TABLEAU,
+    TreeConditions(TABLEAU),
+    order=6,
+    source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
+)

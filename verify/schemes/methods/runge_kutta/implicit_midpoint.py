@@ -8,25 +8,15 @@ from fractions import Fraction
 import sympy
 
 from verify.schemes.every_hamiltonian import Stage, StageEquations
-from verify.schemes.implicit_runge_kutta import implicit_map
+from verify.schemes.implicit_runge_kutta import implicit
 from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.scheme import Scheme
 
-EXAMPLES = ("implicit-midpoint",)
 TABLEAU = ImplicitTableau.of(rows=((sympy.Rational(1, 2),),), weights=(1,))
 _ONE = Fraction(1)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return Scheme(
-        name=name,
-        order=2,
-        area_preserving=True,
-        explicit=False,
-        symmetric=True,
-        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.4",
-        build=lambda hamiltonian: implicit_map(hamiltonian, TABLEAU),
-        every_h=StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE / 2, at_q=_ONE / 2),)),
-    )
+SCHEME = implicit(
+    "implicit-midpoint",
+    TABLEAU,
+    StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE / 2, at_q=_ONE / 2),)),
+    order=2,
+    source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.4",
+)

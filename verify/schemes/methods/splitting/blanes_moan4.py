@@ -14,10 +14,8 @@ one solution is b₁ = 0.209515106613362089, b₂ = −0.143851773179818115; pri
 
 from sympy import Expr, Rational, S, sqrt
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import palindrome, splitting
 
-EXAMPLES = ("blanes-moan4",)
 PRINTED = {
     "a": ("0.0792036964311957", "0.353172906049774", "-0.0420650803577195"),
     "b": ("0.209515106613362", "-0.143851773179818"),
@@ -44,15 +42,10 @@ _B = _kicks(_A)
 _HALF = (
     _A[0], _B[0], _A[1], _B[1], _A[2], S.Half - _B[0] - _B[1], 1 - 2 * sum(_A, S.Zero),
 )  # fmt: skip
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        palindrome("drift", _HALF),
-        order=4,
-        symmetric=True,
-        source="Blanes, Moan, J. Comput. Appl. Math. 142 (2002) 313–330",
-    )
+SCHEME = splitting(
+    "blanes-moan4",
+    palindrome("drift", _HALF),
+    order=4,
+    symmetric=True,
+    source="Blanes, Moan, J. Comput. Appl. Math. 142 (2002) 313–330",
+)

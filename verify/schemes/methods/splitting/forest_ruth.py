@@ -6,23 +6,16 @@ drifts θ/2, (1 − θ)/2, (1 − θ)/2, θ/2 and kicks θ, 1 − 2θ, θ.
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import palindrome, splitting
 
-EXAMPLES = ("forest-ruth",)
 _R = sympy.cbrt(2)
 _THETA = (4 + 2 * _R + _R**2) / 6
 _HALF = (_THETA / 2, _THETA, (1 - _THETA) / 2, 1 - 2 * _THETA)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        palindrome("drift", _HALF),
-        order=4,
-        symmetric=True,
-        source="Forest, Ruth, Physica D 43 (1990) 105–117; Candy, Rozmus, J. Comput. Phys. 92 "
-        "(1991) 230–256",
-    )
+SCHEME = splitting(
+    "forest-ruth",
+    palindrome("drift", _HALF),
+    order=4,
+    symmetric=True,
+    source="Forest, Ruth, Physica D 43 (1990) 105–117; Candy, Rozmus, J. Comput. Phys. 92 "
+    "(1991) 230–256",
+)

@@ -21,23 +21,8 @@ from verify.schemes.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
 
 _ONE = Fraction(1)
 _NAMES = 20
-EXAMPLES = ("implicit-symplectic-euler",)
+_NAME = "implicit-symplectic-euler"
 _EQUATIONS = StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE),))
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return Scheme(
-        name=name,
-        order=1,
-        area_preserving=True,
-        explicit=False,
-        symmetric=False,
-        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.3",
-        build=implicit_euler_map,
-        every_h=_EQUATIONS,
-    )
 
 
 @lru_cache(maxsize=64)
@@ -46,7 +31,7 @@ def implicit_euler_map(hamiltonian: Hamiltonian) -> StepMap:
     field, _ = hamiltonian.field()
     ring = field.ring
     if field.separable():
-        return shears(hamiltonian, EXAMPLES[0], PARTS)
+        return shears(hamiltonian, _NAME, PARTS)
     mixed = ring.diff(field.h_q, "p")
     if ring.decide(ring.diff(mixed, "p")).zero is not True:
         return _by_equations(hamiltonian, field)
@@ -90,3 +75,15 @@ def _taylor(field: VectorField, most: int) -> Expanded:
     for _ in range(most):
         moved = at_point(force, moved, still).shifted(1)
     return field, own["p"] + moved, own["q"] + at_point(speed, moved, still).shifted(1)
+
+
+SCHEME = Scheme(
+    name=_NAME,
+    order=1,
+    area_preserving=True,
+    explicit=False,
+    symmetric=False,
+    source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.3",
+    build=implicit_euler_map,
+    every_h=_EQUATIONS,
+)

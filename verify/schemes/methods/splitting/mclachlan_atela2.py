@@ -6,21 +6,14 @@ two stages it has the smallest errors of order 3; it is not symmetric.
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import alternating, splitting
 
-EXAMPLES = ("mclachlan-atela2",)
 _A = sympy.sqrt(2) / 2
 _SIZES = (1 - _A, _A, _A, 1 - _A)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        alternating("kick", _SIZES),
-        order=2,
-        symmetric=False,
-        source="McLachlan, Atela, Nonlinearity 5 (1992) 541–562",
-    )
+SCHEME = splitting(
+    "mclachlan-atela2",
+    alternating("kick", _SIZES),
+    order=2,
+    symmetric=False,
+    source="McLachlan, Atela, Nonlinearity 5 (1992) 541–562",
+)

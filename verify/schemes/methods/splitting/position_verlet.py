@@ -5,21 +5,14 @@ q½ = q + (h/2) T'(p), p' = p − h V'(q½), q' = q½ + (h/2) T'(p').
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import palindrome, splitting
 
-EXAMPLES = ("position-verlet",)
 _HALF = (sympy.S.Half, sympy.S.One)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        palindrome("drift", _HALF),
-        order=2,
-        symmetric=True,
-        source="Tuckerman, Berne, Martyna, J. Chem. Phys. 97 (1992) 1990–2001; Hairer, Lubich, "
-        "Wanner, Geometric Numerical Integration, I.1.4",
-    )
+SCHEME = splitting(
+    "position-verlet",
+    palindrome("drift", _HALF),
+    order=2,
+    symmetric=True,
+    source="Tuckerman, Berne, Martyna, J. Chem. Phys. 97 (1992) 1990–2001; Hairer, Lubich, "
+    "Wanner, Geometric Numerical Integration, I.1.4",
+)

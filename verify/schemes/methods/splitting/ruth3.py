@@ -2,23 +2,16 @@
 
 from sympy import Rational
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import alternating, splitting
 
-EXAMPLES = ("ruth3",)
 _SIZES = (
     Rational(7, 24), Rational(2, 3), Rational(3, 4), Rational(-2, 3), Rational(-1, 24), Rational(1),
 )  # fmt: skip
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        alternating("kick", _SIZES),
-        order=3,
-        symmetric=False,
-        source="Ruth, IEEE Trans. Nucl. Sci. 30 (1983) 2669–2671; Hairer, Lubich, Wanner, "
-        "Geometric Numerical Integration, II.5",
-    )
+SCHEME = splitting(
+    "ruth3",
+    alternating("kick", _SIZES),
+    order=3,
+    symmetric=False,
+    source="Ruth, IEEE Trans. Nucl. Sci. 30 (1983) 2669–2671; Hairer, Lubich, Wanner, "
+    "Geometric Numerical Integration, II.5",
+)

@@ -5,20 +5,13 @@ p½ = p − (h/2) V'(q), q' = q + h T'(p½), p' = p½ − (h/2) V'(q'). Three sh
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import palindrome, splitting
 
-EXAMPLES = ("stormer-verlet",)
 _HALF = (sympy.S.Half, sympy.S.One)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        palindrome("kick", _HALF),
-        order=2,
-        symmetric=True,
-        source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4 and VI.3",
-    )
+SCHEME = splitting(
+    "stormer-verlet",
+    palindrome("kick", _HALF),
+    order=2,
+    symmetric=True,
+    source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4 and VI.3",
+)

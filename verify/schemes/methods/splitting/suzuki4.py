@@ -6,23 +6,16 @@ is (16 + 4R + R²)/60, since (4 − R)(16 + 4R + R²) = 64 − R³. No step is l
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import composed, splitting
 
-EXAMPLES = ("suzuki4",)
 _R = sympy.cbrt(4)
 _S = (16 + 4 * _R + _R**2) / 60
 STEPS = (_S, _S, 1 - 4 * _S, _S, _S)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        composed("kick", STEPS),
-        order=4,
-        symmetric=True,
-        source="Suzuki, Phys. Lett. A 146 (1990) 319–323; Hairer, Lubich, Wanner, Geometric "
-        "Numerical Integration, II.4",
-    )
+SCHEME = splitting(
+    "suzuki4",
+    composed("kick", STEPS),
+    order=4,
+    symmetric=True,
+    source="Suzuki, Phys. Lett. A 146 (1990) 319–323; Hairer, Lubich, Wanner, Geometric "
+    "Numerical Integration, II.4",
+)

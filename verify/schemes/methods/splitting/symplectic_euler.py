@@ -6,20 +6,13 @@ implicit; this file holds the explicit one and says so.
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import alternating, splitting
 
-EXAMPLES = ("symplectic-euler",)
 PARTS = alternating("kick", (sympy.S.One, sympy.S.One))
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        PARTS,
-        order=1,
-        symmetric=False,
-        source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-    )
+SCHEME = splitting(
+    "symplectic-euler",
+    PARTS,
+    order=1,
+    symmetric=False,
+    source="Eq. 24, 32; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+)

@@ -7,23 +7,16 @@ element of the ring with R³ = 2. Neighbouring half kicks are one; seven shears,
 
 import sympy
 
-from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import composed, splitting
 
-EXAMPLES = ("yoshida4",)
 _R = sympy.cbrt(2)
 _OUTER = (4 + 2 * _R + _R**2) / 6
 STEPS = (_OUTER, 1 - 2 * _OUTER, _OUTER)
-
-
-def make(name: str) -> Scheme | None:
-    if name not in EXAMPLES:
-        return None
-    return splitting(
-        name,
-        composed("kick", STEPS),
-        order=4,
-        symmetric=True,
-        source="Yoshida, Phys. Lett. A 150 (1990) 262–268; Hairer, Lubich, Wanner, "
-        "Geometric Numerical Integration, II.4",
-    )
+SCHEME = splitting(
+    "yoshida4",
+    composed("kick", STEPS),
+    order=4,
+    symmetric=True,
+    source="Yoshida, Phys. Lett. A 150 (1990) 262–268; Hairer, Lubich, Wanner, "
+    "Geometric Numerical Integration, II.4",
+)

@@ -23,15 +23,18 @@ MAX_ETA = 100
 def make(name: str) -> Scheme | None:
     """The scheme for a name such as `lie2`; InputError for η outside 1 … 100."""
     eta = eta_of(name)
-    if eta is None:
-        return None
+    return None if eta is None else lie_series(f"lie{eta}", eta, source="Eq. 2–5")
+
+
+def lie_series(name: str, eta: int, *, source: str) -> Scheme:
+    """The scheme of that name whose map is lieη's."""
     return Scheme(
-        name=f"lie{eta}",
+        name=name,
         order=eta,
         area_preserving=False,
         explicit=True,
         symmetric=False,
-        source="Eq. 2–5",
+        source=source,
         build=lambda hamiltonian: lie_map(hamiltonian, eta),
         every_h=TaylorSeries(eta),
     )
