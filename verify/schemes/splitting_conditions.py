@@ -19,7 +19,7 @@ letters are independent over all V and T up to n = 8 (a test has their rank; of 
 letters there are 54), so that some H has another map.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -36,6 +36,7 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import known_digits
 from verify.errors import InputError
 from verify.schemes.every_hamiltonian import StageEquations
+from verify.schemes.free_lie_words import lyndon
 
 Part = tuple[str, sympy.Expr]  # "kick" or "drift", and what part of h it takes
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane
@@ -69,8 +70,8 @@ class Splitting:
         """One for each Lyndon word of at most `order` letters; InputError beyond order 8."""
         if order > MOST_ORDER:
             raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
-        words = sorted(lyndon_words("DK", order), key=len)
-        return tuple(self._of_word(word) for word in words)
+        lengths = range(1, order + 1)
+        return tuple(self._of_word(word) for n in lengths for word in lyndon("splitting", n))
 
     def _of_word(self, word: str) -> Condition:
         if word not in self._known:
@@ -127,19 +128,6 @@ class Splitting:
         if all(size.is_Rational for _, size in self.parts):
             return StageEquations.of_shears(self.parts)
         return None
-
-
-def lyndon_words(letters: str, most: int) -> Iterator[str]:
-    """All Lyndon words of at most `most` of the sorted letters, in lexicographic order (Duval)."""
-    word = [-1]
-    while word:
-        word[-1] += 1
-        yield "".join(letters[k] for k in word)
-        period = len(word)
-        while len(word) < most:
-            word.append(word[-period])
-        while word and word[-1] == len(letters) - 1:
-            word.pop()
 
 
 def coefficient(ring: Ring, parts: Sequence[tuple[str, Poly]], word: str) -> Poly:

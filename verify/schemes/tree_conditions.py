@@ -40,13 +40,9 @@ E_co = TypeVar("E_co", covariant=True)
 MOST_ORDER = 10
 
 
+@lru_cache(maxsize=32)
 def trees(order: int) -> tuple[Tree, ...]:
     """All rooted trees of so many vertices: 1, 1, 2, 4, 9, 20, 48, 115, …"""
-    return _trees(order)
-
-
-@lru_cache(maxsize=32)
-def _trees(order: int) -> tuple[Tree, ...]:
     return tuple(_forests(order - 1, order - 1, None))
 
 
@@ -56,7 +52,7 @@ def _forests(vertices: int, largest: int, last: Tree | None) -> Iterator[tuple[T
         yield ()
         return
     for size in range(min(vertices, largest), 0, -1):
-        known = _trees(size)
+        known = trees(size)
         first = known.index(last) if last is not None and size == largest and last in known else 0
         for tree in known[first:]:
             for rest in _forests(vertices - size, size, tree):
@@ -134,10 +130,8 @@ class TreeConditions:
             raise InputError(
                 "order", order, f"of a Runge–Kutta method is proved up to {MOST_ORDER}"
             )
-        return tuple(c for n in range(1, order + 1) for c in self._of_order(n))
-
-    def _of_order(self, order: int) -> tuple[Condition, ...]:
-        return _of_order(self.tableau, order, self.separable)
+        orders = range(1, order + 1)
+        return tuple(c for n in orders for c in _of_order(self.tableau, n, self.separable))
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """See `ImplicitTableau.area_conditions`."""

@@ -37,7 +37,7 @@ def times(x: Series, y: Series, most: int) -> dict[str, Fraction]:
     return found
 
 
-def exponential(part: Mapping[str, Fraction], most: int) -> dict[str, Fraction]:
+def exponential(part: Series, most: int) -> dict[str, Fraction]:
     term: dict[str, Fraction] = {"": Fraction(1)}
     total = dict(term)
     for n in range(1, most + 1):
@@ -46,7 +46,7 @@ def exponential(part: Mapping[str, Fraction], most: int) -> dict[str, Fraction]:
     return total
 
 
-def product(parts: Sequence[Mapping[str, Fraction]], most: int) -> dict[str, Fraction]:
+def product(parts: Sequence[Series], most: int) -> dict[str, Fraction]:
     found = {"": Fraction(1)}
     for part in parts:
         found = times(found, exponential(part, most), most)

@@ -21,7 +21,7 @@ from verify.proof.symmetry import prove_symmetry
 from verify.schemes import get
 from verify.schemes.methods.user import splitting as own_splitting
 from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import MOST_ORDER, Splitting, coefficient, lyndon_words
+from verify.schemes.splitting_conditions import MOST_ORDER, Splitting, coefficient
 from verify.verdict import Verdict
 
 Surd = tuple[Fraction, Fraction]  # a + b √2
@@ -119,15 +119,6 @@ def test_the_coefficient_of_a_word_is_that_of_the_product_of_exponentials(
         [ring.expression(gap) - exact(series(parts, len(word)).get(word, NOUGHT))], ()
     )
     assert ring.decide(gap).zero is True
-
-
-@pytest.mark.parametrize(("letters", "most"), [("DK", 8), ("ABC", 5), ("X", 3), ("DK", 1)])
-def test_lyndon_words_are_the_words_smaller_than_each_of_their_ends(
-    letters: str, most: int
-) -> None:
-    words = ("".join(w) for n in range(1, most + 1) for w in product(letters, repeat=n))
-    least = sorted(w for w in words if all(w < w[k:] for k in range(1, len(w))))
-    assert list(lyndon_words(letters, most)) == least
 
 
 @quick

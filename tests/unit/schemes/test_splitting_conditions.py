@@ -27,6 +27,7 @@ from verify.errors import InputError
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
 from verify.proof.symmetry import prove_symmetry
+from verify.schemes.free_lie_words import lyndon
 from verify.schemes.methods.splitting import blanes_moan4
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import alternating, composed, palindrome
@@ -35,7 +36,6 @@ from verify.schemes.splitting_conditions import (
     MOST_ORDER,
     Splitting,
     coefficient,
-    lyndon_words,
 )
 from verify.verdict import Verdict
 
@@ -54,11 +54,11 @@ def residues(scheme: Scheme) -> list[float]:
 
 
 def test_lyndon_words_are_those_smaller_than_their_proper_ends() -> None:
-    found = list(lyndon_words("DK", 8))
-    words = ("".join(w) for n in range(1, 9) for w in product("DK", repeat=n))
-    assert found == sorted(w for w in words if all(w < w[k:] for k in range(1, len(w))))
-    lengths = [len(w) for w in found]
-    assert [lengths.count(n) for n in range(1, 9)] == [2, 1, 2, 3, 6, 9, 18, 30]
+    found = [lyndon("splitting", n) for n in range(1, 9)]
+    for n, own in enumerate(found, 1):
+        words = map("".join, product("DK", repeat=n))
+        assert list(own) == sorted(w for w in words if all(w < w[k:] for k in range(1, n)))
+    assert [len(own) for own in found] == [2, 1, 2, 3, 6, 9, 18, 30]
 
 
 def in_the_free_algebra(parts, most: int) -> dict[str, Fraction]:
@@ -104,7 +104,7 @@ def test_where_the_lyndon_words_are_right_all_words_are(name: str) -> None:
 def rank_of_brackets(length: int) -> tuple[int, int]:
     """How many standard brackets of Lyndon words there are, and their rank over all T and V."""
     jets = Jets(length + 1, separable=True)
-    words = set(lyndon_words("DK", length))
+    words = {w for n in range(1, length + 1) for w in lyndon("splitting", n)}
     known = {"D": sympy.S.Zero, "K": sympy.S.Zero}  # T(p) and V(q) occur by derivatives only
 
     def gradient(word: str):

@@ -10,7 +10,7 @@
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import flint
@@ -74,25 +74,15 @@ def _of(near: NearbyCoefficients, order: int, highest: int) -> OrderVerdict:
     largest = max((abs(near.at_print[k]) for k in own), default=Fraction(0))
     condition = None if failing is None else near.asked[failing]
     size = Fraction(0) if failing is None else near.at_print[failing]
+    seen = OrderVerdict(Verdict.MEASURED, allowed, checked, condition, size, largest)
     if allowed < order and largest > OF_DIGITS:
         one = near.misprint(own)
-        return OrderVerdict(
-            Verdict.REFUTED, allowed, checked, condition, size, largest, digits=False, misprint=one
-        )
+        return replace(seen, verdict=Verdict.REFUTED, digits=False, misprint=one)
     found = near.nearest(own)
     if found is None:  # more conditions than numbers, of which some alone may show wrong digits
         digits = False if near.excluded(own, 1) else None
         one = near.misprint(own) if allowed < order else None
-        return OrderVerdict(
-            Verdict.MEASURED,
-            allowed,
-            checked,
-            condition,
-            size,
-            largest,
-            digits=digits,
-            misprint=one,
-        )
+        return replace(seen, digits=digits, misprint=one)
     off, numbers = found
     wrong_digits = off > 1 and (allowed < order or near.apart(own, 1))
     one = near.misprint(own) if wrong_digits and off > WITHIN else None
@@ -102,9 +92,8 @@ def _of(near: NearbyCoefficients, order: int, highest: int) -> OrderVerdict:
     if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):
         verdict = Verdict.REFUTED
     order_found = max(allowed, order) if verdict is Verdict.ENCLOSED else allowed
-    return OrderVerdict(
-        verdict, order_found, checked, condition, size, largest, off, numbers, digits, one
-    )  # fmt: skip
+    told = replace(seen, verdict=verdict, order=order_found, digits=digits, misprint=one)
+    return replace(told, off=off, nearest=numbers)
 
 
 def _exactly(table: PrintedTable, order: int) -> OrderVerdict:

@@ -11,10 +11,10 @@ trees, u∘v being u with v as one more branch of its root (Calvo, Sanz-Serna, N
 it fails, a pair of trees that fails shows that the method is not symplectic.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, takewhile
 
 import sympy
 
@@ -90,36 +90,32 @@ def _simple(numbers: Numbers) -> TableauOrder | None:
             powers.append([ring.multiply(x, y) for x, y in zip(powers[-1], c, strict=True)])
         return powers[k]
 
-    def holds_b(k: int) -> bool:
-        total = sum((b[i] * power(k - 1)[i] for i in s), ring.zero)
-        return ring.decide(ring.reduce(total - one / k)).zero is True
+    def dot(x: Sequence[Poly], y: Sequence[Poly]) -> Poly:
+        return sum((u * v for u, v in zip(x, y, strict=True)), ring.zero)
 
-    def holds_c(k: int) -> bool:
-        for i in s:
-            total = sum((a[i][j] * power(k - 1)[j] for j in s), ring.zero)
-            if ring.decide(ring.reduce(total - power(k)[i] / k)).zero is not True:
-                return False
-        return True
+    def gap_b(k: int, _: int) -> Poly:
+        return dot(b, power(k - 1)) - one / k
 
-    def holds_d(k: int) -> bool:
-        for j in s:
-            total = sum((b[i] * ring.multiply(power(k - 1)[i], a[i][j]) for i in s), ring.zero)
-            gap = total - (b[j] - b[j] * power(k)[j]) / k
-            if ring.decide(ring.reduce(gap)).zero is not True:
-                return False
-        return True
+    def gap_c(k: int, i: int) -> Poly:
+        return dot(a[i], power(k - 1)) - power(k)[i] / k
 
-    def count(holds: Callable[[int], bool], most: int) -> int:
-        n = 0
-        while n < most and holds(n + 1):
-            n += 1
-        return n
+    def gap_d(k: int, j: int) -> Poly:
+        column = [ring.multiply(x, row[j]) for x, row in zip(power(k - 1), a, strict=True)]
+        return dot(b, column) - (b[j] - b[j] * power(k)[j]) / k
 
-    p = count(holds_b, 2 * len(b) + 1)
-    eta, zeta = count(holds_c, p), count(holds_d, p)
+    def count(gap: Callable[[int, int], Poly], parts: Sequence[int], most: int) -> int:
+        """Up to which k all the parts of the assumption hold."""
+
+        def holds(k: int) -> bool:
+            return all(ring.decide(ring.reduce(gap(k, i))).zero is True for i in parts)
+
+        return sum(1 for _ in takewhile(holds, range(1, most + 1)))
+
+    p = count(gap_b, [0], 2 * len(b) + 1)
+    eta, zeta = count(gap_c, s, p), count(gap_d, s, p)
     if p > min(eta + zeta + 1, 2 * eta + 2):
         return None
-    gap = sum((b[i] * power(p)[i] for i in s), ring.zero) - one / (p + 1)
+    gap = gap_b(p + 1, 0)
     by = f"B({p}), C({eta}) and D({zeta})"
     return TableauOrder(p, f"b·c^{p} = 1/{p + 1}", abs(value(numbers, ring.reduce(gap))), 0.0, by)
 

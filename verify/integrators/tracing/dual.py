@@ -4,7 +4,7 @@ They can be compared, by their values, so that branches and loops with a toleran
 comes out has the derivatives of the operations that were done. gmpy2's context is set by `running`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 from typing import TypeAlias
@@ -15,6 +15,18 @@ from verify.integrators.tracing.number import TracedNumber, UntraceableError
 
 Number: TypeAlias = gmpy2.mpfr
 BITS = 200
+_SLOPES: dict[str, Callable[[Number, Number], Number]] = {  # of each function y of x
+    "sin": lambda x, _: gmpy2.cos(x),
+    "cos": lambda x, _: -gmpy2.sin(x),
+    "tan": lambda _, y: 1 + y * y,
+    "tanh": lambda _, y: 1 - y * y,
+    "exp": lambda _, y: y,
+    "sinh": lambda x, _: gmpy2.cosh(x),
+    "cosh": lambda x, _: gmpy2.sinh(x),
+    "log": lambda x, _: 1 / x,
+    "atan": lambda x, _: 1 / (1 + x * x),
+    "sqrt": lambda _, y: 1 / (2 * y) if y else gmpy2.mpfr(0),
+}
 
 
 class Duals:
@@ -100,28 +112,7 @@ class Dual(TracedNumber):
         if (name == "sqrt" and x < 0) or (name == "log" and x <= 0):
             raise ValueError("math domain error")
         y = getattr(gmpy2, name)(x)
-        match name:
-            case "sin":
-                slope = gmpy2.cos(x)
-            case "cos":
-                slope = -gmpy2.sin(x)
-            case "tan":
-                slope = 1 + y * y
-            case "tanh":
-                slope = 1 - y * y
-            case "exp":
-                slope = y
-            case "sinh":
-                slope = gmpy2.cosh(x)
-            case "cosh":
-                slope = gmpy2.sinh(x)
-            case "log":
-                slope = 1 / x
-            case "atan":
-                slope = 1 / (1 + x * x)
-            case _:
-                slope = 1 / (2 * y) if y else gmpy2.mpfr(0)
-        return self._chained(y, slope)
+        return self._chained(y, _SLOPES[name](x, y))
 
     def raised(self, exponent: Fraction) -> "Dual":
         x = self.value

@@ -206,15 +206,9 @@ def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[
     """`own` where one of our numbers is given, else the original."""
 
     def call(*given: Any, **options: Any) -> Any:
-        if any(isinstance(x, TracedNumber) for x in given):
+        listed = not options and len(given) == 1 and isinstance(given[0], list | tuple)
+        if any(isinstance(x, TracedNumber) for x in (given[0] if listed else given)):
             return own(*given, **options)
-        if (
-            not options
-            and len(given) == 1
-            and isinstance(given[0], list | tuple)
-            and any(isinstance(x, TracedNumber) for x in given[0])
-        ):
-            return own(*given)
         return original(*given, **options)
 
     return call

@@ -28,7 +28,7 @@ def added(x: Linear, y: Linear) -> Linear:
 
 
 def scaled(x: Linear, factor: Scalar) -> Linear:
-    made = {leaf: _product(c, factor) for leaf, c in x.items()}
+    made = {leaf: product(c, factor) for leaf, c in x.items()}
     return {leaf: c for leaf, c in made.items() if c}
 
 
@@ -39,7 +39,7 @@ def _sum(x: Scalar, y: Scalar) -> Scalar:
     return {monomial: value for monomial, value in total.items() if value}
 
 
-def _product(x: Scalar, y: Scalar) -> Scalar:
+def product(x: Scalar, y: Scalar) -> Scalar:
     total: Scalar = {}
     for one, a in x.items():
         for two, b in y.items():
@@ -86,9 +86,6 @@ class Scalars:
             total = added(total, scaled(self.linear(node), coefficient))
         return total
 
-    def times(self, x: Scalar, y: Scalar) -> Scalar:
-        return _product(x, y)
-
     def parts(self, node: Node) -> list[tuple[Scalar, Node]]:
         """A sum's or a multiple's parts; none of another node."""
         minus: Scalar = {(): Fraction(-1)}
@@ -122,16 +119,16 @@ class Scalars:
             case "add":
                 found = _sum(*x)
             case "subtract":
-                found = _sum(x[0], _product(x[1], {(): Fraction(-1)}))
+                found = _sum(x[0], product(x[1], {(): Fraction(-1)}))
             case "multiply":
-                found = _product(*x)
+                found = product(*x)
             case "divide":
                 inverse = _inverse(x[1])
-                found = None if inverse is None else _product(x[0], inverse)
+                found = None if inverse is None else product(x[0], inverse)
             case "power" if node.value.denominator == 1 and node.value > 0:
                 found = self.one
                 for _ in range(int(node.value)):
-                    found = _product(found, x[0])
+                    found = product(found, x[0])
         short = found is not None and len(found) <= _MOST_TERMS
         return found if found is not None and short else {((node.number, 1),): Fraction(1)}
 
@@ -140,12 +137,7 @@ class Scalars:
             own = self._scalar[node.number]
             return {ONE: own} if own else {}
         parts = self.parts(node)
-        if not parts:
-            return {node.number: self.one}
-        total: Linear = {}
-        for coefficient, inner in parts:
-            total = added(total, scaled(self._linear[inner.number], coefficient))
-        return total
+        return self.sum(parts) if parts else {node.number: self.one}
 
 
 def _inverse(x: Scalar) -> Scalar | None:

@@ -26,7 +26,7 @@ FUNCTIONS = {
     "arctan": "atan",
     "atan": "atan",
 }
-_OPERATORS: dict[str, Callable[..., Any]] = {
+OPERATORS: dict[str, Callable[..., Any]] = {
     "add": operator.add,
     "subtract": operator.sub,
     "multiply": operator.mul,
@@ -287,8 +287,8 @@ class TracedNumber(ABC):
             self.refuse(f"it gives numpy's {ufunc.__name__} what is no number")
         if ufunc.__name__ in FUNCTIONS:
             return self.applied(FUNCTIONS[ufunc.__name__])
-        if ufunc.__name__ in _OPERATORS:
-            return _OPERATORS[ufunc.__name__](*lifted)
+        if ufunc.__name__ in OPERATORS:
+            return OPERATORS[ufunc.__name__](*lifted)
         self.refuse(f"it calls numpy's {ufunc.__name__}")
 
 

@@ -12,7 +12,7 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tracing.linear_sums import Linear, Scalar, Scalars, added, scaled
+from verify.integrators.tracing.linear_sums import Linear, Scalar, Scalars, added, product, scaled
 from verify.integrators.tracing.trace import Node, expressions, in_order
 from verify.schemes.step_map import Substep
 
@@ -132,7 +132,7 @@ class _Function:
                 taken.append((coefficient, node))
                 continue
             parts = self.scalars.parts(node)
-            inner = self.parted([(self.scalars.times(coefficient, c), x) for c, x in parts])
+            inner = self.parted([(product(coefficient, c), x) for c, x in parts])
             if inner[1]:
                 kept += inner[0]
                 taken += inner[1]

@@ -11,7 +11,7 @@ from typing import Any
 import sympy
 
 from verify.algebra.formula import FUNCTIONS, MAX_EXPONENT, symbol
-from verify.integrators.tracing.number import TracedNumber, UntraceableError
+from verify.integrators.tracing.number import OPERATORS, TracedNumber, UntraceableError
 
 MOST_NODES = 20_000
 _MOST_BITS = 20_000  # of a folded number
@@ -88,7 +88,7 @@ class Traced(TracedNumber):
         if x is not None and y is not None:
             if name == "divide" and y == 0:
                 raise ZeroDivisionError
-            return self.kind.rational(_FOLDED[name](x, y))
+            return self.kind.rational(OPERATORS[name](x, y))
         if y == (0 if name in ("add", "subtract") else 1):
             return self
         if name == "multiply" and x is not None and y is None:
@@ -120,14 +120,6 @@ class Traced(TracedNumber):
         if known is not None and exponent.denominator == 1:
             return self.kind.rational(known ** int(exponent))
         return Traced(self.kind, self.kind.node("power", (self.node,), exponent))
-
-
-_FOLDED = {
-    "add": lambda x, y: x + y,
-    "subtract": lambda x, y: x - y,
-    "multiply": lambda x, y: x * y,
-    "divide": lambda x, y: x / y,
-}
 
 
 def in_order(*roots: Node) -> list[Node]:
@@ -167,10 +159,8 @@ def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) ->
             return sympy.pi
         case "power":
             return inputs[0] ** sympy.Rational(node.value.numerator, node.value.denominator)
-        case "divide":
-            return inputs[0] / inputs[1]
-        case "add" | "subtract" | "multiply" as name:
-            return _FOLDED[name](*inputs)
+        case "add" | "subtract" | "multiply" | "divide" as name:
+            return OPERATORS[name](*inputs)
         case name:
             return FUNCTIONS[name](inputs[0])
 

@@ -6,6 +6,7 @@ Units are galpy's natural ones, so that H = v²/2 + amp (K √(x² + D²) + F x�
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import partial
 
 from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
 
@@ -21,28 +22,24 @@ LEFT_OUT = (
         "finds its own step from a tolerance of 10⁻¹² that Orbit.integrate does not let one set",
     ),
 )
+_ORDERS = {"leapfrog_c": 2, "symplec4_c": 4, "symplec6_c": 6, "rk4_c": 4, "rk6_c": 6}
 _HAMILTONIAN = "p**2/2 + sqrt(q**2 + 1) + q**2/4"
 _POINTS: tuple[Point, ...] = ((Fraction(1, 3), Fraction(3, 5)),)
 _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for name, order in (("leapfrog_c", 2), ("symplec4_c", 4), ("symplec6_c", 6)):
-        yield _integrator(name, order, True)
-    for name, order in (("rk4_c", 4), ("rk6_c", 6)):
-        yield _integrator(name, order, None)
-
-
-def _integrator(name: str, order: int, symplectic: bool | None) -> ReleasedIntegrator:
-    return ReleasedIntegrator(
-        name,
-        "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step",
-        _SOURCE,
-        FloatStep(_HAMILTONIAN, lambda: _step(name), *((_POINTS, FINE) if order > 4 else ())),
-        order,
-        symplectic,
-        _script(name),
-    )
+    for name, order in _ORDERS.items():
+        where = (_POINTS, FINE) if order > 4 else ()
+        yield ReleasedIntegrator(
+            name,
+            "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step",
+            _SOURCE,
+            FloatStep(_HAMILTONIAN, partial(_step, name), *where),
+            order,
+            None if name.startswith("rk") else True,
+            _script(name),
+        )
 
 
 def _step(name: str) -> Map:

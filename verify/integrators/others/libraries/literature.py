@@ -60,7 +60,7 @@ def _script(entry: Mapping[str, Any]) -> str:
     numbers = "\n".join(f"{name} = {value.strip()}" for name, value in table.numbers.items())
     parts = ", ".join(f'("{kind}", {size})' for kind, size in table.parts)
     lines = [
-        "from math import cos, log2, sin",
+        "from math import log2, sin",
         "",
         *([numbers] if numbers else []),
         f"parts = [{parts}]",
@@ -76,11 +76,10 @@ def _script(entry: Mapping[str, Any]) -> str:
             "        p = p - a * h / 2 * sin(q)",
         ]
     else:
-        force = "sin(q)"
         speed = "p" if entry["kind"] == "nystrom" else "sin(p)"
         lines += [
             '        if kind == "kick":',
-            f"            p = p - a * h * {force}",
+            "            p = p - a * h * sin(q)",
             "        else:",
             f"            q = q + a * h * {speed}",
         ]
@@ -99,4 +98,4 @@ def _script(entry: Mapping[str, Any]) -> str:
         f"# the error of one step is O(h^r), r = order + 1; claimed: order {entry['order']}",
         "print(log2(error(0.2) / error(0.1)))",
     ]
-    return "\n".join(lines).replace("from math import cos, log2, sin", "from math import log2, sin")
+    return "\n".join(lines)
