@@ -14,10 +14,13 @@ STATE = ("p", "q")
 
 def polynomial(ring: Ring, maps: Sequence[Map]) -> bool:
     """Whether p and q occur in no generator, so that the maps are polynomials in them."""
-    arguments = [
-        g.argument for pair in maps for g in ring.generators_in(*pair) if g.argument is not None
-    ]
-    return not any(ring.depends(a, name) for a in arguments for name in STATE)
+    inside = arguments(ring, *(x for pair in maps for x in pair))
+    return not any(ring.depends(a, name) for a in inside for name in STATE)
+
+
+def arguments(ring: Ring, *elements: Poly) -> list[Poly]:
+    """The arguments of the generators that the elements are made of."""
+    return [g.argument for g in ring.generators_in(*elements) if g.argument is not None]
 
 
 def composed_polynomials(ring: Ring, maps: Sequence[Map], most: int) -> list[Poly] | None:

@@ -4,7 +4,6 @@
 u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels where it is in closed form.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +11,7 @@ from verify.algebra.conditions import Condition
 from verify.algebra.power_series import Series, at_point, partials
 from verify.algebra.ring import Poly, Ring
 from verify.hamiltonians.hamiltonian import VectorField
+from verify.schemes.composition import arguments
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,8 @@ class Substep:
     @property
     def length(self) -> int:
         """How many terms there are in all its parts."""
-        used = self.ring.generators_in(self.p_next, self.q_next)
-        arguments = [g.argument for g in used if g.argument is not None]
-        return sum(map(len, [self.p_next, self.q_next, *arguments]))
+        pair = self.p_next, self.q_next
+        return sum(map(len, [*pair, *arguments(self.ring, *pair)]))
 
     @property
     def terms_of_delta_j(self) -> int:
@@ -178,7 +177,4 @@ class Substep:
 
 def h_inside(ring: Ring, *elements: Poly) -> bool:
     """Whether h occurs inside a generator, so that x is not a polynomial in h."""
-    arguments: Sequence[Poly] = [
-        g.argument for g in ring.generators_in(*elements) if g.argument is not None
-    ]
-    return any(ring.depends(a, "h") for a in arguments)
+    return any(ring.depends(a, "h") for a in arguments(ring, *elements))

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import flint
 
-from verify.arithmetic.arb import Ball, middle_and_radius
+from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
 from verify.integrators.others.printed_table import PrintedTable, evaluated
 from verify.schemes.free_lie_words import LogCondition, of_logarithm, residue, step
 
@@ -32,8 +32,8 @@ class NearbyCoefficients:
         self.table, self.asked = table, tuple(asked)
         self.most = max((c.order for c in asked), default=1)
         self.names = tuple(table.units)
-        self.start = [_ball(table.values[n]) for n in self.names]
-        self.unit = [_ball(table.units[n]) for n in self.names]
+        self.start = [rational_ball(table.values[n]) for n in self.names]
+        self.unit = [rational_ball(table.units[n]) for n in self.names]
         self.second = self._second()
         self.value = self._residues(self.start)
         self.at_print = [middle_and_radius(x)[0] for x in self.value]
@@ -41,7 +41,7 @@ class NearbyCoefficients:
 
     def _residues(self, at: Sequence[Ball]) -> list[Ball]:
         point = dict(zip(self.names, at, strict=True))
-        sizes = [evaluated(size, point, _ball) for size in self.table.sizes]
+        sizes = [evaluated(size, point, rational_ball) for size in self.table.sizes]
         series = step(self.table.kind, self.table.letters(sizes), self.most, flint.arb(1))
         return [residue(series, c) for c in self.asked]
 
@@ -61,7 +61,7 @@ class NearbyCoefficients:
 
     def _second(self) -> list[Ball]:
         """Bounds of each residue's second derivatives within half the polydisc's radius."""
-        radius = _ball(_RADIUS)
+        radius = rational_ball(_RADIUS)
         reach = {n: abs(x) + radius for n, x in zip(self.names, self.start, strict=True)}
         sizes = [evaluated(size, reach, _size) for size in self.table.sizes]
         series = step(self.table.kind, self.table.letters(sizes), self.most, flint.arb(1))
@@ -71,16 +71,24 @@ class NearbyCoefficients:
             bounds.append((sum(terms, flint.arb(1)) * 8 / radius**2).abs_upper())
         return bounds
 
-    def _excludes(self, weights: Mapping[int, Ball], units: int) -> bool:
-        """Whether Σ weight · residue is not 0 at any numbers within so many units."""
-        radius = [u * units for u in self.unit]
-        total = sum((w * self.value[k] for k, w in weights.items()), flint.arb(0))
-        reach = sum(radius, flint.arb(0)) * sum(radius, flint.arb(0)) / 2
-        spread = sum((abs(w) * self.second[k] * reach for k, w in weights.items()), flint.arb(0))
+    def _excludes(
+        self,
+        weights: Mapping[int, Ball],
+        units: int,
+        slopes: Sequence[Sequence[Ball]] | None = None,
+    ) -> bool:
+        """Whether Σ weight · residue is not 0 at any numbers within so many units.
+
+        With the derivatives over the whole box, `slopes`, by the mean value theorem; without, with
+        those at the printed numbers and the bound of the second ones.
+        """
+        radius, spread, zero = [u * units for u in self.unit], flint.arb(0), flint.arb(0)
+        if slopes is None:
+            slopes, reach = self.slope, sum(radius, zero) * sum(radius, zero) / 2
+            spread = sum((abs(w) * self.second[k] * reach for k, w in weights.items()), zero)
         for i, r in enumerate(radius):
-            slope = sum((w * self.slope[k][i] for k, w in weights.items()), flint.arb(0))
-            spread += abs(slope) * r
-        return bool(abs(total) > spread)
+            spread += abs(sum((w * slopes[k][i] for k, w in weights.items()), zero)) * r
+        return bool(abs(sum((w * self.value[k] for k, w in weights.items()), zero)) > spread)
 
     def excluded(self, rows: Sequence[int], units: int) -> list[int]:
         """The conditions that hold for no numbers within so many units."""
@@ -99,18 +107,7 @@ class NearbyCoefficients:
         if any(self._excludes(weights, units) for weights in combined):
             return True
         slopes = self._over_box(units)
-        return any(self._excludes_by(weights, slopes, units) for weights in combined)
-
-    def _excludes_by(
-        self, weights: Mapping[int, Ball], slopes: Sequence[Sequence[Ball]], units: int
-    ) -> bool:
-        """As `_excludes`, with the derivatives over the whole box, by the mean value theorem."""
-        total = sum((w * self.value[k] for k, w in weights.items()), flint.arb(0))
-        spread = flint.arb(0)
-        for i, u in enumerate(self.unit):
-            slope = sum((w * slopes[k][i] for k, w in weights.items()), flint.arb(0))
-            spread += abs(slope) * u * units
-        return bool(abs(total) > spread)
+        return any(self._excludes(weights, units, slopes) for weights in combined)
 
     def _over_box(self, units: int) -> list[list[Ball]]:
         """The derivatives over the box: slower than `_slopes`, and sharper than their bound."""
@@ -159,7 +156,9 @@ class NearbyCoefficients:
             value = self._residues(at)
             change = (inverse * flint.arb_mat([[value[k].mid()] for k in rows])).tolist()
             at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
-        if not all(abs(x - y) < _ball(_RADIUS / 4) for x, y in zip(at, self.start, strict=True)):
+        if not all(
+            abs(x - y) < rational_ball(_RADIUS / 4) for x, y in zip(at, self.start, strict=True)
+        ):
             return None
         around = self._solution(rows, at)
         if around is None:
@@ -180,7 +179,7 @@ class NearbyCoefficients:
         ball = flint.arb_mat([[x + _around(slack)] for x in target])
         moved = [x for (x,) in (inverse * ball).tolist()]
         far = sum((abs(x) for x in moved), flint.arb(0))
-        if not far < _ball(_RADIUS / 4):
+        if not far < rational_ball(_RADIUS / 4):
             return None
         size = len(rows)
         identity = flint.arb_mat([[int(i == j) for j in range(size)] for i in range(size)])
@@ -228,17 +227,13 @@ def _around(radius: Ball) -> Ball:
     return radius.abs_upper() * flint.arb(0, 1)  # a tiny radius given as such may become infinite
 
 
-def _ball(x: Fraction) -> Ball:
-    return flint.arb(flint.fmpq(x.numerator, x.denominator))
-
-
 def _upper(x: Ball) -> Fraction:
     middle, radius = middle_and_radius(x)
     return abs(middle) + radius
 
 
 def _constant(x: Fraction) -> flint.arb_series:
-    return flint.arb_series([_ball(x)], prec=2)
+    return flint.arb_series([rational_ball(x)], prec=2)
 
 
 @contextmanager
@@ -252,4 +247,4 @@ def series_of_two_terms() -> Iterator[None]:
 
 
 def _size(x: Fraction) -> Ball:
-    return _ball(abs(x))
+    return rational_ball(abs(x))

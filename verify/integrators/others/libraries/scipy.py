@@ -7,6 +7,7 @@ the solver: by the function it calls itself, with Newton's method run to roundin
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import sympy
@@ -44,7 +45,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             f"{name}, as a step",
             _LOOSE.format(name),
             _SOURCE.format(name),
-            FloatStep(_PENDULUM, _maker(name), *((_POINTS, FINE) if order > 4 else ())),
+            FloatStep(_PENDULUM, partial(_step, name), *((_POINTS, FINE) if order > 4 else ())),
             order,
             None,
             _script(name),
@@ -69,35 +70,31 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     )
 
 
-def _maker(name: str) -> Any:
-    def make() -> Map:
-        import numpy as np
-        from scipy import integrate
+def _field(_: float, z: Any) -> Any:
+    import numpy as np
 
-        solver = getattr(integrate, name)
+    return np.array([-np.sin(z[1]), z[0]])
 
-        def field(_: float, z: Any) -> Any:
-            return np.array([-np.sin(z[1]), z[0]])
 
-        def step(p: float, q: float, h: float) -> tuple[float, float]:
-            one = solver(field, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
-            one.step()
-            if one.t != h:
-                raise RuntimeError("it took a shorter step")
-            return float(one.y[0]), float(one.y[1])
+def _step(name: str) -> Map:
+    from scipy import integrate
 
-        return step
+    solver = getattr(integrate, name)
 
-    return make
+    def step(p: float, q: float, h: float) -> tuple[float, float]:
+        one = solver(_field, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
+        one.step()
+        if one.t != h:
+            raise RuntimeError("it took a shorter step")
+        return float(one.y[0]), float(one.y[1])
+
+    return step
 
 
 def _radau() -> Map:
     import numpy as np
     from scipy.integrate._ivp.radau import MU_COMPLEX, MU_REAL, solve_collocation_system
     from scipy.linalg import lu_factor, lu_solve
-
-    def field(_: float, z: Any) -> Any:
-        return np.array([-np.sin(z[1]), z[0]])
 
     def step(p: float, q: float, h: float) -> tuple[float, float]:
         z = np.array([p, q])
@@ -107,7 +104,7 @@ def _radau() -> Map:
         stages = np.zeros((3, 2))
         for _ in range(12):  # it ends after six turns at most; each call goes on from the last
             _, _, stages, _ = solve_collocation_system(
-                field, 0.0, z, h, stages, np.full(2, 1e-14), 1e-3, real, complex_, lu_solve
+                _field, 0.0, z, h, stages, np.full(2, 1e-14), 1e-3, real, complex_, lu_solve
             )
         return float(p + stages[-1][0]), float(q + stages[-1][1])
 
@@ -164,15 +161,13 @@ def _radau_tableau() -> ImplicitTableau:
     root = sympy.sqrt(6)
     nodes = [(4 - root) / 10, (4 + root) / 10, sympy.S.One]
     x = sympy.Symbol("x")
-    rows, weights = [], []
     basis = []
     for i, c in enumerate(nodes):
         others = [d for j, d in enumerate(nodes) if j != i]
         basis.append(sympy.expand(sympy.prod([(x - d) / (c - d) for d in others])))
-    for c in nodes:
-        rows.append([sympy.radsimp(sympy.integrate(b, (x, 0, c))) for b in basis])
-    weights = [sympy.radsimp(sympy.integrate(b, (x, 0, 1))) for b in basis]
-    return ImplicitTableau.of(rows, weights)
+    # The weights are the last row, as the last node is 1.
+    rows = [[sympy.radsimp(sympy.integrate(b, (x, 0, c))) for b in basis] for c in nodes]
+    return ImplicitTableau.of(rows, rows[-1])
 
 
 def _script(name: str) -> str:
