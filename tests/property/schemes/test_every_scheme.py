@@ -100,7 +100,7 @@ def test_implicit_symplectic_euler_solves_its_equations(
 @pytest.mark.parametrize("name", names())
 def test_a_scheme_has_one_name_and_no_other(name: str) -> None:
     for file in schemes._FILES.names:
-        made = schemes._FILES.module(file).make(name)
+        made = schemes._made(file, name)
         assert made is None or made.name == name
     for wrong in (f"{name} ", name.upper(), f"{name}x"):
         with pytest.raises(InputError, match=r"unknown|order"):
