@@ -8,7 +8,7 @@ import click
 
 from verify.commands.input import target
 from verify.commands.output import plain_json, print_json
-from verify.commands.tasks import cluster_option
+from verify.commands.tasks import cluster_option, json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     "-o", "--output", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw it there."
 )
 @cluster_option
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@json_option
 def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -> None:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands import output as show
+from verify.commands.tasks import json_option
 
 
 @click.group()
@@ -14,7 +15,7 @@ def certificate() -> None:
 
 @certificate.command()
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@json_option
 def check(file: Path, as_json: bool) -> None:
     """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
     from verify.proof.certificates.file import checked

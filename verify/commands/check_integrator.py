@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
-from verify.commands.input import hamiltonian_of
+from verify.commands.input import with_hamiltonian
+from verify.commands.tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,11 +20,7 @@ _CLAIMED = click.IntRange(1, 12)
 
 @click.command("check-integrator")
 @click.argument("target", metavar="MODULE:FUNCTION")
-@click.option("--system", help="A named system, such as duffing; a wrong name lists them.")
-@click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'.")
-@click.option(
-    "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
-)
+@with_hamiltonian
 @click.option(
     "--arguments",
     metavar="ORDER",
@@ -43,12 +40,10 @@ _CLAIMED = click.IntRange(1, 12)
     metavar="SECONDS",
     help="For all calls of the function.",
 )
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@json_option
 def check_integrator(
     target: str,
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
+    exact: "Hamiltonian",
     arguments: str | None,
     q: str | None,
     p: str | None,
@@ -76,7 +71,6 @@ def check_integrator(
     from verify.integrators.results import Claims
 
     begun = time.perf_counter()
-    exact = hamiltonian_of(system, hamiltonian, params)
     if (p is None) != (q is None):
         raise InputError("--p, --q", p or q or "", "give both or none")
     start = None if p is None or q is None else (rational(p, "--p"), rational(q, "--q"))

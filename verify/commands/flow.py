@@ -8,8 +8,8 @@ import click
 
 from verify.arithmetic.exact import short
 from verify.commands import output as show
-from verify.commands.input import keepable, target
-from verify.commands.tasks import progress_of, with_tasks
+from verify.commands.input import target
+from verify.commands.tasks import perform, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,7 +36,6 @@ def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> No
     step_size = 0.01
     steps = [5000, 20000]             # or times = [1, 2, 3]
     """
-    from verify.execution.execute import Store, execute
     from verify.studies.regions.findings import flow_json, flows_of
     from verify.studies.regions.plan import plan_flows
 
@@ -44,10 +43,7 @@ def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> No
     plan = plan_flows(scenes)
     if not plan.tasks:
         raise InputError("SCENE", scene, "asks for no [[flow]]")
-    if keep is not None:
-        keepable(keep)
-    with progress_of(plan.tasks, keep) as done:
-        results = execute(plan, Store(keep), where=where, done=done)
+    results = perform(plan, keep, where)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
     if as_json:
         show.print_json(flow_json(found))

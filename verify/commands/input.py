@@ -1,5 +1,7 @@
 """Options that commands share, and what they stand for."""
 
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,26 +15,41 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.scenes.scene import Scene
 
-_SYSTEM_OPTIONS = (
+_HAMILTONIAN_OPTIONS = (
     click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
     click.option(
         "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
     ),
-    click.option(
-        "--scheme",
-        required=True,
-        help="lie1, lie2, …, stormer-verlet, rk4, gauss4, … or 'p_next = …; q_next = …'.",
-    ),
-    click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output."),
+)
+scheme_option = click.option(
+    "--scheme",
+    required=True,
+    help="lie1, lie2, …, stormer-verlet, rk4, gauss4, … or 'p_next = …; q_next = …'.",
 )
 
 
-def with_system(command: Any) -> Any:
-    """The command with the options that name a system and a scheme, and --json."""
-    for option in reversed(_SYSTEM_OPTIONS):
+def hamiltonian_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with the options that name a Hamiltonian, which `hamiltonian_of` takes."""
+    for option in reversed(_HAMILTONIAN_OPTIONS):
         command = option(command)
     return command
+
+
+def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with these options, which it gets as one Hamiltonian, `exact`."""
+
+    @wraps(command)
+    def given(
+        *args: Any,
+        system: str | None,
+        hamiltonian: str | None,
+        params: tuple[str, ...],
+        **options: Any,
+    ) -> Any:
+        return command(*args, exact=hamiltonian_of(system, hamiltonian, params), **options)
+
+    return hamiltonian_options(given)
 
 
 def hamiltonian_of(

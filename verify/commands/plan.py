@@ -7,13 +7,14 @@ import click
 
 from verify.commands import output as show
 from verify.commands.input import target
+from verify.commands.tasks import json_option
 
 Task = Mapping[str, Any]  # as JSON has it
 
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@json_option
 def plan(scene: str, as_json: bool) -> None:
     """Show what SCENE needs computed, what is left out, and why.
 

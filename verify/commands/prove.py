@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
-from verify.commands.input import hamiltonian_of, with_system
+from verify.commands.input import hamiltonian_of, hamiltonian_options, scheme_option
 from verify.commands.output import cut
+from verify.commands.tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,7 +24,9 @@ _WIDTH = 88
 
 
 @click.command()
-@with_system
+@hamiltonian_options
+@scheme_option
+@json_option
 @click.option(
     "--every-hamiltonian",
     is_flag=True,

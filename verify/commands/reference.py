@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
-from verify.commands.input import keepable, writable
+from verify.commands.input import writable
 from verify.commands.reference_compare import compare
-from verify.commands.tasks import json_option, progress_of, with_placement, with_tasks
+from verify.commands.tasks import json_option, perform, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
 if TYPE_CHECKING:
@@ -54,7 +54,6 @@ def make(
     steps = [0, 1, 10, 100, 1000]     # after which state, ΔJ, MSE and Λ are given
     digits = 30
     """
-    from verify.execution.execute import Store, execute
     from verify.reference.make import make as making
     from verify.reference.make.scene_plan import plan_references
 
@@ -66,11 +65,7 @@ def make(
     folder = output or Path(f"{asked[0].scene.name}-reference" if scenes else "reference-data")
     writable(folder)
     making.alone(folder, asked, parquet=parquet)
-    if keep is not None:
-        keepable(keep)
-    plan = plan_references([x.scene for x in asked])
-    with progress_of(plan.tasks, keep) as done:
-        results = execute(plan, Store(keep), where=where, done=done)
+    results = perform(plan_references([x.scene for x in asked]), keep, where)
     data = [making.data_of(x.scene, results) for x in asked]
     files = making.files_of(data, parquet=parquet)
     manifest = making.manifest_of(asked, files, making.command_of(scenes, parquet))

@@ -1,16 +1,23 @@
 """The command `verify run`: N steps, each number with its error bound."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from verify import arithmetic as number_systems
 from verify.commands import output as show
-from verify.commands.input import hamiltonian_of, keepable, with_system
+from verify.commands.input import keepable, scheme_option, with_hamiltonian
+from verify.commands.tasks import json_option
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
 
 
 @click.command()
-@with_system
+@with_hamiltonian
+@scheme_option
+@json_option
 @click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
 @click.option("--steps", required=True, type=int, metavar="N", help="At least 1.")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
@@ -28,9 +35,7 @@ from verify.commands.input import hamiltonian_of, keepable, with_system
     help="Keep checkpoints there; the same command goes on from them.",
 )
 def run(
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
+    exact: "Hamiltonian",
     scheme: str,
     as_json: bool,
     step_size: str,
@@ -50,7 +55,6 @@ def run(
     from verify.runs.run import run as run_scheme
     from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED
 
-    exact = hamiltonian_of(system, hamiltonian, params)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     if keep is not None:
         keepable(keep)

@@ -1,15 +1,21 @@
 """The command `verify separate`: truncation and four kinds of rounding in Λ."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands import output as show
-from verify.commands.input import hamiltonian_of, with_system
+from verify.commands.input import scheme_option, with_hamiltonian
+from verify.commands.tasks import json_option
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
 
 
 @click.command()
-@with_system
+@with_hamiltonian
+@scheme_option
+@json_option
 @click.option(
     "--step-size",
     "step_sizes",
@@ -27,9 +33,7 @@ from verify.commands.input import hamiltonian_of, with_system
     "--arithmetic", default="auto", help="What stands for exact: auto, or a number system of run."
 )
 def separate(
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
+    exact: "Hamiltonian",
     scheme: str,
     as_json: bool,
     step_sizes: tuple[str, ...],
@@ -42,7 +46,6 @@ def separate(
     from verify.commands.progress import progress_bar
     from verify.studies.separation.separate import RUNS, grid, separate_grid
 
-    exact = hamiltonian_of(system, hamiltonian, params)
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands import output as show
-from verify.commands.input import keepable, target
-from verify.commands.tasks import progress_of, with_tasks
+from verify.commands.input import target
+from verify.commands.tasks import perform, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,7 +59,6 @@ def stability(
 def _of_scenes(
     given: str, scenes: "list[Scene]", keep: Path | None, where: "Placement", as_json: bool
 ) -> None:
-    from verify.execution.execute import Store, execute
     from verify.studies.stability.findings import findings_of
     from verify.studies.stability.plan import plan_stability
 
@@ -67,10 +66,7 @@ def _of_scenes(
     if not plan.tasks:
         problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
         raise InputError("SCENE", given, problem)
-    if keep is not None:
-        keepable(keep)
-    with progress_of(plan.tasks, keep) as done:
-        results = execute(plan, Store(keep), where=where, done=done)
+    results = perform(plan, keep, where)
     found = findings_of(scenes, results)
     if as_json:
         show.print_json(found.as_json())

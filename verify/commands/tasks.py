@@ -8,9 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.input import keepable
+
 if TYPE_CHECKING:
     from verify.execution.execute import OnResult
+    from verify.execution.executors import Placement
+    from verify.execution.plan import Plan
     from verify.execution.task import Task
+    from verify.scenes.frozen import Frozen
 
 keep_option = click.option(
     "--keep",
@@ -46,6 +51,16 @@ def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
 def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
     """The command with --keep, --workers, --cluster and --json."""
     return keep_option(with_placement(json_option(command)))
+
+
+def perform(plan: "Plan", keep: Path | None, where: "Placement") -> "dict[str, Frozen]":
+    """Does the plan's tasks, with their progress shown, and gives their results by key."""
+    from verify.execution.execute import Store, execute
+
+    if keep is not None:
+        keepable(keep)
+    with progress_of(plan.tasks, keep) as done:
+        return execute(plan, Store(keep), where=where, done=done)
 
 
 @contextmanager
