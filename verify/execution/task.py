@@ -6,7 +6,7 @@ A kind of task is one class, in a file of the study whose it is.
 import hashlib
 import json
 from abc import abstractmethod
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -75,3 +75,7 @@ class InitialValueTask(SchemeTask):
 
     q: Number
     p: Number
+
+    def asked(self, *without: str) -> dict[str, Any]:
+        """What it asks for of the scheme for H, by the names of its fields."""
+        return {n: x for n, x in self if n not in SchemeTask.model_fields and n not in without}

@@ -68,10 +68,10 @@ def run(
     found = done.bounds
     most = min(digits, number_systems.about(done.arithmetic).digits or digits)
     values = {
-        n: _printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
+        n: printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
     }
     if found.status == "finished":
-        values |= {n: _printed(*known[n], digits) for n in observables if n in known}
+        values |= {n: printed(*known[n], digits) for n in observables if n in known}
     return RunResult(
         **hamiltonian.texts,
         scheme=scheme,
@@ -120,7 +120,7 @@ def proved_run(
         p=text(p),
         status="finished",
         failed_step=None,
-        values={n: _printed(*known[n], digits) for n in observables},
+        values={n: printed(*known[n], digits) for n in observables},
         error_kind="enclosed",
         error_method="a proof, and no run",
         exact=tuple(observables),
@@ -179,6 +179,7 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
         return {name: middle_and_radius(x) for name, x in found.items() if in_reach(x)}
 
 
-def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:
+def printed(value: Fraction, bound: Fraction, digits: int) -> Value:
+    """The digits of a value that its bound leaves, `digits` at most, and their own bound."""
     shown, within = known_digits(value, bound, digits)
     return Value(value=shown, bound=within)

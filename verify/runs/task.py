@@ -31,29 +31,9 @@ class RunTask(InitialValueTask):
         return self.steps * step_cost(AUTO if checked else self.arithmetic)
 
     def proved(self) -> RunResult | None:
-        return proved_run(
-            self.exact_hamiltonian(),
-            self.scheme,
-            q=self.q,
-            p=self.p,
-            step_size=self.step_size,
-            steps=self.steps,
-            digits=self.digits,
-            observables=self.observables,
-        )
+        asked = self.asked("arithmetic", "points")
+        return proved_run(self.exact_hamiltonian(), self.scheme, **asked)
 
     def compute(self, keeper: Keeper) -> RunResult:
         """The run, from its last checkpoint where there is one."""
-        return run(
-            self.exact_hamiltonian(),
-            self.scheme,
-            q=self.q,
-            p=self.p,
-            step_size=self.step_size,
-            steps=self.steps,
-            arithmetic=self.arithmetic,
-            digits=self.digits,
-            observables=self.observables,
-            points=self.points,
-            keeper=keeper,
-        )
+        return run(self.exact_hamiltonian(), self.scheme, **self.asked(), keeper=keeper)

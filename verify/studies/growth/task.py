@@ -18,5 +18,4 @@ class GrowthTask(InitialValueTask):
     def compute(self, keeper: Keeper) -> AverageResult:
         from verify.studies.growth.prediction import average_of
 
-        exact = self.exact_hamiltonian()
-        return average_of(exact, self.scheme, q=self.q, p=self.p, digits=self.digits)
+        return average_of(self.exact_hamiltonian(), self.scheme, **self.asked())

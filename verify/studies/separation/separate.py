@@ -41,8 +41,7 @@ from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import check
-from verify.scenes.results.bounded_value import Value
+from verify.runs.run import check, printed
 from verify.scenes.results.separation import (
     CrossoverResult,
     EvaluationResult,
@@ -207,17 +206,12 @@ def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     trails = {name: chain.trail(name) for name in QUANTITIES}
     tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
     return EvaluationResult(
-        parts=Parts(**{name: _printed(*chain.final(name), digits) for name in QUANTITIES}),
+        parts=Parts(**{name: printed(*chain.final(name), digits) for name in QUANTITIES}),
         largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
         growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *PARTS)},
         series=tuple(_at(chain, trails, k) for k in _shown(chain.marks)),
         error_kind=chain.kind,
     )
-
-
-def _printed(value: Fraction, bound: Fraction, digits: int) -> Value:
-    shown, within = known_digits(value, bound, digits)
-    return Value(value=shown, bound=within)
 
 
 def _shown(marks: Sequence[int]) -> list[int]:

@@ -28,13 +28,4 @@ class SeparationTask(InitialValueTask):
 
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
-        return separate(
-            self.exact_hamiltonian(),
-            self.scheme,
-            q=self.q,
-            p=self.p,
-            step_size=self.step_size,
-            steps=self.steps,
-            digits=self.digits,
-            keeper=keeper,
-        )
+        return separate(self.exact_hamiltonian(), self.scheme, **self.asked(), keeper=keeper)

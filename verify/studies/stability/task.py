@@ -52,8 +52,7 @@ class LargestStepTask(InitialValueTask):
     def compute(self, keeper: Keeper) -> LargestStepResult:
         from verify.studies.stability.results import largest_step_result
 
-        exact = self.exact_hamiltonian()
-        return largest_step_result(exact, self.scheme, p=self.p, q=self.q, time=self.time)
+        return largest_step_result(self.exact_hamiltonian(), self.scheme, **self.asked())
 
 
 class StabilityMapTask(InitialValueTask):
@@ -74,13 +73,4 @@ class StabilityMapTask(InitialValueTask):
     def compute(self, keeper: Keeper) -> StabilityMapResult:
         from verify.studies.stability.results import map_result
 
-        return map_result(
-            self.exact_hamiltonian(),
-            self.scheme,
-            parameter=self.parameter,
-            values=self.values,
-            step_sizes=self.step_sizes,
-            steps=self.steps,
-            p=self.p,
-            q=self.q,
-        )
+        return map_result(self.exact_hamiltonian(), self.scheme, **self.asked())
