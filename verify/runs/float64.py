@@ -79,7 +79,7 @@ def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
     second = run.run(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
     if second.done == run.steps and spread(first, second) < LINEAR:
-        return Bounds(_differences(first, second.values, run.steps), method)
+        return Bounds(_from(first, _floored(second.values, run.steps)), method)
     # float64 has lost every digit, so the reference has lost many: is it good for the rest?
     if run.steps > _FOLLOWED_STEPS:
         return _compensated(run, first)
@@ -87,7 +87,7 @@ def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
     if true.status != "finished":
         return Bounds({}, f"{method}, which finds another orbit", "unresolved")
     values = {n: value for n, (value, _) in true.values.items()}
-    return Bounds(_differences(first, values, run.steps), method)
+    return Bounds(_from(first, _floored(values, run.steps)), method)
 
 
 def _compensated(run: KernelRun, first: Outcome) -> Bounds:
@@ -111,11 +111,8 @@ def _compensated(run: KernelRun, first: Outcome) -> Bounds:
     return Bounds(found, method)
 
 
-def _differences(first: Outcome, true: dict[str, Fraction], steps: int) -> Bounded:
-    if "lambda" in true:
-        true = {**true, "lambda_plain": true["lambda"]}
-    own = {n: x for n, x in first.values.items() if n in true}
-    return {n: (x, abs(x - true[n]) + _floor(true[n], steps)) for n, x in own.items()}
+def _floored(true: dict[str, Fraction], steps: int) -> Bounded:
+    return {n: (x, _floor(x, steps)) for n, x in true.items()}
 
 
 def _floor(x: Fraction, steps: int) -> Fraction:

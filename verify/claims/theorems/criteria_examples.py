@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from math import prod
 
 from verify.arithmetic.exact import decimal
 from verify.claims.theorems.argument import Check
@@ -87,21 +88,16 @@ def _compensated(h: Fraction) -> Numbers:
     """ΔJ_k = h(1/2 − kh), whose sum is h/2; Λ stays as the product."""
     n = int(1 / h)
     values = [h * (Fraction(1, 2) - k * h) for k in range(n)]
-    product = Fraction(1)
-    for x in values:
-        product *= 1 + x
     mse = h * h * (1 + 2 * h * h) / 12  # Σ (1/2 − kh)² h = (1 + 2h²)/12
     assert sum(values) == h / 2  # noqa: S101 - the sum that the argument uses
-    return h / 2, mse, product - 1
+    return h / 2, mse, prod((1 + x for x in values), start=Fraction(1)) - 1
 
 
 def _not_uniform(h: Fraction) -> Numbers:
     """ΔJ_k = (kh)², with Σ k⁴ in closed form."""
     n = int(1 / h)
     fourth = Fraction((n - 1) * n * (2 * n - 1) * (3 * n * n - 3 * n - 1), 30)
-    product = Fraction(1)
-    for k in range(n):
-        product *= 1 + (k * h) ** 2
+    product = prod((1 + (k * h) ** 2 for k in range(n)), start=Fraction(1))
     return ((n - 1) * h) ** 2, fourth * h**4 / n, product - 1
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import prod
 
 import sympy
 
@@ -36,10 +37,7 @@ class Areas:
 
     @property
     def lam(self) -> Fraction:
-        product = Fraction(1)
-        for x in self.delta_j:
-            product *= 1 + x
-        return product - 1
+        return prod((1 + x for x in self.delta_j), start=Fraction(1)) - 1
 
 
 def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:

@@ -25,6 +25,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import accumulate
 from typing import Literal
 
 from verify.arithmetic.arb import slope
@@ -69,10 +70,7 @@ class Crossover:
 
 def envelope(values: Sequence[Fraction]) -> list[Fraction]:
     """The greatest absolute value so far."""
-    found: list[Fraction] = []
-    for value in values:
-        found.append(max(abs(value), found[-1] if found else Fraction(0)))
-    return found
+    return list(accumulate(map(abs, values), max))
 
 
 def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> Growth:
