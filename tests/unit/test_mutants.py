@@ -248,7 +248,7 @@ def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) 
     text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, broken, unseen)])
     sound, *killed, lives = json.loads(in_a_process(text).splitlines()[-1])
     assert sound["by"] is None
-    assert len(sound["entered"][ruth]) == 2, "the module's own code, and make"
+    assert len(sound["entered"][ruth]) == 1, "the module's own code, which makes its scheme"
     assert {k["by"] for k in killed} == {"test_mine.py::test_ruth3_has_order_three"}
     assert "KeyError" in killed[-1]["why"]
     assert lives["by"] is None

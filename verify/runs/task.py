@@ -31,6 +31,7 @@ class RunTask(InitialValueTask):
         return self.steps * step_cost(AUTO if checked else self.arithmetic)
 
     def proved(self) -> RunResult | None:
+        """What a proof gives of the run without a step; None where it is not all that is asked."""
         asked = self.asked("arithmetic", "points")
         return proved_run(self.exact_hamiltonian(), self.scheme, **asked)
 
