@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 from fractions import Fraction
 
+import flint
+
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, Check, concluded
 from verify.claims.theorems.exact_maps import Point, jacobian, next_point
-from verify.claims.theorems.oscillator import PRECISION, Ball, errors, factor
+from verify.claims.theorems.oscillator import PRECISION, errors, factor
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
@@ -90,7 +92,7 @@ def _along_a_run(h: Fraction) -> Check:
     )
 
 
-def _largest(left: Sequence[Ball], right: Sequence[Ball], scale: float) -> float:
+def _largest(left: Sequence[flint.arb], right: Sequence[flint.arb], scale: float) -> float:
     """A lower bound of the greatest (left/right − 1)/h over the steps where right is not 0."""
     known = [
         float((abs(x) / abs(y)).lower())

@@ -5,17 +5,15 @@ exp(−it). Balls (flint) enclose the error; everything else is exact.
 """
 
 from fractions import Fraction
-from typing import Any
 
 import flint
 
 from verify.arithmetic.flint_precision import working_precision
 
-Ball = Any  # flint.arb or flint.acb, which have no type stubs
 PRECISION = 256
 
 
-def factor(eta: int, h: Fraction) -> Ball:
+def factor(eta: int, h: Fraction) -> flint.acb:
     """R as a complex ball; in the caller's precision."""
     z = flint.acb(0, -flint.arb(flint.fmpq(h.numerator, h.denominator)))
     total = term = flint.acb(1)
@@ -25,7 +23,7 @@ def factor(eta: int, h: Fraction) -> Ball:
     return total
 
 
-def errors(eta: int, h: Fraction, steps: int) -> list[Ball]:
+def errors(eta: int, h: Fraction, steps: int) -> list[flint.acb]:
     """The errors exp(−ikh) − Rᵏ, k = 0 … steps, of the run that starts on the exact solution.
 
     To be called in `working_precision`.
@@ -39,7 +37,7 @@ def errors(eta: int, h: Fraction, steps: int) -> list[Ball]:
     return found
 
 
-def final_error(eta: int, steps: int) -> Ball:
+def final_error(eta: int, steps: int) -> flint.arb:
     """The norm of the error at T = 1 after `steps` steps, a real ball."""
     with working_precision(PRECISION):
         return abs(errors(eta, Fraction(1, steps), steps)[-1])

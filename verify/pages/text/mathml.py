@@ -11,7 +11,7 @@ latex2mathml, over the second, keeps that order, and sets the index of k_max as 
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TypeAlias
 
 import sympy
 from markupsafe import Markup, escape
@@ -20,7 +20,7 @@ from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
 from verify.pages.text.terms import Term, factor_key, terms_of
 
-Expr = Any  # sympy.Expr, which has no type stubs
+Expr: TypeAlias = sympy.Expr
 
 LONGEST_SHOWN = 600  # characters of a formula that is shown as text
 _STACKED_FROM = 4  # terms from which a sum is set one term a line

@@ -5,11 +5,11 @@ and functions close it: −(h²/2) p (1 + 3q²).
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeAlias
 
 import sympy
 
-Expr = Any  # sympy.Expr, which has no type stubs
+Expr: TypeAlias = sympy.Expr
 
 _INNER = ("p", "q")
 
@@ -37,7 +37,7 @@ def terms_of(expression: Expr) -> list[Term]:
     return [*lowest, *(term for _, term in terms[len(lowest) :])]
 
 
-def _sort_key(term: Expr) -> tuple[Any, ...]:
+def _sort_key(term: Expr) -> tuple[object, ...]:
     powers = {str(b): e for b, e in _powers(term) if b.is_Symbol}
     others = [b for b, _ in _powers(term) if not b.is_Symbol and not b.is_number]
     degree = sum(powers.get(name, 0) for name in _INNER)
@@ -79,7 +79,7 @@ def _primitive(base: Expr, exponent: Expr) -> tuple[Expr, Expr]:
     return content, rest
 
 
-def factor_key(factor: Expr) -> tuple[Any, ...]:
+def factor_key(factor: Expr) -> tuple[object, ...]:
     base, _ = factor.as_base_exp()
     name = str(base)
     if base.is_number:
