@@ -9,7 +9,9 @@ from markupsafe import Markup
 
 from verify.arithmetic.exact import plain, short
 from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Section
+from verify.pages.text.prose import prose
 from verify.pages.text.typography import listed, number, step, whole
 from verify.pages.text.words import counts_of
 from verify.scenes.results.report import SceneResult
@@ -44,21 +46,13 @@ class RunRow:
 
 
 @dataclass(frozen=True)
-class LargestRow:
-    scheme: str
-    measured: str
-    linear: str
-    ratio: str
-
-
-@dataclass(frozen=True)
 class StabilityView:
     """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded."""
 
     finding: tuple[str, ...]
     kinds: tuple[Kind, ...]
     runs: tuple[RunRow, ...]
-    largest: tuple[LargestRow, ...]
+    largest: tuple[Row, ...]
     bound: str
     plots: tuple[tuple[StabilityMapResult, Plot], ...]
 
@@ -125,14 +119,14 @@ def _name(run: StabilityResult) -> str:
     return ", ".join(part for part in parts if part not in own)
 
 
-def _largest(found: LargestStepResult) -> LargestRow:
+def _largest(found: LargestStepResult) -> Row:
     linear, ratio = "no limit", "–"
     if found.linear is not None:
         linear = _four(found.linear) if Fraction(found.linear) else "none is stable"
         if found.bounded and Fraction(found.linear):
             ratio = f"{float(Fraction(found.bounded) / Fraction(found.linear)):.3f}"
-    measured = _four(found.bounded) if found.bounded else found.detail
-    return LargestRow(found.scheme, measured, linear, ratio)
+    measured = _four(found.bounded) if found.bounded else prose(found.detail)
+    return Row(found.scheme, (measured, linear, ratio))
 
 
 def _four(x: str) -> str:

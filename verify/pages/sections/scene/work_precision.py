@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text import words
 from verify.pages.text.typography import NBSP, number, start, step, whole
@@ -33,43 +34,13 @@ _UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
 
 
 @dataclass(frozen=True)
-class PointRow:
-    """One run; `failure` stands in place of its values."""
-
-    label: str
-    steps: str
-    cells: tuple[Markup, ...]  # error, rounding part, energy, Λ, Λ plain, min, median
-    limited: str
-    failure: str
-
-
-@dataclass(frozen=True)
-class LineGroup:
-    name: str
-    about: str
-    rows: tuple[PointRow, ...]
-
-
-@dataclass(frozen=True)
-class SchemeRow:
-    name: str
-    cells: tuple[str | Markup, ...]  # order claimed, measured, of Λ, operations, gradients, time
-
-
-@dataclass(frozen=True)
-class SystemRow:
-    name: str
-    cells: tuple[str, ...]  # digits asked, certified, min, median, bounds
-
-
-@dataclass(frozen=True)
 class WorkPrecisionView:
     finding: tuple[str, ...]
     comparisons: tuple[str, ...]
     plots: tuple[Plot, ...]
-    schemes: tuple[SchemeRow, ...]
-    groups: tuple[LineGroup, ...]
-    systems: tuple[SystemRow, ...]
+    schemes: tuple[Row, ...]
+    groups: tuple[Group, ...]
+    systems: tuple[Row, ...]
     systems_of: str
     count: int
     computed: str
@@ -134,7 +105,7 @@ def _computed(found: WorkPrecisionResult) -> str:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def _scheme(line: WorkLine) -> SchemeRow:
+def _scheme(line: WorkLine) -> Row:
     cells = (
         "–" if line.order is None else str(line.order),
         _slope(line.error_slope),
@@ -142,7 +113,7 @@ def _scheme(line: WorkLine) -> SchemeRow:
         *_operations(line.cost),
         _seconds(line.compile_seconds),
     )
-    return SchemeRow(line.name, cells)
+    return Row(line.name, cells)
 
 
 def _slope(found: SlopeResult) -> str:
@@ -163,31 +134,22 @@ def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     return shown, Markup(", ").join(counted)
 
 
-def _group(line: WorkLine) -> LineGroup:
+def _group(line: WorkLine) -> Group:
     about = "compiled in " if not line.peer else "made ready in "
-    return LineGroup(
-        line.name, f"{about}{_seconds(line.compile_seconds)}", tuple(map(_row, line.points))
-    )
+    about += f"{_seconds(line.compile_seconds)} s"
+    return Group(line.name, [_row(point) for point in line.points], about)
 
 
-def _row(point: WorkPoint) -> PointRow:
+def _row(point: WorkPoint) -> Row:
     label = step(point.step_size) if point.step_size else number(point.tolerance or "")
-    failure = ""
+    steps = "–" if point.steps is None else whole(point.steps)
     if point.limited_by == "failed":
         at = f" at step {whole(point.failed_step)}" if point.failed_step else ""
-        failure = f"failed{at}: {point.reason}"
+        return Row(label, (steps,), f"failed{at}: {point.reason}")
     values = (point.error, point.rounding, point.energy, point.lam, point.lam_plain)
-    return PointRow(
-        label,
-        "–" if point.steps is None else whole(point.steps),
-        (
-            *map(_value, values),
-            escape(_seconds(point.seconds_min)),
-            escape(_seconds(point.seconds_median)),
-        ),
-        LIMITS[point.limited_by],
-        failure,
-    )
+    times = (point.seconds_min, point.seconds_median)
+    cells = (*map(_value, values), *map(_seconds, times), LIMITS[point.limited_by])
+    return Row(label, (steps, *cells))
 
 
 def _value(value: Value | None) -> Markup:
@@ -198,7 +160,7 @@ def _value(value: Value | None) -> Markup:
     return Markup("{}").format(few(value.value))
 
 
-def _system(point: SystemPoint) -> SystemRow:
+def _system(point: SystemPoint) -> Row:
     cells = (
         str(point.digits),
         point.certified or f"– ({point.reason})",
@@ -206,7 +168,7 @@ def _system(point: SystemPoint) -> SystemRow:
         _seconds(point.seconds_median),
         f"{point.error_kind} ({point.reason})" if point.reason else point.error_kind,
     )
-    return SystemRow(point.arithmetic, cells)
+    return Row(point.arithmetic, cells)
 
 
 def _seconds(seconds: float | None) -> str:

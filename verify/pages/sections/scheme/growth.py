@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few
 from verify.pages.figures.logarithm import lg
+from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Section
 from verify.pages.text import mathml
 from verify.pages.text.prose import prose
@@ -27,28 +28,12 @@ MOST_ROWS = 600
 
 
 @dataclass(frozen=True)
-class PredictionRow:
-    step_size: str
-    steps: str
-    cells: tuple[str, ...]  # boundary, secular, predicted, measured, difference
-
-
-@dataclass(frozen=True)
-class OrbitGroup:
-    """One initial value: its orbit in a sentence, and its runs."""
-
-    label: str
-    orbit: str
-    rows: tuple[PredictionRow, ...]
-
-
-@dataclass(frozen=True)
 class GrowthView:
     scheme: str
     law: Markup
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
-    groups: tuple[OrbitGroup, ...]
+    groups: tuple[Group, ...]
     count: int
     computed: str
 
@@ -230,12 +215,12 @@ def _orbit(each: GrowthLawResult) -> "Orbit":
 # -- table ----------------------------------------------------------------------------------------
 
 
-def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[OrbitGroup]:
+def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
     left = MOST_ROWS
     for each in laws:
         shown = each.predictions[:left]
         left -= len(shown)
-        yield OrbitGroup(start(each.law), _about(each.law), tuple(_row(p) for p in shown))
+        yield Group(start(each.law), [_row(p) for p in shown], _about(each.law))
 
 
 def _about(law: AverageResult) -> str:
@@ -248,10 +233,10 @@ def _about(law: AverageResult) -> str:
     return f"{law.orbit}{period}, ⟨g⟩ = {rate}"
 
 
-def _row(p: PredictionResult) -> PredictionRow:
+def _row(p: PredictionResult) -> Row:
     values = (p.boundary, p.secular, p.predicted, p.measured, p.difference)
-    cells = tuple(few(v.value) if v else "–" for v in values)
-    return PredictionRow(step(p.step_size), whole(p.steps), cells)
+    cells = (few(v.value) if v else "–" for v in values)
+    return Row(step(p.step_size), (whole(p.steps), *cells))
 
 
 _TERMS = {

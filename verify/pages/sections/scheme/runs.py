@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import computed
+from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Section
 from verify.pages.text import words
 from verify.pages.text.typography import number, start, value, whole
@@ -23,20 +24,12 @@ _COLUMNS = {
 
 
 @dataclass(frozen=True)
-class RunRow:
-    step_size: str
-    steps: str
-    cells: tuple[Markup, ...]  # empty where there is nothing to show but `failure`
-    failure: str
-
-
-@dataclass(frozen=True)
 class RunTable:
     """The runs of one scheme: a column an observable, a group an initial value."""
 
     scheme: str
     columns: tuple[str, ...]
-    groups: tuple[tuple[str, tuple[RunRow, ...]], ...]
+    groups: tuple[Group, ...]
     count: int
     shown: int
     computed: str
@@ -96,17 +89,15 @@ def _fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
         yield f"{count} (h = {sizes}) went to {arithmetic} instead: {reason}"
 
 
-def _groups(
-    runs: Sequence[RunResult], names: Sequence[str]
-) -> Iterator[tuple[str, tuple[RunRow, ...]]]:
-    groups: dict[str, list[RunRow]] = {}
+def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[Group]:
+    groups: dict[str, list[Row]] = {}
     for run in runs:
         groups.setdefault(start(run), []).append(_row(run, names))
     for label, rows in groups.items():
-        yield label, tuple(rows)
+        yield Group(label, rows)
 
 
-def _row(run: RunResult, names: Sequence[str]) -> RunRow:
+def _row(run: RunResult, names: Sequence[str]) -> Row:
     failure = ""
     if run.status == "left range":
         failure = f"left the range of {run.arithmetic}"
@@ -114,8 +105,8 @@ def _row(run: RunResult, names: Sequence[str]) -> RunRow:
             failure += f" at step {whole(run.failed_step)}"
     elif run.status == "unresolved":
         failure = f"no digit could be confirmed: {run.error_method}"
-    cells = tuple(value(run.values[n]) if n in run.values else Markup("–") for n in names)
-    return RunRow(run.step_size, whole(run.steps), () if failure else cells, failure)
+    cells = (value(run.values[n]) if n in run.values else Markup("–") for n in names)
+    return Row(run.step_size, (whole(run.steps), *(() if failure else cells)), failure)
 
 
 SECTION = Section(order=80, view=_view, terms=lambda _: words.RAN)

@@ -1,6 +1,6 @@
 """Truncation against rounding in Λ as the page shows it: sentences, figures and tables."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few
 from verify.pages.figures.separation_caption import WAYS, caption, end_of
+from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import (
     PARTS,
@@ -35,40 +36,12 @@ MOST_ROWS = 600
 
 
 @dataclass(frozen=True)
-class PartsRow:
-    """One entry: its parts, then under each rounding how it compares with truncation."""
-
-    step_size: str
-    steps: str
-    truncation: Markup
-    plain: Markup
-    parts: tuple[Markup, ...]
-    closed_form: Markup
-    failure: str
-
-
-@dataclass(frozen=True)
-class GrowthRow:
-    step_size: str
-    steps: str
-    ways: tuple[Markup, ...]
-
-
-@dataclass(frozen=True)
-class Group:
-    """The entries of one initial value."""
-
-    label: str
-    parts: tuple[PartsRow, ...]
-    growth: tuple[GrowthRow, ...]
-
-
-@dataclass(frozen=True)
 class SeparationView:
     scheme: str
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
-    groups: tuple[Group, ...]
+    parts: tuple[Group, ...]
+    growths: tuple[Group, ...]
     count: int
     shown: int
     growth: str
@@ -89,7 +62,8 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
         scheme=proof.scheme,
         finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
         plots=tuple(_plots(wide, anchor)),
-        groups=tuple(_groups([*own, *wide])),
+        parts=tuple(_groups([*own, *wide], _parts_row)),
+        growths=tuple(_groups([*own, *wide], _growth_row)),
         count=len(rows),
         shown=min(len(rows), MOST_ROWS),
         growth=growth_finding(of_grid),
@@ -121,37 +95,29 @@ def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def _groups(grids: Sequence[SeparationGrid]) -> Iterator[Group]:
+def _groups(
+    grids: Sequence[SeparationGrid], row: Callable[[SeparationResult], Row | None]
+) -> Iterator[Group]:
+    """A group for each grid with a row; as many rows as are shown, of all that there are."""
     left = MOST_ROWS
     for grid in grids:
         points = sorted(grid.points[:left], key=lambda point: Fraction(point.step_size))
         left -= len(points)
-        if points:
-            yield Group(
-                label=start(points[0]) + end_of(grid.points),
-                parts=tuple(_parts_row(point) for point in points),
-                growth=tuple(_growth_row(point) for point in points if point.plain),
-            )
+        rows = [found for point in points if (found := row(point))]
+        if rows:
+            yield Group(start(points[0]) + end_of(grid.points), rows)
 
 
-def _parts_row(point: SeparationResult) -> PartsRow:
-    h, steps, none = step(point.step_size), whole(point.steps), Markup("–")
+def _parts_row(point: SeparationResult) -> Row:
+    h, steps = step(point.step_size), whole(point.steps)
     if point.plain is None:
-        failure = point.reason or point.status
-        return PartsRow(h, steps, none, none, (), none, failure)
+        return Row(h, (steps,), point.reason or point.status)
     parts, closed = point.plain.parts, point.closed_form
     greatest = greatest_part(point.plain)
-    return PartsRow(
-        step_size=h,
-        steps=steps,
-        truncation=_bounded_number(parts.truncation),
-        plain=_compared(point.plain),
-        parts=tuple(
-            _bounded_number(getattr(parts, name), strong=name == greatest) for name in PARTS
-        ),
-        closed_form=_compared(closed) if closed else none,
-        failure="",
-    )
+    own = (_bounded_number(getattr(parts, name), strong=name == greatest) for name in PARTS)
+    last = _compared(closed) if closed else Markup("–")
+    truncation = _bounded_number(parts.truncation)
+    return Row(h, (steps, truncation, _compared(point.plain), *own, last))
 
 
 def _bounded_number(found: Value, *, strong: bool = False) -> Markup:
@@ -173,13 +139,12 @@ def _compared(evaluation: EvaluationResult) -> Markup:
     )
 
 
-def _growth_row(point: SeparationResult) -> GrowthRow:
+def _growth_row(point: SeparationResult) -> Row | None:
+    if point.plain is None:
+        return None
     ways = (getattr(point, way) for way in WAYS)
-    return GrowthRow(
-        step(point.step_size),
-        whole(point.steps),
-        tuple(_growth(each.growth["total"]) if each else Markup("–") for each in ways),
-    )
+    cells = (_growth(each.growth["total"]) if each else Markup("–") for each in ways)
+    return Row(step(point.step_size), (whole(point.steps), *cells))
 
 
 def _growth(found: GrowthResult) -> Markup:
