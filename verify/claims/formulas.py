@@ -8,6 +8,7 @@ from zero.
 """
 
 import re
+from abc import abstractmethod
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -34,9 +35,9 @@ class FormulaClaim(Claim):
 
     only_here = "a printed formula is that of its own Hamiltonian"
 
+    @abstractmethod
     def formulas(self) -> dict[str, str]:
         """The claim's formulas by the keys under which they stand."""
-        raise NotImplementedError
 
     def check_scene(self, scene: Scene) -> None:
         self.read_formulas(scene.exact_hamiltonian().parameters)

@@ -7,14 +7,15 @@ scene's.
 """
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, ClassVar
 
 from verify.arithmetic.arb import precision
+from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.runs import NEEDS, NoValueError
+from verify.claims.runs import QUANTITIES, NoValueError
 from verify.errors import InputError
 from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
@@ -53,14 +54,13 @@ class RunClaim(Claim):
     only_here = "printed numbers are those of its own runs"
     always_own: ClassVar[bool] = False
 
+    @abstractmethod
     def quantities(self) -> tuple[str, ...]:
         """What it compares, of `verify.claims.runs.QUANTITIES`."""
-        names = (getattr(self, "quantity", ""), getattr(self, "than", ""))
-        return tuple(name for name in names if name)
 
     def observables(self) -> tuple[str, ...]:
         """What its runs compute: what it asks for, and nothing else."""
-        return tuple(dict.fromkeys(o for name in self.quantities() for o in NEEDS[name]))
+        return tuple(dict.fromkeys(o for name in self.quantities() for o in QUANTITIES[name].needs))
 
     def printed_texts(self) -> list[str]:
         """The decimals that it prints, all of whose digits are to be known."""
@@ -140,7 +140,7 @@ class RunClaim(Claim):
     def compare(self, findings: Findings) -> ClaimResult:
         """The verdict by the values of its runs: MEASURED where it holds."""
 
-    def run_rows(self, findings: Findings, *quantities: str) -> list[list[RunResult]]:
+    def run_rows(self, findings: Findings) -> list[list[RunResult]]:
         """The grid's runs: one row an initial value, its runs by increasing step size.
 
         Raises InputError where the scene does not run what the claim speaks of, and NoValueError
@@ -150,15 +150,21 @@ class RunClaim(Claim):
         runs = findings.runs(scene, self.scheme)
         if not runs or scene.grid is None:
             raise InputError("claim", self.id, "its scene has no runs of that scheme")
-        needed = [o for quantity in quantities for o in NEEDS[quantity]]
         for run in runs:
             if run.status != "finished":
                 raise NoValueError(run)
-            if missing := [name for name in needed if name not in run.values]:
+            if missing := [name for name in self.observables() if name not in run.values]:
                 raise InputError("claim", self.id, f"its scene does not observe {missing[0]}")
         width = len(scene.grid.step_sizes)
         rows = [runs[i : i + width] for i in range(0, len(runs), width)]
         return [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
+
+    def run_at(self, row: Sequence[RunResult], step_size: Fraction) -> RunResult:
+        """The run of a row with that step size; InputError where there is none."""
+        for run in row:
+            if Fraction(run.step_size) == step_size:
+                return run
+        raise InputError(f"claim {self.id}: step size", text(step_size), "is not in the grid")
 
 
 def _length(keys: RunKeys, base: Grid | None) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from verify.arithmetic.arb import Ball, bounds, fixed, in_reach, shown
-from verify.claims.runs import NEEDS, QUANTITIES
+from verify.claims.runs import QUANTITIES
 from verify.errors import InputError
 from verify.scenes.results.run import RunResult
 
@@ -37,7 +37,7 @@ Row = Annotated[tuple[Printed, ...], Field(min_length=1, max_length=1000)]
 
 def holds(run: RunResult, quantity: str, printed: str) -> bool | None:
     """Whether the run's value rounds to what is printed; None where its ball does in part."""
-    source = run.values[NEEDS[quantity][0]]
+    source = run.values[QUANTITIES[quantity].needs[0]]
     if quantity.startswith("lg") and Fraction(source.value) == Fraction(source.bound) == 0:
         return False  # lg 0 is no number
     return rounds_to(QUANTITIES[quantity](run), printed)

@@ -2,44 +2,36 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from verify.arithmetic.arb import Ball, ball, lg, middle_and_radius, shown
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
 
-QUANTITIES: dict[str, Callable[[RunResult], Ball]] = {
-    "mse": lambda run: ball(run.values["mse"]),
-    "lambda": lambda run: ball(run.values["lambda"]),
-    "lambda_max": lambda run: ball(run.values["lambda_max"]),
-    "lg_mse": lambda run: lg(ball(run.values["mse"])),
-    "lg_abs_lambda": lambda run: lg(abs(ball(run.values["lambda"]))),
-    "abs_lambda": lambda run: abs(ball(run.values["lambda"])),
-    "mse_over_lambda": lambda run: ball(run.values["mse"]) / abs(ball(run.values["lambda"])),
-    "delta_j_max": lambda run: ball(run.values["delta_j_max"]),
-}
-NEEDS = {
-    "mse": ("mse",),
-    "lambda": ("lambda",),
-    "lambda_max": ("lambda_max",),
-    "lg_mse": ("mse",),
-    "lg_abs_lambda": ("lambda",),
-    "abs_lambda": ("lambda",),
-    "mse_over_lambda": ("mse", "lambda"),
-    "delta_j_max": ("delta_j_max",),
+
+class Compared(NamedTuple):
+    """A number that claims compare: its name in words, and what of a run it is made of."""
+
+    label: str
+    needs: tuple[str, ...]
+    formula: Callable[..., Ball]
+
+    def __call__(self, run: RunResult) -> Ball:
+        return self.formula(*(ball(run.values[name]) for name in self.needs))
+
+
+QUANTITIES = {
+    "mse": Compared("MSE", ("mse",), lambda mse: mse),
+    "lambda": Compared("Λ", ("lambda",), lambda end: end),
+    "lambda_max": Compared("max |Λ|", ("lambda_max",), lambda largest: largest),
+    "lg_mse": Compared("lg MSE", ("mse",), lg),
+    "lg_abs_lambda": Compared("lg |Λ|", ("lambda",), lambda end: lg(abs(end))),
+    "abs_lambda": Compared("|Λ|", ("lambda",), abs),
+    "mse_over_lambda": Compared("MSE/|Λ|", ("mse", "lambda"), lambda mse, end: mse / abs(end)),
+    "delta_j_max": Compared("max |ΔJ|", ("delta_j_max",), lambda largest: largest),
 }
 Quantity = Literal["mse", "abs_lambda", "mse_over_lambda", "delta_j_max"]  # that claims compare
-LABELS = {
-    "mse": "MSE",
-    "lambda": "Λ",
-    "lambda_max": "max |Λ|",
-    "lg_mse": "lg MSE",
-    "lg_abs_lambda": "lg |Λ|",
-    "abs_lambda": "|Λ|",
-    "mse_over_lambda": "MSE/|Λ|",
-    "delta_j_max": "max |ΔJ|",
-}
 
 
 class NoValueError(Exception):

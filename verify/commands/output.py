@@ -143,7 +143,9 @@ def print_run(result: "RunResult") -> None:
 
 def plain_json(model: "Frozen") -> dict[str, Any]:
     """The model as JSON, without the parts of its texts."""
-    data: dict[str, Any] = model.model_dump(mode="json", context={"parts": False})
+    from verify.scenes.frozen import PLAIN
+
+    data: dict[str, Any] = model.model_dump(mode="json", context=PLAIN)
     return data
 
 

@@ -1,5 +1,6 @@
 """The base of all data here: frozen models that refuse what they do not know."""
 
+from functools import cache
 from typing import Annotated, Any, get_args
 
 from pydantic import (
@@ -50,10 +51,10 @@ class WithProse(Frozen):
         self, shown: SerializerFunctionWrapHandler, info: SerializationInfo
     ) -> dict[str, Any]:
         data: dict[str, Any] = {}
+        with_parts = () if info.context == PLAIN else _prose_fields(type(self))
         for name, value in shown(self).items():
             data[name] = value
-            said = name in _prose_fields(type(self)) and info.context != PLAIN
-            if said and _more_than_text(getattr(self, name)):
+            if name in with_parts and _more_than_text(getattr(self, name)):
                 data[name + _BESIDE] = _data_of(getattr(self, name))
         return data
 
@@ -70,8 +71,9 @@ class WithProse(Frozen):
         return data
 
 
-def _prose_fields(model: type[BaseModel]) -> list[str]:
-    return [n for n, field in model.model_fields.items() if _holds_prose(field.annotation)]
+@cache
+def _prose_fields(model: type[BaseModel]) -> tuple[str, ...]:
+    return tuple(n for n, field in model.model_fields.items() if _holds_prose(field.annotation))
 
 
 def _holds_prose(annotation: Any) -> bool:

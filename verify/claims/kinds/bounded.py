@@ -26,7 +26,7 @@ class BoundedClaim(RunClaim):
         return ("lambda_max",)
 
     def compare(self, findings: Findings) -> ClaimResult:
-        runs = [run for row in self.run_rows(findings, "lambda_max") for run in row]
+        runs = [run for row in self.run_rows(findings) for run in row]
         largest = [QUANTITIES["lambda_max"](run) for run in runs]
         bound = rational_ball(self.bound)
         holds = [sign(bound - x, zero=True) for x in largest]

@@ -27,6 +27,9 @@ class CriteriaClaim(RunClaim):
         tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...], Field(min_length=1)
     ]
 
+    def quantities(self) -> tuple[str, ...]:
+        return ()
+
     def observables(self) -> tuple[str, ...]:
         return CLOSED_FORM
 

@@ -87,9 +87,8 @@ class GrowthClaim(RunClaim):
 
 def _is_zero(run: RunResult) -> bool:
     """Whether Λ is proved to be 0."""
-    value = run.values.get("lambda_max")
-    exactly = "lambda_max" in run.exact and value is not None
-    return exactly and value is not None and Fraction(value.value) == Fraction(value.bound) == 0
+    value = run.values.get("lambda_max") if "lambda_max" in run.exact else None
+    return value is not None and Fraction(value.value) == Fraction(value.bound) == 0
 
 
 def _largest(run: RunResult) -> Ball:

@@ -5,7 +5,7 @@ from typing import Literal
 from verify.arithmetic.arb import in_reach, shown
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import LABELS, QUANTITIES, Quantity, all_hold, middle, sign
+from verify.claims.runs import QUANTITIES, Quantity, all_hold, middle, sign
 from verify.prose import number, prose
 from verify.scenes.results.claim import ClaimResult
 
@@ -18,16 +18,19 @@ class LessClaim(RunClaim):
     quantity: Quantity
     than: Quantity
 
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity, self.than)
+
     def compare(self, findings: Findings) -> ClaimResult:
-        rows = self.run_rows(findings, self.quantity, self.than)
+        rows = self.run_rows(findings)
         one, two = QUANTITIES[self.quantity], QUANTITIES[self.than]
         runs = [run for row in rows for run in row]
         verdicts = [sign(two(run) - one(run)) for run in runs]
         ratios = [r for r in (one(run) / two(run) for run in runs) if in_reach(r)]
         largest = shown(max(ratios, key=middle), 2) if ratios else "unknown"
         evidence = prose(
-            f"{LABELS[self.quantity]} is at most ", number(largest),
-            f" times {LABELS[self.than]} in {len(ratios)} of {len(runs)} runs",
+            f"{one.label} is at most ", number(largest),
+            f" times {two.label} in {len(ratios)} of {len(runs)} runs",
         )  # fmt: skip
         return self.result(all_hold(verdicts), evidence)
 

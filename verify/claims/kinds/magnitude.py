@@ -13,11 +13,10 @@ from verify.arithmetic.arb import lg, rational_ball, shown
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import LABELS, QUANTITIES, Quantity, sign, start_of
+from verify.claims.runs import QUANTITIES, Quantity, sign, start_of
 from verify.errors import InputError
 from verify.prose import Formula, Prose, joined, number, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import StepSize
 from verify.verdict import Verdict
@@ -42,21 +41,22 @@ class MagnitudeClaim(RunClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         names = tuple(self.exponents)
-        rows = self.run_rows(findings, *names)
+        rows = self.run_rows(findings)
         heads = [
-            prose(LABELS[n], " (about ", Formula(f"10^{self.exponents[n]}"), "?)") for n in names
+            prose(QUANTITIES[n].label, " (about ", Formula(f"10^{self.exponents[n]}"), "?)")
+            for n in names
         ]
         details: list[list[str]] = [["initial value", *heads]]
         holds: list[bool | None] = []
         failing: list[Prose] = []
         for row in rows:
-            run = self._at(row)
+            run = self.run_at(row, self.step_size)
             values = {name: QUANTITIES[name](run) for name in names}
             off = [abs(lg(values[n]) - self.exponents[n]) for n in names]
             near = [sign(rational_ball(Fraction(1, 2)) - x) for x in off]
             holds.append(_every(near))
             wrong = [n for n, held in zip(names, near, strict=True) if held is False]
-            found = [prose(f"{LABELS[n]} = ", number(shown(values[n], 2))) for n in wrong]
+            found = [prose(f"{QUANTITIES[n].label} = ", number(shown(values[n], 2))) for n in wrong]
             failing.append(prose(start_of(row[0]), ": ", joined(", ", found)))
             details.append([start_of(row[0]), *(shown(values[n], 4) for n in names)])
         yes = [start_of(row[0]) for row, held in zip(rows, holds, strict=True) if held is True]
@@ -64,12 +64,6 @@ class MagnitudeClaim(RunClaim):
         evidence = prose("holds for ", _list(yes), "; does not hold for ", _list(no))
         decided = _some(holds) if self.quantifier == "some" else _every(holds)
         return self.result(_VERDICTS[decided], evidence, details)
-
-    def _at(self, row: Sequence[RunResult]) -> RunResult:
-        found = next((run for run in row if Fraction(run.step_size) == self.step_size), None)
-        if found is None:
-            raise InputError(f"claim {self.id}", text(self.step_size), "is not in the grid")
-        return found
 
 
 def _every(answers: Sequence[bool | None]) -> bool | None:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from verify.arithmetic.arb import shown
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import LABELS, QUANTITIES, Quantity, all_hold, sign, start_of, table_of
+from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, start_of, table_of
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -21,10 +21,13 @@ class MonotoneClaim(RunClaim):
     quantity: Quantity
     direction: Literal["increases", "decreases"]
 
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity,)
+
     def compare(self, findings: Findings) -> ClaimResult:
-        rows = self.run_rows(findings, self.quantity)
+        rows = self.run_rows(findings)
         quantity, way = QUANTITIES[self.quantity], 1 if self.direction == "increases" else -1
-        label = LABELS[self.quantity]
+        label = QUANTITIES[self.quantity].label
         verdicts: list[bool | None] = []
         counterexamples = []
         for one, two in (pair for row in rows for pair in pairwise(row)):

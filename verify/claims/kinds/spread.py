@@ -9,7 +9,7 @@ from verify.arithmetic.arb import bounds, in_reach, shown
 from verify.arithmetic.exact import decimal, text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import LABELS, QUANTITIES, Quantity, all_hold, middle
+from verify.claims.runs import QUANTITIES, Quantity, all_hold, middle
 from verify.prose import Number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.values import Number as ExactNumber
@@ -23,13 +23,16 @@ class SpreadClaim(RunClaim):
     quantity: Quantity
     factor: Annotated[ExactNumber, Field(ge=1)]
 
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity,)
+
     def compare(self, findings: Findings) -> ClaimResult:
-        rows = self.run_rows(findings, self.quantity)
+        rows, quantity = self.run_rows(findings), QUANTITIES[self.quantity]
         details = [["step size", "least", "greatest", "factor"]]
         verdicts: list[bool | None] = []
         worst = Fraction(0)
         for column in zip(*rows, strict=True):
-            values = [QUANTITIES[self.quantity](run) for run in column]
+            values = [quantity(run) for run in column]
             ends = [bounds(v) if in_reach(v) else None for v in values]
             known = [e for e in ends if e is not None and e[0] > 0]
             if len(known) < len(values):
@@ -45,7 +48,7 @@ class SpreadClaim(RunClaim):
             details.append([column[0].step_size, shown(low), shown(high), shown(high / low, 3)])
             worst = max(worst, reached)
         evidence = prose(
-            f"{LABELS[self.quantity]} varies over the initial values by a factor of up to ",
+            f"{quantity.label} varies over the initial values by a factor of up to ",
             Number(decimal(worst, 2)), " at one step size (allowed here: ",
             Number(text(self.factor)), ")",
         )  # fmt: skip

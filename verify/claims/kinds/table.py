@@ -12,7 +12,7 @@ from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.printed import Row, cell, holds, places, rounds_to, short
-from verify.claims.runs import LABELS, QUANTITIES, all_hold, middle, start_of
+from verify.claims.runs import QUANTITIES, all_hold, middle, start_of
 from verify.errors import InputError
 from verify.prose import Formula, Prose, joined, number, prose
 from verify.scenes.results.claim import ClaimResult
@@ -41,6 +41,9 @@ class TableClaim(RunClaim):
                 raise InputError(name, len(row), f"give {len(self.step_sizes)} values in a row")
         return self
 
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity,)
+
     def printed_texts(self) -> list[str]:
         return [cell for row in self.rows or (self.printed or (),) for cell in row]
 
@@ -55,7 +58,7 @@ class TableClaim(RunClaim):
                 raise InputError("step_size", text(h), "is not in the scene's grid")
 
     def compare(self, findings: Findings) -> ClaimResult:
-        rows = self.run_rows(findings, self.quantity)
+        rows = self.run_rows(findings)
         printed_rows = self.rows or (self.printed or (),) * len(rows)
         if len(printed_rows) != len(rows):
             raise InputError(f"claim {self.id}: rows", len(printed_rows), f"give {len(rows)} rows")
@@ -65,7 +68,7 @@ class TableClaim(RunClaim):
         verdicts: list[bool | None] = []
         values: list[Ball] = []
         for row, printed in zip(rows, printed_rows, strict=True):
-            runs = [self._at(row, h) for h in self.step_sizes]
+            runs = [self.run_at(row, h) for h in self.step_sizes]
             verdicts += map(holds, runs, repeat(self.quantity), printed)
             if self.rows is not None:
                 details.append([prose("printed, ", start_of(row[0])), *printed])
@@ -82,15 +85,8 @@ class TableClaim(RunClaim):
         )  # fmt: skip
         return self.result(Verdict.REFUTED, evidence, details)
 
-    def _at(self, row: Sequence[RunResult], h: Fraction) -> RunResult:
-        found = next((run for run in row if Fraction(run.step_size) == h), None)
-        if found is None:
-            name = f"claim {self.id}: step_sizes"
-            raise InputError(name, text(h), "is not in the scene's grid")
-        return found
-
     def _seen(self, values: Sequence[Ball]) -> Prose:
-        label = LABELS[self.quantity]
+        label = QUANTITIES[self.quantity].label
         known = sorted((v for v in values if in_reach(v)), key=middle)
         if not known:
             return prose(f"no computed {label} is known")
@@ -101,7 +97,7 @@ class TableClaim(RunClaim):
         """What a wrong row is, where it is the logarithm of a product."""
         if self.quantity != "lg_mse" or self.printed is None:
             return prose("")
-        runs = [self._at(row, h) for h in self.step_sizes]
+        runs = [self.run_at(row, h) for h in self.step_sizes]
         names = [Formula(f"lg({_monomial(e)})") for e in _identities(runs, self.printed, time)]
         if not names:
             return prose("")

@@ -7,7 +7,7 @@ from pydantic import model_validator
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.printed import Printed, holds, shown_to
-from verify.claims.runs import LABELS, all_hold
+from verify.claims.runs import QUANTITIES, all_hold
 from verify.errors import InputError
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
@@ -41,14 +41,14 @@ class ValueClaim(RunClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         (quantity,), (printed,) = self.quantities(), self.printed_texts()
-        (run, *more), *others = self.run_rows(findings, quantity)
+        (run, *more), *others = self.run_rows(findings)
         if more or others:
             raise InputError(f"claim {self.id}", "", "speaks of one run; give step_size, q and p")
         rounds = holds(run, quantity, printed)
         known = shown_to(run, quantity, len(printed.partition("e")[0]) + _ALSO_SHOWN)
         evidence = prose(
-            f"{LABELS[quantity]} = ", number(known), f", {_SAYS[rounds]} ", Number(printed),
-            f", in {run.steps} steps",
+            f"{QUANTITIES[quantity].label} = ", number(known), f", {_SAYS[rounds]} ",
+            Number(printed), f", in {run.steps} steps",
         )  # fmt: skip
         return self.result(all_hold([rounds]), evidence)
 
