@@ -16,7 +16,6 @@ from verify.arithmetic.exact import plain
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import bits_for
 from verify.flows.extrapolation import NoFlowError
-from verify.hamiltonians.elliptic import Real
 from verify.hamiltonians.motion import Motion, State, exactly
 
 MOST_DIGITS = 10_000
@@ -86,7 +85,7 @@ def ends_by(motion: Motion, time: Fraction) -> bool:
     sign, at = (-1 if time < 0 else 1), exactly(abs(time))
 
     def found() -> bool | None:
-        end: Real | None = motion.blow_up(sign)
+        end: arb | None = motion.blow_up(sign)
         if end is None or end > at:
             return False
         return True if end < at else None
@@ -105,7 +104,7 @@ def ends_after(motion: Motion, time: Fraction) -> None:
         raise NoFlowError(f"the exact solution blows up at t = {'−' if time < 0 else ''}`{told}`")
 
 
-def _on_grid(state: State, least: Real, digits: int) -> Evaluation | None:
+def _on_grid(state: State, least: arb, digits: int) -> Evaluation | None:
     """The state on a grid of the digits asked for, where its balls are no wider."""
     if not all(x.is_finite() for x in state):
         return None
@@ -127,7 +126,7 @@ def _on_grid(state: State, least: Real, digits: int) -> Evaluation | None:
     return Evaluation(p, q, apart * grid)
 
 
-def _rounded(x: Real) -> tuple[int, int]:
+def _rounded(x: arb) -> tuple[int, int]:
     """A whole number near the ball, and a bound of the distance of all of the ball from it."""
     whole = (x.mid() + 0.5).floor().unique_fmpz()
     if whole is None:

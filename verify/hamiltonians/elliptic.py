@@ -8,19 +8,19 @@ With z = u/2K, τ = iK'/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the va
     sn = m^(−1/4) θ₁/θ₄,  cn = ((1 − m)/m)^(1/4) θ₂/θ₄,  dn = (1 − m)^(1/4) θ₃/θ₄.
 
 ℘'² = 4℘³ − g₂℘ − g₃ = 4 (℘ − e₁)(℘ − e₂)(℘ − e₃) with Δ = g₂³ − 27g₃² (Abramowitz and Stegun,
-18.9; DLMF 23.6). Periods by flint's own ℘ take Carlson's R_F twice and are four times slower.
+18.9; DLMF 23.6). flint's own ℘ asks for the ratio of both periods, which are two Carlson R_F;
+sn asks for K(m) and K(1 − m), two arithmetic-geometric means.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 from flint import acb, arb, fmpq
 
-Real = Any  # an arb, or an exact fmpq in its place
+Real = arb | fmpq  # a ball, or an exact number in its place
 NOT_KNOWN = arb.nan()
 
 
-def jacobi(u: Real, m: Real) -> tuple[Real, Real, Real]:
+def jacobi(u: Real, m: Real) -> tuple[arb, arb, arb]:
     """sn, cn and dn of real u with the parameter m > 0; beyond 1 by Jacobi's transformation.
 
     >>> sn, cn, dn = jacobi(arb(1), arb(1) / 2)
@@ -42,24 +42,24 @@ def jacobi(u: Real, m: Real) -> tuple[Real, Real, Real]:
     return one / (modulus * four), other * two / (modulus * four), other * three / four
 
 
-def quarter_period(m: Real) -> Real:
+def quarter_period(m: Real) -> arb:
     """K(m), real m < 1."""
     return acb(m).elliptic_k().real
 
 
 @dataclass(frozen=True)
 class Weierstrass:
-    """℘ by its roots: e₁ ≥ e₂ ≥ e₃, or the real e₁ with two conjugates (`real` is False)."""
+    """℘ by its roots: the real `first`, and e₂ ≥ e₃ below it or one of a conjugate pair."""
 
-    roots: tuple[Real, Real, Real]
-    real: bool = True
+    first: Real
+    others: tuple[Real, Real] | acb
 
     @classmethod
     def of(cls, g2: fmpq, g3: fmpq, delta: fmpq) -> "Weierstrass":
         """By exact invariants, of which Δ tells which roots there are."""
         if delta == 0:
             d = double_root(g2, g3)
-            return cls((d, d, -2 * d) if d >= 0 else (-2 * d, d, d))
+            return cls(d, (d, -2 * d)) if d >= 0 else cls(-2 * d, (d, d))
         sign, size, square = (-1 if g3 < 0 else 1), arb(abs(g3)), arb(g2) / 12
         apart = arb(abs(delta)).sqrt()
         part = apart / arb(27).sqrt()
@@ -71,35 +71,39 @@ class Weierstrass:
         # The two others differ by √Δ / (4 (3r² − g₂/4)), without loss where that is little.
         half = apart / (24 * (r * r - square))
         if delta < 0:
-            return cls((r, acb(-r / 2, half), acb(-r / 2, -half)), real=False)
-        others = -r / 2 + half, -r / 2 - half
-        return cls((r, *others) if sign > 0 else (*others, r))
+            return cls(r, acb(-r / 2, half))
+        above, below = -r / 2 + half, -r / 2 - half
+        return cls(r, (above, below)) if sign > 0 else cls(above, (below, r))
 
-    def values(self, t: Real) -> tuple[Real, Real]:
+    def values(self, t: Real) -> tuple[arb, arb]:
         """℘(t) and ℘'(t) for real t, where no two roots are the same."""
-        e1, e2, e3 = self.roots
-        if self.real:
+        e1 = self.first
+        if not isinstance(self.others, acb):
+            e2, e3 = self.others
             k = arb(e1 - e3).sqrt()
             sn, cn, dn = jacobi(k * t, (e2 - e3) / (e1 - e3))
             pole = k / sn
             return e3 + pole * pole, -2 * pole * pole * pole * cn * dn
-        size = abs(e1 - e2)
+        size = abs(e1 - self.others)
         k = size.sqrt()
         sn, cn, dn = jacobi(2 * k * t, fmpq(1, 2) - 3 * e1 / (4 * size))
         less = 1 - cn
         return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
 
-    def half_period(self) -> Real:
+    def half_period(self) -> arb:
         """Half of the real period, which is infinite where e₁ = e₂."""
-        e1, e2, e3 = self.roots
-        return carlson(arb(0), e1 - e2, e1 - e3)
+        return carlson(arb(0), *(self.first - e for e in self._others()))
 
-    def inverse(self, value: Real, side: int) -> Real:
+    def inverse(self, value: Real, side: int) -> arb:
         """The least t > 0 with ℘(t) = value ≥ e₁, where ℘'(t) has that sign; 0 where it is 0."""
         if side == 0:
             return self.half_period()
-        t = carlson(*(value - e for e in self.roots))
+        t = carlson(value - self.first, *(value - e for e in self._others()))
         return t if side < 0 else 2 * self.half_period() - t
+
+    def _others(self) -> tuple[Real, Real] | tuple[acb, acb]:
+        pair = self.others
+        return (pair, pair.conjugate()) if isinstance(pair, acb) else pair
 
 
 def double_root(g2: fmpq, g3: fmpq) -> fmpq:
@@ -107,14 +111,14 @@ def double_root(g2: fmpq, g3: fmpq) -> fmpq:
     return -3 * g3 / (2 * g2) if g2 else fmpq(0)
 
 
-def carlson(x: Real, y: Real, z: Real) -> Real:
+def carlson(x: Real, y: Real | acb, z: Real | acb) -> arb:
     """R_F of numbers ≥ 0, or of one and a conjugate pair; not finite where that is not certain."""
     if not x >= 0:
         return NOT_KNOWN
     return acb.elliptic_rf(*(v if isinstance(v, acb) else acb(v) for v in (x, y, z))).real
 
 
-def waves(square: Real, t: Real) -> tuple[Real, Real]:
+def waves(square: Real, t: Real) -> tuple[arb, arb]:
     """cosh κt and sinh(κt)/κ for real κ² of any sign; an exact 0 is known as such."""
     if square == 0:
         return arb(1), arb(t)

@@ -6,10 +6,8 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from verify.hamiltonians.elliptic import Real
-
 Values = Mapping[str, Fraction]  # a system's parameters
-State = tuple[Real, Real]  # p, q
+State = tuple[arb, arb]  # p, q
 
 
 @dataclass(frozen=True)
@@ -25,7 +23,7 @@ class Motion:
 
     state: Callable[[arb], State]
     method: str
-    blow_up: Callable[[int], Real | None] = lambda _: None
+    blow_up: Callable[[int], arb | None] = lambda _: None
     goes: Callable[[], str | None] = lambda: None
     rest: bool = False
 

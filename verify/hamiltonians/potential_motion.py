@@ -47,7 +47,7 @@ def motion(alpha: fmpq, potential: Sequence[fmpq], p: Fraction, q: Fraction) -> 
         y, slope = curve.at(t)
         return slope / alpha, start + y
 
-    def blow_up(sign: int) -> Real | None:
+    def blow_up(sign: int) -> arb | None:
         to = curve.destination(sign) if ends else 0
         return curve.time_to_infinity(sign, to) if to else None
 
@@ -93,7 +93,7 @@ class Curve:
         g2, g3 = self.invariants
         return g2**3 - 27 * g3**2
 
-    def at(self, t: arb) -> tuple[Real, Real]:
+    def at(self, t: arb) -> tuple[arb, arb]:
         """y and y' at time t."""
         if self.degree <= 2:
             return self.linear(t)
@@ -108,7 +108,7 @@ class Curve:
     def function(self) -> Weierstrass:
         return Weierstrass.of(*self.invariants, self.delta)
 
-    def linear(self, t: arb) -> tuple[Real, Real]:
+    def linear(self, t: arb) -> tuple[arb, arb]:
         """The solution of y'' = b₁/2 + b₂ y."""
         b0, b1, b2, *_ = self.b
         if b2 > 0 and b1**2 == 4 * b0 * b2:
@@ -126,7 +126,7 @@ class Curve:
         vanish = b1 * apart / 2 + b0 * b3 / 4, 2 * apart**2 - b0 * b4 / 2
         return bool(double > 0 and not any(vanish))
 
-    def heteroclinic(self, t: arb, double: fmpq) -> tuple[Real, Real]:
+    def heteroclinic(self, t: arb, double: fmpq) -> tuple[arb, arb]:
         """A/B divided by ε = ℘ − d, which becomes exponentially small; ℘'/ε = −2κ coth κt."""
         c, s = waves(3 * double, t)
         small, ratio = 1 / s**2, -2 * c / s
@@ -163,7 +163,7 @@ class Curve:
                 return 0 if turns_back or nearest == {True} else -towards
             bits *= 2
 
-    def time_to_infinity(self, sign: int, end: int) -> Real:
+    def time_to_infinity(self, sign: int, end: int) -> arb:
         """|t| at which y is infinite, forwards or backwards in time, at the end ±∞."""
         _, b1, b2, b3, b4 = self.b
         v, root = sign * self.v, end * arb(b4).sqrt()
@@ -179,7 +179,7 @@ class Curve:
 
 def biermann(
     v: Real, b: tuple[Real, Real, Real, Real, Real], g2: Real, function: tuple[Real, Real]
-) -> tuple[Real, Real]:
+) -> tuple[arb, arb]:
     """y and y' from the values of ℘ and ℘'; see the module's formula. ℘'' = 6℘² − g₂/2."""
     b0, b1, b2, b3, b4 = b
     w, slope = function

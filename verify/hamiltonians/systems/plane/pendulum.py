@@ -49,7 +49,7 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     return Motion(state, "closed form: Jacobi's elliptic functions", goes=lambda: _goes(p, q))
 
 
-def _added(s: Real, c: Real, d: Real, t: arb, m: Real) -> tuple[Real, Real, Real]:
+def _added(s: arb, c: arb, d: Real, t: arb, m: arb) -> tuple[arb, arb, arb]:
     sn, cn, dn = jacobi(t, m)
     n = 1 - (s * sn) ** 2
     return (
