@@ -4,6 +4,8 @@ sympy settles signs and identities of constants by evaluating them, which for si
 never ends. Ball arithmetic says at once that such a constant is out of reach.
 """
 
+import math
+
 import flint
 import sympy
 
@@ -11,17 +13,9 @@ from verify.arithmetic.flint_precision import working_precision
 
 MAX_BITS = 4000
 
-_FUNCTIONS = {
-    sympy.sin: "sin",
-    sympy.cos: "cos",
-    sympy.tan: "tan",
-    sympy.exp: "exp",
-    sympy.log: "log",
-    sympy.sinh: "sinh",
-    sympy.cosh: "cosh",
-    sympy.tanh: "tanh",
-    sympy.atan: "atan",
-}
+# What may be written of one argument, by the name that sympy and arb know it by.
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "atan")
+_NAMES = {getattr(sympy, name): name for name in FUNCTIONS}
 
 
 def within_reach(constant: sympy.Expr) -> bool:
@@ -47,12 +41,9 @@ def _ball(node: sympy.Expr) -> flint.arb | None:
     if node.is_Add:
         return sum(arguments, flint.arb(0))
     if node.is_Mul:
-        total = flint.arb(1)
-        for argument in arguments:
-            total *= argument
-        return total
+        return math.prod(arguments, start=flint.arb(1))
     if node.is_Pow:
         return arguments[0] ** arguments[1]
-    method = _FUNCTIONS.get(node.func)
+    method = _NAMES.get(node.func)
     found: flint.arb | None = getattr(arguments[0], method)() if method else None
     return found

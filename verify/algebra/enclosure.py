@@ -8,7 +8,7 @@ from itertools import product
 import flint
 
 from verify.algebra.differential_ring import DifferentialRing
-from verify.algebra.generator import Generator, Poly, terms_of
+from verify.algebra.generator import NAMED, Generator, Poly, terms_of
 from verify.arithmetic.flint_precision import working_precision
 
 Ball = flint.arb
@@ -59,22 +59,7 @@ def enclose_all(
     ring: DifferentialRing, elements: Sequence[Poly], box: Mapping[str, Ball]
 ) -> list[Ball] | None:
     """A ball for each of the elements, as `enclose_over`; None where one may be undefined."""
-    values: dict[int, Ball] = {}
-    powers: dict[tuple[int, int], Ball] = {}
-    for g in ring.generators_in(*elements):
-        if g.kind == "variable":
-            values[g.index] = box[g.name]
-        elif g.kind == "pi":
-            values[g.index] = flint.arb.pi()
-        elif g.kind == "solved":
-            return None  # where the equations have a solution is not looked into
-        elif g.kind == "stage":
-            values[g.index] = _at(g.inner, values, powers)
-        else:
-            values[g.index] = BALLS[g.kind](_at(g.inner, values, powers), g.degree)
-        if not values[g.index].is_finite():
-            return None
-    return [_at(x, values, powers) for x in elements]
+    return Enclosures(ring, elements).over(box)
 
 
 def power_of(x: Ball, n: int) -> Ball:
@@ -85,6 +70,12 @@ def power_of(x: Ball, n: int) -> Ball:
     return half * x if n % 2 else half
 
 
+def _by_method(name: str) -> Callable[[Ball, int], Ball]:
+    """The function that arb has as a method of that name."""
+    method: Callable[[Ball], Ball] = getattr(flint.arb, name)
+    return lambda x, _: method(x)
+
+
 def square(x: Ball) -> Ball:
     """x² of a ball: as narrow as its ends are, which x · x is not."""
     low, high = x.abs_lower(), x.abs_upper()
@@ -92,32 +83,10 @@ def square(x: Ball) -> Ball:
 
 
 BALLS: dict[str, Callable[[Ball, int], Ball]] = {
-    "sin": lambda x, _: x.sin(),
-    "cos": lambda x, _: x.cos(),
-    "exp": lambda x, _: x.exp(),
-    "sinh": lambda x, _: x.sinh(),
-    "cosh": lambda x, _: x.cosh(),
-    "log": lambda x, _: x.log(),
-    "atan": lambda x, _: x.atan(),
+    **{name: _by_method(name) for name in NAMED},
     "root": lambda x, n: x.root(n),
     "inverse": lambda x, _: 1 / x,
 }
-
-
-def _at(x: Poly, values: Mapping[int, Ball], powers: dict[tuple[int, int], Ball]) -> Ball:
-    """`powers`: those of the values that were made for other elements, too."""
-    total = flint.arb(0)
-    present = [index for index, degree in enumerate(x.degrees()) if degree > 0]
-    for monomial, coefficient in terms_of(x):
-        term = flint.arb(coefficient)
-        for index in present:
-            if power := int(monomial[index]):
-                known = powers.get((index, power))
-                if known is None:
-                    known = powers[index, power] = power_of(values[index], power)
-                term *= known
-        total += term
-    return total
 
 
 def points(names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
@@ -160,7 +129,7 @@ Terms = list[tuple[flint.fmpq, list[tuple[int, int]]]]  # coefficients, generato
 class Enclosures:
     """Some elements of a ring that are enclosed again and again, over other boxes: read once.
 
-    The same operations in the same order as in `enclose_over`; equal elements are evaluated once.
+    Equal elements are evaluated once.
     """
 
     def __init__(self, ring: DifferentialRing, elements: Sequence[Poly]) -> None:
@@ -220,7 +189,7 @@ class _Point:
 
 def _value(g: Generator, argument: Terms, at: _Point, box: Mapping[str, Ball]) -> Ball | None:
     if g.kind == "variable":
-        return box[str(g.expression)]
+        return box[g.name]
     if g.kind == "pi":
         return flint.arb.pi()
     if g.kind == "solved":

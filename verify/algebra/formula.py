@@ -16,6 +16,7 @@ from functools import lru_cache
 import sympy
 from sympy.printing.str import StrPrinter
 
+from verify.algebra.constant_size import FUNCTIONS as NAMES
 from verify.algebra.constant_size import within_reach
 from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
 from verify.arithmetic.exact import rational
@@ -27,16 +28,7 @@ MAX_EXPONENT = 64
 MAX_NUMBER_BITS = 4000
 
 FUNCTIONS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
-    "sin": sympy.sin,
-    "cos": sympy.cos,
-    "tan": sympy.tan,
-    "exp": sympy.exp,
-    "log": sympy.log,
-    "sqrt": sympy.sqrt,
-    "sinh": sympy.sinh,
-    "cosh": sympy.cosh,
-    "tanh": sympy.tanh,
-    "atan": sympy.atan,
+    name: getattr(sympy, name) for name in (*NAMES, "sqrt")
 }
 NOT_SMOOTH = frozenset(
     {"abs", "Abs", "fabs", "sign", "sgn", "floor", "ceil", "round", "trunc", "max", "min"}

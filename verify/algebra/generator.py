@@ -7,6 +7,8 @@ import flint
 import sympy
 
 Poly = flint.fmpq_mpoly
+# Kinds that are functions of one argument, by the name that sympy and arb know them by.
+NAMED = ("sin", "cos", "exp", "sinh", "cosh", "log", "atan")
 
 
 @dataclass(frozen=True)
@@ -67,14 +69,12 @@ def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:
     return _FUNCTIONS[g.kind](argument, g.degree)
 
 
+def _by_name(name: str) -> Callable[[sympy.Expr, int], sympy.Expr]:
+    return lambda x, _: getattr(sympy, name)(x)
+
+
 _FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
-    "sin": lambda x, _: sympy.sin(x),
-    "cos": lambda x, _: sympy.cos(x),
-    "exp": lambda x, _: sympy.exp(x),
-    "sinh": lambda x, _: sympy.sinh(x),
-    "cosh": lambda x, _: sympy.cosh(x),
-    "log": lambda x, _: sympy.log(x),
-    "atan": lambda x, _: sympy.atan(x),
+    **{name: _by_name(name) for name in NAMED},
     "root": lambda x, degree: x ** sympy.Rational(1, degree),
     "inverse": lambda x, _: 1 / x,
     "stage": lambda x, _: x,
