@@ -119,11 +119,7 @@ class _Builder:
             even, odd = ring.one, ring.zero
             for k, value in zip(row, values, strict=True):
                 c, s = value(k)
-                sign = -1 if trigonometric else 1
-                even, odd = (
-                    ring.reduce(even * c + sign * odd * s),
-                    ring.reduce(odd * c + even * s),
-                )
+                even, odd = self.sum_of_arguments((even, odd), (c, s), -1 if trigonometric else 1)
             self.known[function] = self.select(function, even, odd)
 
     def select(self, function: sympy.Expr, even: Poly, odd: Poly) -> Poly:
@@ -137,15 +133,7 @@ class _Builder:
 
     def circle(self, b: Poly, _: list[sympy.Expr]) -> Callable[[int], tuple[Poly, Poly]]:
         """cos b and sin b; returns k ↦ (cos kb, sin kb)."""
-        ring, expression = self.ring, self.ring.expression(b)
-        c, s = ring.find("cos", b), ring.find("sin", b)
-        if c is None or s is None:
-            c = ring.add("cos", sympy.cos(expression), b)
-            s = ring.add("sin", sympy.sin(expression), b)
-            ring.relate(s, 2, s**2 + c**2 - 1)
-            ring.set_gradient(c, -s, b)
-            ring.set_gradient(s, c, b)
-        return partial(self.multiple, c, s, sign=-1)
+        return partial(self.multiple, *self.pair(b, "cos", "sin", sign=-1), sign=-1)
 
     def exponential(
         self, b: Poly, functions: list[sympy.Expr]
@@ -154,28 +142,41 @@ class _Builder:
 
         Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
         """
-        ring, expression = self.ring, self.ring.expression(b)
-        c, s, e = (ring.find(kind, b) for kind in ("cosh", "sinh", "exp"))
-        if any(isinstance(f, _HYPERBOLIC) for f in functions) and c is None:
-            c = ring.add("cosh", sympy.cosh(expression), b)
-            s = ring.add("sinh", sympy.sinh(expression), b)
-            ring.relate(s, 2, s**2 - c**2 + 1)
-            ring.set_gradient(c, s, b)
-            ring.set_gradient(s, c, b)
-        if c is not None and s is not None:
-            return partial(self.multiple, c, s, sign=1)
+        ring = self.ring
+        if ring.find("cosh", b) is not None or any(isinstance(f, _HYPERBOLIC) for f in functions):
+            return partial(self.multiple, *self.pair(b, "cosh", "sinh", sign=1), sign=1)
+        e = ring.find("exp", b)
         if e is None:
-            e = ring.add("exp", sympy.exp(expression), b)
+            e = ring.add("exp", sympy.exp(ring.expression(b)), b)
             ring.set_gradient(e, e, b)
         return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
 
-    def multiple(self, c: Poly, s: Poly, k: int, *, sign: int) -> tuple[Poly, Poly]:
-        """(c, s) at k times the argument by the addition theorem; `sign` is that of s² in it."""
+    def pair(self, b: Poly, even: str, odd: str, *, sign: int) -> tuple[Poly, Poly]:
+        """c and s of one argument, with c² − sign·s² = 1, c' = sign·s and s' = c."""
         ring = self.ring
-        even, odd = ring.one, ring.zero
+        c, s = ring.find(even, b), ring.find(odd, b)
+        if c is None or s is None:
+            expression = ring.expression(b)
+            c = ring.add(even, getattr(sympy, even)(expression), b)
+            s = ring.add(odd, getattr(sympy, odd)(expression), b)
+            ring.relate(s, 2, s**2 - sign * c**2 + sign)
+            ring.set_gradient(c, sign * s, b)
+            ring.set_gradient(s, c, b)
+        return c, s
+
+    def multiple(self, c: Poly, s: Poly, k: int, *, sign: int) -> tuple[Poly, Poly]:
+        """(c, s) at k times the argument; `sign` is that of s² in the addition theorem."""
+        even, odd = self.ring.one, self.ring.zero
         for _ in range(abs(k)):
-            even, odd = ring.reduce(even * c + sign * odd * s), ring.reduce(odd * c + even * s)
+            even, odd = self.sum_of_arguments((even, odd), (c, s), sign)
         return even, odd if k >= 0 else -odd
+
+    def sum_of_arguments(
+        self, one: tuple[Poly, Poly], two: tuple[Poly, Poly], sign: int
+    ) -> tuple[Poly, Poly]:
+        """(c, s) at the sum of two arguments, by the addition theorem."""
+        (c, s), (d, t), reduce = one, two, self.ring.reduce
+        return reduce(c * d + sign * s * t), reduce(s * d + c * t)
 
     def other(self, function: sympy.Expr) -> None:
         ring, u = self.ring, self.element(function.args[0])
@@ -195,11 +196,8 @@ class _Builder:
         """The element of the expression; InputError where it is not defined or too large."""
         if node in self.known:
             return self.known[node]
-        result = self.build(node)
-        if len(result) > self.most_terms:
-            raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
-        self.known[node] = result
-        return result
+        self.known[node] = self.limited(self.build(node), node)
+        return self.known[node]
 
     def build(self, node: sympy.Expr) -> Poly:
         ring = self.ring
@@ -214,7 +212,7 @@ class _Builder:
         if node.is_Mul:
             total = ring.one
             for argument in node.args:
-                total = self.limited(total, self.element(argument), node)
+                total = self.limited(ring.multiply(total, self.element(argument)), node)
             return total
         if node.is_Pow and node.exp.is_Rational:
             return self.power(node)
@@ -267,14 +265,13 @@ class _Builder:
     def repeated(self, base: Poly, n: int, node: sympy.Expr) -> Poly:
         total = self.ring.one
         for _ in range(n):
-            total = self.limited(total, base, node)
+            total = self.limited(self.ring.multiply(total, base), node)
         return total
 
-    def limited(self, x: Poly, y: Poly, node: sympy.Expr) -> Poly:
-        result = self.ring.multiply(x, y)
-        if len(result) > self.most_terms:
+    def limited(self, x: Poly, node: sympy.Expr) -> Poly:
+        if len(x) > self.most_terms:
             raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
-        return result
+        return x
 
     def inverse(self, u: Poly, node: sympy.Expr) -> Poly:
         try:

@@ -1,5 +1,6 @@
 """A basis for the arguments of sines or exponentials, over which they are expanded."""
 
+import math
 from collections.abc import Sequence
 
 import flint
@@ -20,12 +21,10 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
     """
     terms = [dict(terms_of(a)) for a in arguments]
     monomials = sorted({m for t in terms for m in t}, reverse=True)
-    common = 1
-    for t in terms:
-        for value in t.values():
-            common = int(flint.fmpz(common).lcm(value.denom()))
+    common = math.lcm(*(int(value.q) for t in terms for value in t.values()))
     rows = [[int(t.get(m, 0) * common) for m in monomials] for t in terms]
-    basis = [r for r in _rows(flint.fmpz_mat(rows).hnf()) if any(r)]
+    hermite = flint.fmpz_mat(rows).hnf().tolist()
+    basis = [[int(v) for v in row] for row in hermite if any(row)]
     multiples = [_coordinates(row, basis) for row in rows]
     if any(abs(k) > MAX_MULTIPLE for row in multiples for k in row):
         distinct = [a for k, a in enumerate(arguments) if a not in arguments[:k]]
@@ -41,10 +40,6 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
         for vector in basis
     ]
     return elements, multiples
-
-
-def _rows(matrix: flint.fmpz_mat) -> list[list[int]]:
-    return [[int(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())]
 
 
 def _coordinates(row: list[int], basis: list[list[int]]) -> list[int]:

@@ -15,11 +15,10 @@ def combination(columns: Sequence[Poly], wanted: Poly) -> tuple[dict[int, flint.
 
     None for the coefficients where there are none.
     """
-    terms, rows = _by_monomial((*columns, wanted))
-    matrix = flint.fmpq_mat(len(rows), len(terms))
-    for at, column in enumerate(terms):
-        for monomial, coefficient in column.items():
-            matrix[rows[monomial], at] = coefficient
+    rows, entries = _entries((*columns, wanted))
+    matrix = flint.fmpq_mat(rows, len(columns) + 1)
+    for at, coefficient in entries:
+        matrix[at] = coefficient
     reduced, rank = matrix.rref()
     last = len(columns)
     pivots = [next(c for c in range(last + 1) if reduced[r, c] != 0) for r in range(rank)]
@@ -34,21 +33,23 @@ def may_combine(columns: Sequence[Poly], wanted: Poly) -> bool:
     Where it is not, it is none over the rationals either, unless the prime divides a denominator of
     every such combination: good enough to give up a search, not to refute.
     """
-    terms, rows = _by_monomial((*columns, wanted))
-    matrix = flint.nmod_mat(len(rows), len(terms), _PRIME)
-    for at, column in enumerate(terms):
-        for monomial, coefficient in column.items():
-            if coefficient.q % _PRIME == 0:
-                return True
-            matrix[rows[monomial], at] = int(coefficient.p * pow(int(coefficient.q), -1, _PRIME))
+    rows, entries = _entries((*columns, wanted))
+    matrix = flint.nmod_mat(rows, len(columns) + 1, _PRIME)
+    for at, coefficient in entries:
+        if coefficient.q % _PRIME == 0:
+            return True
+        matrix[at] = int(coefficient.p * pow(int(coefficient.q), -1, _PRIME))
     reduced, rank = matrix.rref()
-    last = len(columns)
-    return rank == 0 or any(int(reduced[rank - 1, c]) for c in range(last))
+    return rank == 0 or any(int(reduced[rank - 1, c]) for c in range(len(columns)))
 
 
-def _by_monomial(
-    elements: Sequence[Poly],
-) -> tuple[list[dict[tuple[int, ...], flint.fmpq]], dict[tuple[int, ...], int]]:
-    """Each one's coefficients by their monomials, and a row for each monomial that occurs."""
-    terms = [dict(terms_of(x)) for x in elements]
-    return terms, {m: k for k, m in enumerate({m for each in terms for m in each})}
+def _entries(elements: Sequence[Poly]) -> tuple[int, list[tuple[tuple[int, int], flint.fmpq]]]:
+    """How many monomials occur, and ((row, column), coefficient) of a matrix: a row for each
+    monomial, a column for each element."""
+    rows: dict[tuple[int, ...], int] = {}
+    entries = []
+    for column, x in enumerate(elements):
+        for monomial, coefficient in terms_of(x):
+            row = rows.setdefault(monomial, len(rows))
+            entries.append(((row, column), coefficient))
+    return len(rows), entries

@@ -50,6 +50,17 @@ class Series:
                         total[i + j] += x * y
         return Series(ring, tuple(map(ring.reduce, total)))
 
+    def over(self, divisor: "Series", inverse: Poly) -> "Series":
+        """Its quotient by a series whose first coefficient has this inverse."""
+        ring = self.ring
+        found: list[Poly] = []
+        for k, total in enumerate(self.coefficients):
+            for j in range(1, k + 1):
+                if not divisor.coefficients[j].is_zero():
+                    total = total - divisor.coefficients[j] * found[k - j]
+            found.append(ring.multiply(ring.reduce(total), inverse))
+        return Series(ring, tuple(found))
+
     @property
     def vanishes(self) -> bool:
         """Whether all coefficients that are kept are 0."""

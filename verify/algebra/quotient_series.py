@@ -5,16 +5,15 @@ series r₀ + r₁ h + … of 1/D is r₀ = 1/d₀, r_n = −(d₁ r_{n−1} + �
 quotient is made, which would have more terms with each order.
 """
 
+from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
-
-Series = list[Poly]
 
 
 class QuotientSeries:
     """The first `length` coefficients at h = 0 of a ring's elements."""
 
     def __init__(self, ring: Ring, length: int) -> None:
-        self.ring, self.length = ring, length
+        self.ring, self.most = ring, length - 1
         self._by_index = {g.index: g for g in ring.generators}
         self._known: dict[int, Series | None] = {}
 
@@ -22,20 +21,23 @@ class QuotientSeries:
         """Those of x; None where h is in another function, or a divisor is no number at h = 0."""
         inner = self._with_h(x)
         if inner is None:
-            return self._polynomial(x)
+            powers = self.ring.powers(x, "h")
+            return self._series([powers.get(n, self.ring.zero) for n in range(self.most + 1)])
         own = self._inverse(inner)
         if own is None:
             return None
-        total, power = [self.ring.zero] * self.length, 0
-        factor = [self.ring.one, *total[1:]]
+        total, factor, power = self._series([]), self._series([self.ring.one]), 0
         for n, coefficient in sorted(self.ring.split(x, inner).items()):
             while power < n:
-                factor, power = self._product(factor, own), power + 1
+                factor, power = factor * own, power + 1
             part = self.of(coefficient)
             if part is None:
                 return None
-            total = [a + b for a, b in zip(total, self._product(part, factor), strict=True)]
+            total += part * factor
         return total
+
+    def _series(self, coefficients: list[Poly]) -> Series:
+        return Series.of(self.ring, coefficients, self.most)
 
     def _with_h(self, x: Poly) -> int | None:
         """The newest generator in x that has h in its argument."""
@@ -47,28 +49,14 @@ class QuotientSeries:
 
     def _inverse(self, index: int) -> Series | None:
         if index not in self._known:
-            self._known[index] = self._of_inverse(index)
+            g = self._by_index[index]
+            divisor = self.of(g.inner) if g.kind == "inverse" else None
+            self._known[index] = None if divisor is None else self._one_over(divisor)
         return self._known[index]
 
-    def _of_inverse(self, index: int) -> Series | None:
-        g = self._by_index[index]
-        divisor = self.of(g.inner) if g.kind == "inverse" else None
-        if divisor is None or divisor[0].is_zero() or not divisor[0].is_constant():
+    def _one_over(self, divisor: Series) -> Series | None:
+        begin = divisor.coefficients[0]
+        if begin.is_zero() or not begin.is_constant():
             return None
-        first = 1 / divisor[0].leading_coefficient()
-        found = [self.ring.one * first]
-        for n in range(1, self.length):
-            terms = (divisor[k] * found[n - k] for k in range(1, n + 1))
-            found.append(self.ring.reduce(sum(terms, self.ring.zero) * -first))
-        return found
-
-    def _polynomial(self, x: Poly) -> Series:
-        powers = self.ring.powers(x, "h")
-        return [powers.get(n, self.ring.zero) for n in range(self.length)]
-
-    def _product(self, x: Series, y: Series) -> Series:
-        zero = self.ring.zero
-        return [
-            self.ring.reduce(sum((x[k] * y[n - k] for k in range(n + 1)), zero))
-            for n in range(self.length)
-        ]
+        first = 1 / begin.leading_coefficient()
+        return self._series([self.ring.one]).over(divisor, self.ring.one * first)

@@ -9,6 +9,7 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import checked
+from verify.algebra.power_series import Series
 from verify.algebra.quotient_series import QuotientSeries
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError
@@ -75,7 +76,7 @@ class Expansion:
         if self.polynomial:
             return self.ring, self._powers.get(n, self.ring.zero)
         if self._quotient is not None:
-            return self.ring, self._quotient[n]
+            return self.ring, self._quotient.coefficients[n]
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
         value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
@@ -87,7 +88,7 @@ class Expansion:
         return ring, x
 
     @cached_property
-    def _quotient(self) -> list[Poly] | None:
+    def _quotient(self) -> Series | None:
         """All coefficients that are looked at, where x is a quotient of polynomials in h."""
         return QuotientSeries(self.ring, self.length + 1).of(self._derivatives[0])
 

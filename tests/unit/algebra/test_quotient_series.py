@@ -17,7 +17,7 @@ VARIABLES = ("p", "q", "h")
 def series(formula: str, length: int) -> list[sympy.Expr] | None:
     ring, (x,) = embed([parse(formula, VARIABLES)], VARIABLES)
     found = QuotientSeries(ring, length).of(x)
-    return None if found is None else [ring.expression(c) for c in found]
+    return None if found is None else [ring.expression(c) for c in found.coefficients]
 
 
 @pytest.mark.parametrize(

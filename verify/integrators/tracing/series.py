@@ -15,7 +15,8 @@ from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
-from verify.integrators.tracing.trace import Node, expressions, in_order
+from verify.integrators.tracing.number import OPERATORS
+from verify.integrators.tracing.trace import Node, expressions, in_order, through
 
 _PAIRED = {"sin": ("sin", "cos", -1), "cos": ("sin", "cos", -1),
            "sinh": ("sinh", "cosh", 1), "cosh": ("sinh", "cosh", 1)}  # fmt: skip
@@ -50,9 +51,7 @@ class TracedSeries:
 
     def _up_to(self, most: int) -> tuple[Series, Series]:
         maker = _Maker(self.field.ring, most, self.known)
-        made: dict[int, Series] = {}
-        for node in self.nodes:
-            made[node.number] = maker.series(node, [made[x.number] for x in node.inputs])
+        made = through(self.nodes, maker.series)
         p, q = (made[root.number] for root in self.roots)
         return p, q
 
@@ -100,18 +99,15 @@ class _Maker:
                 return self.constant(ring.variable(node.value))
             case "pi":
                 return self.constant(self.known[node.number, "value"])
-            case "add":
-                return inputs[0] + inputs[1]
-            case "subtract":
-                return inputs[0] - inputs[1]
-            case "multiply":
-                return inputs[0] * inputs[1]
+            case "add" | "subtract" | "multiply" as name:
+                combined: Series = OPERATORS[name](*inputs)
+                return combined
         return self._function(node, inputs)
 
     def _function(self, node: Node, inputs: Sequence[Series]) -> Series:
         x, name = inputs[0], node.operation
         if name == "divide":
-            return self._quotient(x, inputs[1], self.known[node.number, "inverse"])
+            return x.over(inputs[1], self.known[node.number, "inverse"])
         if name in _PAIRED:
             first, second, sign = _PAIRED[name]
             pair = self._pair(x, self.known[node.number, first], self.known[node.number, second],
@@ -127,10 +123,10 @@ class _Maker:
             case "sqrt":
                 return self._power(x, Fraction(1, 2), value, inverse)
             case "log":  # y' = x'/x
-                return self._integral(value, self._quotient(_slope(x), x, inverse))
+                return self._integral(value, _slope(x).over(x, inverse))
             case "atan":  # y' = x'/(1 + x²)
                 below = self.constant(self.ring.one) + x * x
-                return self._integral(value, self._quotient(_slope(x), below, inverse))
+                return self._integral(value, _slope(x).over(below, inverse))
             case "exp":
                 return self._solved(value, x, lambda y: y)
             case "tan":
@@ -147,17 +143,6 @@ class _Maker:
             n >>= 1
             base = base * base if n else base
         return result or self.constant(self.ring.one)
-
-    def _quotient(self, x: Series, y: Series, inverse: Poly) -> Series:
-        ring = self.ring
-        found: list[Poly] = []
-        for k in range(self.most + 1):
-            total = x.coefficients[k] if k <= x.most else ring.zero
-            for j in range(1, k + 1):
-                if not y.coefficients[j].is_zero():
-                    total = total - y.coefficients[j] * found[k - j]
-            found.append(ring.multiply(ring.reduce(total), inverse))
-        return Series.of(ring, found, self.most)
 
     def _power(self, x: Series, exponent: Fraction, value: Poly, inverse: Poly) -> Series:
         """x y' = r x' y for y = x^r."""
