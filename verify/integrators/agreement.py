@@ -8,7 +8,7 @@ from verify.integrators.step import Step
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
-from verify.integrators.tracing.trace import Node, in_order
+from verify.integrators.tracing.trace import Node, in_order, through
 from verify.prose import read_prose
 
 Lifted = Callable[[Dual, Dual, Dual], Sequence[Dual]]  # (p, q, h) ↦ p', q'
@@ -18,24 +18,27 @@ _ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may w
 
 
 def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Lifted:
+    nodes = in_order(p_next, q_next)
+
     def at(p: Dual, q: Dual, h: Dual) -> tuple[Dual, Dual]:
-        made: dict[int, Dual] = {}
         start = {"p": p, "q": q, "h": h}
-        for node in in_order(p_next, q_next):
-            x = [made[one.number] for one in node.inputs]
+
+        def number(node: Node, x: list[Dual]) -> Dual:
             match node.operation:
                 case "symbol":
-                    made[node.number] = start[node.value]
+                    return start[node.value]
                 case "number":
-                    made[node.number] = kind.rational(node.value)
+                    return kind.rational(node.value)
                 case "pi":
-                    made[node.number] = kind.pi()
+                    return kind.pi()
                 case "power":
-                    made[node.number] = x[0].raised(node.value)
+                    return x[0].raised(node.value)
                 case "add" | "subtract" | "multiply" | "divide" as name:
-                    made[node.number] = x[0].combined(name, x[1])
+                    return x[0].combined(name, x[1])
                 case name:
-                    made[node.number] = x[0].applied(name)
+                    return x[0].applied(name)
+
+        made = through(nodes, number)
         return made[p_next.number], made[q_next.number]
 
     return at

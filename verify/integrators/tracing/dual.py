@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 import gmpy2
 
-from verify.integrators.tracing.number import TracedNumber, UntraceableError
+from verify.integrators.tracing.number import Kind, TracedNumber, UntraceableError
 
 Number: TypeAlias = gmpy2.mpfr
 BITS = 200
@@ -29,13 +29,11 @@ _SLOPES: dict[str, Callable[[Number, Number], Number]] = {  # of each function y
 }
 
 
-class Duals:
-    """Makes dual numbers of `BITS` bits; `Kind` of them. Use it inside `running`."""
+class Duals(Kind):
+    """Makes dual numbers of `BITS` bits. Use it inside `running`."""
 
     def __init__(self) -> None:
-        self.readings: dict[float, Fraction] = {}
-        self.rounded: set[float] = set()
-        self.refused: list[str] = []
+        super().__init__()
         self.compared = False  # whether values were: there may be branches, or a tolerance
 
     @contextmanager

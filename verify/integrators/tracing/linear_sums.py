@@ -11,7 +11,7 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.tracing.trace import Node, expressions
+from verify.integrators.tracing.trace import Node, expressions, through
 
 ONE = -1
 Monomial = tuple[tuple[int, int], ...]
@@ -64,12 +64,10 @@ class Scalars:
             own = node.operation == "symbol" and node.value != "h"
             if own or any(x.number in self.moving for x in node.inputs):
                 self.moving.add(node.number)
-        self._written = expressions([n for n in nodes if n.number not in self.moving], {})
-        self._scalar: dict[int, Scalar] = {}
+        still = [node for node in nodes if node.number not in self.moving]
+        self._written = expressions(still, {})
+        self._scalar = through(still, self._as_scalar)
         self._linear: dict[int, Linear] = {}
-        for node in nodes:
-            if node.number not in self.moving:
-                self._scalar[node.number] = self._as_scalar(node)
         for node in nodes:
             self._linear[node.number] = self._as_linear(node)
 
@@ -110,8 +108,7 @@ class Scalars:
         ]
         return sympy.Add(*terms)
 
-    def _as_scalar(self, node: Node) -> Scalar:
-        x = [self._scalar[one.number] for one in node.inputs]
+    def _as_scalar(self, node: Node, x: Sequence[Scalar]) -> Scalar:
         found: Scalar | None = None
         match node.operation:
             case "number":

@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     import numpy
@@ -67,16 +67,24 @@ def reading(value: float) -> Fraction | None:
     return Fraction(shown) if len(shown.as_tuple().digits) <= _DECIMALS else None
 
 
-class Kind(Protocol):
-    """What makes numbers of one kind, and what it took floats for."""
+class Kind(ABC):
+    """What makes numbers of one kind, and what it took floats for.
 
+    `readings`: floats that were read as another number than their value; `rounded`: those that were
+    taken by their binary value, and are no integers; `refused`: what was asked of its numbers and
+    cannot be had, as code may catch the error.
+    """
+
+    def __init__(self) -> None:
+        self.readings: dict[float, Fraction] = {}
+        self.rounded: set[float] = set()
+        self.refused: list[str] = []
+
+    @abstractmethod
     def rational(self, value: Fraction) -> "TracedNumber": ...
 
+    @abstractmethod
     def pi(self) -> "TracedNumber": ...
-
-    readings: dict[float, Fraction]  # floats that were read as another number than their value
-    rounded: set[float]  # floats that were taken by their binary value, and are no integers
-    refused: list[str]  # what was asked of its numbers and cannot be had: code may catch the error
 
 
 def constant(kind: Kind, value: Any) -> "TracedNumber | None":
@@ -101,6 +109,25 @@ def constant(kind: Kind, value: Any) -> "TracedNumber | None":
     if read != exact:
         kind.readings[value] = read
     return kind.rational(read)
+
+
+def _operator(
+    name: str, *, swapped: bool = False
+) -> Callable[["TracedNumber", object], "TracedNumber"]:
+    """The method of `TracedNumber` that is an operator, or, `swapped`, its other side's."""
+
+    def combined(self: "TracedNumber", other: object) -> "TracedNumber":
+        lifted = constant(self.kind, other)
+        if lifted is None:
+            unknown: TracedNumber = NotImplemented  # Python then asks the other one
+            return unknown
+        return lifted.combined(name, self) if swapped else self.combined(name, lifted)
+
+    return combined
+
+
+def _comparison(holds: Callable[[int, int], bool]) -> Callable[["TracedNumber", object], bool]:
+    return lambda self, other: holds(self._order(other), 0)
 
 
 class TracedNumber(ABC):
@@ -139,39 +166,13 @@ class TracedNumber(ABC):
 
     # -- arithmetic ---------------------------------------------------------------------------
 
-    def _with(self, name: str, other: object, swapped: bool = False) -> "TracedNumber":
-        lifted = constant(self.kind, other)
-        if lifted is None:
-            unknown: TracedNumber = NotImplemented  # Python then asks the other one
-            return unknown
-        return lifted.combined(name, self) if swapped else self.combined(name, lifted)
-
-    def __add__(self, other: object) -> "TracedNumber":
-        return self._with("add", other)
-
-    def __radd__(self, other: object) -> "TracedNumber":
-        return self._with("add", other, True)
-
-    def __sub__(self, other: object) -> "TracedNumber":
-        return self._with("subtract", other)
-
-    def __rsub__(self, other: object) -> "TracedNumber":
-        return self._with("subtract", other, True)
-
-    def __mul__(self, other: object) -> "TracedNumber":
-        return self._with("multiply", other)
-
-    def __rmul__(self, other: object) -> "TracedNumber":
-        return self._with("multiply", other, True)
-
-    def __truediv__(self, other: object) -> "TracedNumber":
-        return self._with("divide", other)
-
-    def __rtruediv__(self, other: object) -> "TracedNumber":
-        return self._with("divide", other, True)
+    __add__, __radd__ = _operator("add"), _operator("add", swapped=True)
+    __sub__, __rsub__ = _operator("subtract"), _operator("subtract", swapped=True)
+    __mul__, __rmul__ = _operator("multiply"), _operator("multiply", swapped=True)
+    __truediv__, __rtruediv__ = _operator("divide"), _operator("divide", swapped=True)
 
     def __neg__(self) -> "TracedNumber":
-        return self._with("multiply", -1)
+        return self * -1
 
     def __pos__(self) -> "TracedNumber":
         return self
@@ -207,17 +208,8 @@ class TracedNumber(ABC):
             return (mine > others) - (mine < others)
         return self.compared(lifted)
 
-    def __lt__(self, other: object) -> bool:
-        return self._order(other) < 0
-
-    def __le__(self, other: object) -> bool:
-        return self._order(other) <= 0
-
-    def __gt__(self, other: object) -> bool:
-        return self._order(other) > 0
-
-    def __ge__(self, other: object) -> bool:
-        return self._order(other) >= 0
+    __lt__, __le__ = _comparison(operator.lt), _comparison(operator.le)
+    __gt__, __ge__ = _comparison(operator.gt), _comparison(operator.ge)
 
     def __eq__(self, other: object) -> bool:
         return other is not None and self._order(other) == 0

@@ -3,19 +3,20 @@
 `Tape` makes the symbols p, q, h and holds the nodes; numbers are folded as they come, exactly.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 import sympy
 
 from verify.algebra.formula import FUNCTIONS, MAX_EXPONENT, symbol
-from verify.integrators.tracing.number import OPERATORS, TracedNumber, UntraceableError
+from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
 
 MOST_NODES = 20_000
 _MOST_BITS = 20_000  # of a folded number
 _SYMBOLS = "symbol"
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,13 +32,11 @@ class Node:
     number: int
 
 
-class Tape:
-    """Makes nodes; `Kind` of the numbers that record."""
+class Tape(Kind):
+    """Makes nodes, and the numbers that record."""
 
     def __init__(self) -> None:
-        self.readings: dict[float, Fraction] = {}
-        self.rounded: set[float] = set()
-        self.refused: list[str] = []
+        super().__init__()
         self.positive = False  # whether it was asked for the sign of h
         self._nodes: dict[tuple[object, ...], Node] = {}
 
@@ -134,19 +133,28 @@ def in_order(*roots: Node) -> list[Node]:
     return [seen[number] for number in sorted(seen)]
 
 
+def through(
+    nodes: Iterable[Node],
+    made_of: Callable[[Node, list[Any]], Made],
+    known: Mapping[int, Made] | None = None,
+) -> dict[int, Made]:
+    """What is made of each node, from what was made of its inputs, by the nodes' numbers.
+
+    `known`: of other nodes, of which these are made.
+    """
+    made = dict(known or {})
+    for node in nodes:
+        made[node.number] = made_of(node, [made[x.number] for x in node.inputs])
+    return made
+
+
 def expressions(
-    nodes: Sequence[Node],
+    nodes: Iterable[Node],
     put: Mapping[str, sympy.Expr],
     known: Mapping[int, sympy.Expr] | None = None,
 ) -> dict[int, sympy.Expr]:
-    """Each node as an expression, by its number, with symbols replaced by what is put for them.
-
-    `known`: expressions of other nodes, of which these are made.
-    """
-    made: dict[int, sympy.Expr] = dict(known or {})
-    for node in nodes:
-        made[node.number] = _expression(node, [made[x.number] for x in node.inputs], put)
-    return made
+    """Each node as an expression, with symbols replaced by what is put for them; see `through`."""
+    return through(nodes, lambda node, inputs: _expression(node, inputs, put), known)
 
 
 def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) -> sympy.Expr:
@@ -165,9 +173,6 @@ def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) ->
             return FUNCTIONS[name](inputs[0])
 
 
-def sizes(nodes: list[Node]) -> dict[int, int]:
-    """How many operations each node is, by its number, where nothing is written once."""
-    made: dict[int, int] = {}
-    for node in nodes:
-        made[node.number] = 1 + sum(made[x.number] for x in node.inputs)
-    return made
+def sizes(nodes: Iterable[Node]) -> dict[int, int]:
+    """How many operations each node is, where nothing is written once; see `through`."""
+    return through(nodes, lambda _, inputs: 1 + sum(inputs))
