@@ -183,12 +183,20 @@ def _missed(scheme: Scheme, agreed: int) -> Prose:
     )
 
 
+def telescoping_of(jets: Jets, every_h: BySeries, leading: Poly) -> Telescoping:
+    """Whether the leading coefficient is X·G; of `lieη` by the formula where there is one."""
+    if isinstance(every_h, TaylorSeries):
+        return telescopes_of_lie(jets, leading, every_h.eta)
+    return telescopes(jets, leading)
+
+
 def _telescoping(
     jets: Jets, every_h: BySeries, leading: Poly, order: int
 ) -> tuple[Telescoping, str, tuple[Prose, ...]]:
     """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
+    found = telescoping_of(jets, every_h, leading)
     if not isinstance(every_h, TaylorSeries):
-        return telescopes(jets, leading), "", ()
+        return found, "", ()
     eta = every_h.eta
     end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in ("p", "q")]
     divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
@@ -198,7 +206,6 @@ def _telescoping(
         formula = f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
         told = f"that of `h^{eta + 1}` is −div(`X^{eta}` f)/{eta + 1}!"
         checked = (read_prose(told),)
-    found = telescopes_of_lie(jets, leading, eta)
     if found.holds:
         checked = (*checked, prose("X·G is that coefficient"))
     return found, formula, checked

@@ -52,7 +52,7 @@ from functools import lru_cache
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.expansion import Expansion
+from verify.proof.expansion import Expansion, first_nonzero
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import read_prose
 from verify.schemes import get
@@ -110,15 +110,15 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
 
 def _plain_law(step: Substep) -> GrowthLaw:
     """By the first coefficient of ΔJ that does not vanish."""
-    expansion = None if step.degree is not None else Expansion(step.ring, step.delta_j)
-    for n in range(_MOST_ORDERS + 1 if step.degree is None else step.degree + 1):
-        ring, x = expansion.coefficient(n) if expansion else (step.ring, step.coefficient(n))
-        zero = ring.decide(x).zero
-        if zero is True:
-            continue
-        if zero is None:
-            raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
-        if n < 2:
-            raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
-        return GrowthLaw(n - 1, (ring, x), None, None)
-    raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{_MOST_ORDERS}`")
+    if step.degree is None:
+        found = first_nonzero(Expansion(step.ring, step.delta_j).coefficient, _MOST_ORDERS + 1)
+    else:
+        found = first_nonzero(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
+    if found is None or found.power is None or found.element is None:
+        raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{_MOST_ORDERS}`")
+    n = found.power
+    if found.decision.zero is None:
+        raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
+    if n < 2:
+        raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
+    return GrowthLaw(n - 1, found.element, None, None)

@@ -5,22 +5,23 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
-from verify.algebra.power_series import Series, delta_j
+from verify.algebra.power_series import delta_j
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.hamiltonian import VectorField
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
+from verify.schemes.step_map import Expanded, StepMap, Substep
 from verify.verdict import Verdict
 
+_Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
 
 
@@ -29,7 +30,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     series = _BySeries(step_map, scheme.order + 1 if scheme else _FIRST_ORDERS)
     convergence = convergence_of(step_map, series)
     leading = leading_of(step_map, series)
-    verdict, reason = _verdict(convergence, leading, scheme)
+    verdict, said = _verdict(convergence, leading, scheme)
+    reason = read_prose(said)
     if leading.decision.zero is True and step_map.conditions:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     return Proof(
@@ -63,7 +65,7 @@ class _BySeries:
 
     def __init__(self, step_map: StepMap, first: int = _FIRST_ORDERS) -> None:
         self.map, self.first = step_map, first
-        self.made: tuple[VectorField, Series, Series] | None = None
+        self.made: Expanded | None = None
 
     @cached_property
     def usable(self) -> bool:
@@ -76,17 +78,19 @@ class _BySeries:
             self.made = self.map.taylor(most)
         return self.made is not None
 
-    def coefficients(self, n: int) -> tuple[VectorField, tuple[Poly, Poly]]:
-        """Those of hⁿ in p' and q', and the vector field in their ring."""
+    def up_to(self, n: int) -> Expanded:
+        """The vector field, and p' and q' as series up to hⁿ at least."""
         self.reach(n)
         assert self.made is not None  # noqa: S101 - the caller looks at `usable`
-        field, p, q = self.made
-        return field, (p.coefficients[n], q.coefficients[n])
+        return self.made
+
+    def coefficient(self, name: str, n: int) -> tuple[VectorField, Ring, Poly]:
+        """That of hⁿ in p' or q', with its ring, and the vector field."""
+        field, *series = self.up_to(n)
+        return field, field.ring, series["pq".index(name)].coefficients[n]
 
     def of_delta_j(self, n: int) -> tuple[Ring, Poly]:
-        self.reach(n)
-        assert self.made is not None  # noqa: S101 - as above
-        field, p, q = self.made
+        field, p, q = self.up_to(n)
         return field.ring, delta_j(p, q).coefficients[n]
 
 
@@ -143,41 +147,30 @@ def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Conver
     if known is not None:
         return Convergence(known, decided=True)
     series = series or _BySeries(step_map)
-    if series.usable:
-        return _convergence_by(series)
-    step = step_map.flat
-    ring, names = step.ring, ("p", "q")
-    expansions = [
-        Expansion(ring, x, terms)
-        for x, terms in zip((step.p_next, step.q_next), step.terms or (None, None), strict=True)
-    ]
-    most = max(MOST_ORDERS, *(e.length for e in expansions))
+    by_series: tuple[_Coefficient, int] = series.coefficient, MOST_ORDERS
+    coefficient, most = by_series if series.usable else _by_expansions(step_map.flat)
     for n in range(most + 1):
-        for expansion, name in zip(expansions, names, strict=True):
-            agrees = _agrees(expansion, n, ring, step.field.power(name, n))
+        for name in ("p", "q"):
+            agrees = _agrees(*coefficient(name, n), name, n)
             if agrees is not True:
                 return Convergence(n - 1, agrees is False)
     return Convergence(None, True)
 
 
-def _convergence_by(series: _BySeries) -> Convergence:
-    flow: tuple[Poly, Poly] | None = None
-    for n in range(MOST_ORDERS + 1):
-        field, own = series.coefficients(n)
-        if flow is None:  # not `own`: a map need not be the identity at h = 0
-            flow = field.ring.variable("p"), field.ring.variable("q")
-        else:
-            flow = field.derive(flow[0]), field.derive(flow[1])
-        for x, y in zip(own, flow, strict=True):
-            agrees = field.ring.vanishes(x - y / math.factorial(n))
-            if agrees is not True:
-                return Convergence(n - 1, agrees is False)
-    return Convergence(None, True)
+def _by_expansions(step: Substep) -> tuple[_Coefficient, int]:
+    """The coefficients of p' and q' in closed form, and how many there are to look at."""
+    pairs = zip((step.p_next, step.q_next), step.terms or (None, None), strict=True)
+    p, q = (Expansion(step.ring, x, terms) for x, terms in pairs)
+
+    def coefficient(name: str, n: int) -> tuple[VectorField, Ring, Poly]:
+        return step.field, *(p if name == "p" else q).coefficient(n)
+
+    return coefficient, max(MOST_ORDERS, p.length, q.length)
 
 
-def _agrees(expansion: Expansion, n: int, ring: Ring, flow: Poly) -> bool | None:
-    """Whether the coefficient of hⁿ is `flow`/n!; None where that is not decided."""
-    own, x = expansion.coefficient(n)
+def _agrees(field: VectorField, own: Ring, x: Poly, name: str, n: int) -> bool | None:
+    """Whether x is the coefficient of hⁿ in the exact flow; None where that is not decided."""
+    ring, flow = field.ring, field.power(name, n)
     if own is ring:
         return ring.vanishes(x - flow / math.factorial(n))
     gap = own.expression(x) - ring.expression(flow) / math.factorial(n)
@@ -185,22 +178,15 @@ def _agrees(expansion: Expansion, n: int, ring: Ring, flow: Poly) -> bool | None
     return common.vanishes(difference)
 
 
-def _verdict(
-    convergence: Convergence, leading: Leading, scheme: Scheme | None
-) -> tuple[Verdict, Prose]:
-    """The verdict, and the reason for it."""
-    verdict, reason = _reasoned(convergence, leading, scheme)
-    return verdict, read_prose(reason)
-
-
 def _called(scheme: Scheme) -> str:
     """Its name, quoted where that is the formulas of a user's scheme."""
     return f"`{scheme.name}`" if "=" in scheme.name else scheme.name
 
 
-def _reasoned(
+def _verdict(
     convergence: Convergence, leading: Leading, scheme: Scheme | None
 ) -> tuple[Verdict, str]:
+    """The verdict, and the reason for it."""
     claimed = scheme.order if scheme else 1
     if convergence.misses(claimed):
         known = f"agrees with the exact flow up to `h^{convergence.order}`"

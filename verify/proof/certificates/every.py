@@ -26,10 +26,9 @@ from verify.algebra.ring import Poly
 from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.proof.certificates.file import FORMAT, Certificate
-from verify.proof.every import EveryProof
-from verify.proof.telescoping import telescopes, telescopes_of_lie
+from verify.proof.every import EveryProof, telescoping_of
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.every_hamiltonian import BySeries, StageEquations
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
@@ -54,16 +53,10 @@ def of_every(proof: EveryProof) -> Certificate:
     leading = list(jets.delta_j(*series))[-1]
     names = dict(enumerate(jets.names))
     data |= map_of(proof.order, proof.convergence_order, leading, series, names)
-    potential = _potential(jets, every_h, leading) if proof.telescopes else None
+    potential = telescoping_of(jets, every_h, leading).potential if proof.telescopes else None
     if potential is not None:
         data["potential"] = terms(potential, names)
     return data
-
-
-def _potential(jets: Jets, every_h: BySeries, leading: Poly) -> Poly | None:
-    if isinstance(every_h, TaylorSeries):
-        return telescopes_of_lie(jets, leading, every_h.eta).potential
-    return telescopes(jets, leading).potential
 
 
 def map_of(

@@ -57,7 +57,11 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
     }
     if proof.order is not None and potential.potential is not None:
         data["potential"] = terms(potential_, plain.names)
-    data["cofactors"] = dict(_cofactors(plain, data, h, series, leading, potential_))
+    data["cofactors"] = {
+        what: plain.cofactors(x)
+        for what, x in _zeros(plain, data, h, series, leading, potential_)
+        if not x.is_zero()  # what is zero as it stands has none
+    }
     return data
 
 
@@ -128,20 +132,6 @@ class _Plain:
         return {self.names[index]: terms(c, self.names) for index, c in found.items()}
 
 
-def _cofactors(
-    plain: _Plain,
-    data: Certificate,
-    h: Poly,
-    series: list[list[Poly]],
-    leading: Poly,
-    potential: Poly,
-) -> Iterator[tuple[str, dict[str, list[list[str]]]]]:
-    """(what is zero, its cofactors), in the checker's words; what is zero as it stands has none."""
-    for what, x in _zeros(plain, data, h, series, leading, potential):
-        if not x.is_zero():
-            yield what, plain.cofactors(x)
-
-
 def _zeros(
     plain: _Plain,
     data: Certificate,
@@ -150,6 +140,7 @@ def _zeros(
     leading: Poly,
     potential: Poly,
 ) -> Iterator[tuple[str, Poly]]:
+    """What has to be zero, each by its name in the checker's words."""
     ring, order = plain.ring, data["order"]
     h_p, h_q = plain.diff(h, "p"), plain.diff(h, "q")
 
