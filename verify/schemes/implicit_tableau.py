@@ -13,13 +13,10 @@ import sympy
 
 from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
-from verify.algebra.enclosure import enclose
+from verify.algebra.residue import condition_of
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.arb import middle_and_radius
-from verify.arithmetic.exact import known_digits
 
 _SHOWN = 5  # digits of a residue
-_PRECISIONS = (64, 256, 1024, 4096)
 
 
 @dataclass(frozen=True)
@@ -114,16 +111,4 @@ class Numbers:
 
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
         """The condition that `gap`, left side − right side, is 0."""
-        holds = self.ring.decide(gap).zero
-        residue = "0" if holds else self._decimal(gap)
-        return Condition(name, order, residue, holds)
-
-    def _decimal(self, x: Poly) -> str:
-        shown = "0"
-        for precision in _PRECISIONS:
-            ball = enclose(self.ring, x, {}, precision)
-            if ball is not None:
-                shown, _ = known_digits(*middle_and_radius(ball), _SHOWN)
-            if shown != "0":
-                break
-        return shown
+        return condition_of(self.ring, name, order, gap, _SHOWN)

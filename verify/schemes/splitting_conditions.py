@@ -30,10 +30,8 @@ import sympy
 
 from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
-from verify.algebra.enclosure import enclose
+from verify.algebra.residue import condition_of
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.arb import in_reach, middle_and_radius
-from verify.arithmetic.exact import known_digits
 from verify.errors import InputError
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.free_lie_words import lyndon
@@ -42,7 +40,6 @@ Part = tuple[str, sympy.Expr]  # "kick" or "drift", and what part of h it takes
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane
 LETTERS = {"kick": "K", "drift": "D"}
 _DIGITS = 12  # of a residue
-_PRECISIONS = (128, 512, 2048)
 
 
 @dataclass(frozen=True)
@@ -78,7 +75,9 @@ class Splitting:
             ring, parts = self._exact
             flow = Fraction(1, factorial(len(word)))
             residue = coefficient(ring, parts, word) - ring.constant(flow)
-            self._known[word] = _condition(_equation(word, flow), len(word), ring, residue)
+            self._known[word] = condition_of(
+                ring, _equation(word, flow), len(word), residue, _DIGITS
+            )
         return self._known[word]
 
     @cached_property
@@ -119,7 +118,7 @@ class Splitting:
         for k in range(len(merged) // 2):
             residue = merged[k][1] - merged[-1 - k][1]
             name = f"part {k + 1} = part {len(merged) - k}"
-            found.append(_condition(name, 0, ring, residue))
+            found.append(condition_of(ring, name, 0, residue, _DIGITS))
         return tuple(found)
 
     @property
@@ -151,25 +150,6 @@ def coefficient(ring: Ring, parts: Sequence[tuple[str, Poly]], word: str) -> Pol
 def _equation(word: str, flow: Fraction) -> str:
     name = f"coefficient of {word} = {flow}"
     return {"K": f"Σ kicks = 1, {name}", "D": f"Σ drifts = 1, {name}"}.get(word, name)
-
-
-def _condition(name: str, order: int, ring: Ring, residue: Poly) -> Condition:
-    residue = ring.reduce(residue)
-    zero = ring.decide(residue).zero
-    return Condition(name, order, "0" if zero else decimal_of(ring, residue), zero)
-
-
-def decimal_of(ring: Ring, number: Poly) -> str:
-    """A number in the ring as a decimal, every digit of which is known."""
-    shown = "unknown"
-    for precision in _PRECISIONS:
-        value = enclose(ring, number, {}, precision)
-        if value is not None and in_reach(value):
-            middle, radius = middle_and_radius(value)
-            shown, _ = known_digits(middle, radius, _DIGITS)
-            if radius * 10 ** (_DIGITS + 1) < abs(middle):
-                break
-    return shown
 
 
 def _alternating(ring: Ring, parts: Sequence[tuple[str, Poly]]) -> list[tuple[str, Poly]]:

@@ -12,12 +12,12 @@ from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions
 from tests.helpers.sampled.formulas import polynomials, rationals
 from verify.algebra.embedding import embed
+from verify.algebra.residue import decimal_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import Stage, StageEquations
-from verify.schemes.splitting_conditions import decimal_of
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
@@ -71,7 +71,7 @@ def test_a_residue_is_a_decimal_of_twelve_digits_where_it_is_in_reach(
 ) -> None:
     ring, _ = embed([sympy.S.One], ())
     number = x * Fraction(2) ** power
-    shown = decimal_of(ring, ring.constant(number))
+    shown = decimal_of(ring, ring.constant(number), 12)
     if abs(power) > 10**5:
         assert shown == "unknown"
     else:

@@ -73,8 +73,6 @@ def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> Tabl
 
 def value(numbers: Numbers, x: Poly) -> float:
     """A number of the ring as a float; 0 only where it is exactly 0."""
-    if numbers.ring.decide(x).zero:
-        return 0.0
     return float(numbers.condition("", 0, x).residue)
 
 
