@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import singledispatch
 
 from verify.arithmetic.exact import decimal
 from verify.integrators.check import POINTS
@@ -31,19 +32,19 @@ from verify.verdict import Verdict
 _Judgement = tuple[Verdict, Prose, tuple[tuple[str, ...], ...]]
 NONE = Prose()
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
+_SYMPLECTIC = "symplectic: det J ≡ 1"
+_Claim = tuple[str, str, _Judgement, str]  # its kind, the statement, and its reproduction at last
 
 
 def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
     """One claim for the order and one for symplecticity, where they are made; of a printed table
     one for the order and one for its digits. `prefix` begins the ids."""
-    method = integrator.method
-
-    def claim(what: str, statement: str, found: _Judgement, code: str = "") -> ClaimResult:
-        verdict, evidence, details = found
-        told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or isinstance(method, Compared)
-        return ClaimResult(
-            id=f"{prefix}/{integrator.name}/{what}",
-            kind=what,
+    for kind, statement, judgement, code in _claims(integrator.method, integrator):
+        verdict, evidence, details = judgement
+        told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or kind == "agreement"
+        yield ClaimResult(
+            id=f"{prefix}/{integrator.name}/{kind}",
+            kind=kind,
             source=integrator.name,
             section=section,
             statement=prose(f"{statement} ({integrator.source})"),
@@ -54,54 +55,58 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
             reproduction=code if told else "",
         )
 
-    if isinstance(method, Compared):
-        verdict, told, details = method.compare()
-        compared = verdict, prose(told), details
-        yield claim("agreement", method.statement, compared, integrator.reproduction)
-        return
-    if isinstance(method, PrintedTable):
-        assert integrator.order is not None  # noqa: S101 - of printed tables it is always claimed
-        found = judge_order(method, integrator.order)
-        said = of_printed(found, integrator.order, method)
-        yield claim("order", f"order {integrator.order}", said, integrator.reproduction)
-        if found.verdict is not Verdict.REFUTED and method.units:
-            said = of_digits(found, method)
-            code = reproductions.of_digits(method, found.nearest, integrator.order)
-            yield claim("digits", "every digit is right, to one unit of the last", said, code)
-        return
-    code, driven = integrator.reproduction, isinstance(method, FloatStep)
-    point = ((isinstance(method, FloatStep) and method.points) or POINTS)[0]
-    if integrator.order is not None:
-        shown = reproductions.of_order(code, point, integrator.order) if driven else code
-        yield claim("order", f"order {integrator.order}", _order(integrator), shown)
+
+@singledispatch
+def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    """What is claimed of an integrator, by the kind of its method."""
+    raise TypeError(f"{integrator.name}: no method is a {type(method).__name__}")
+
+
+@_claims.register
+def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    verdict, told, details = method.compare()
+    judged = verdict, prose(told), details
+    yield "agreement", method.statement, judged, integrator.reproduction
+
+
+@_claims.register
+def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    order = integrator.order
+    assert order is not None  # noqa: S101 - of printed tables it is always claimed
+    found = judge_order(method, order)
+    yield "order", f"order {order}", of_printed(found, order, method), integrator.reproduction
+    if found.verdict is not Verdict.REFUTED and method.units:
+        code = reproductions.of_digits(method, found.nearest, order)
+        exact = "every digit is right, to one unit of the last"
+        yield "digits", exact, of_digits(found, method), code
+
+
+@_claims.register
+def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    table, rounded, claimed = method.tableau, method.rounded, integrator.order
+    if claimed is not None:
+        order = order_of(table, claimed, rounded)
+        wrong = order.order < claimed and not rounded
+        repaired = repair(table, claimed) if wrong else NONE
+        said = of_tableau(claimed, order, symplecticity(table, rounded), rounded, repaired)
+        yield "order", f"order {claimed}", said, integrator.reproduction
     if integrator.area_preserving:
-        shown = reproductions.of_area(code, point) if driven else code
-        yield claim("area", "symplectic: det J ≡ 1", _area(integrator), shown)
-
-
-def _order(integrator: ReleasedIntegrator) -> _Judgement:
-    assert integrator.order is not None  # noqa: S101 - as it is called
-    if isinstance(integrator.method, ExactTableau):
-        table = integrator.method
-        order = order_of(table.tableau, integrator.order, table.rounded)
-        repaired = NONE
-        if order.order < integrator.order and not table.rounded:
-            repaired = repair(table.tableau, integrator.order)
-        area = symplecticity(table.tableau, table.rounded)
-        return of_tableau(integrator.order, order, area, table.rounded, repaired)
-    assert isinstance(integrator.method, FloatStep)  # noqa: S101 - the one kind that is left
-    return of_measured_order(
-        integrator.order, finding(integrator.method), integrator.area_preserving
-    )
-
-
-def _area(integrator: ReleasedIntegrator) -> _Judgement:
-    if isinstance(integrator.method, ExactTableau):
-        found = symplecticity(integrator.method.tableau, integrator.method.rounded)
+        area = symplecticity(table, rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
-        return verdict[found.holds], found.said, ()
-    assert isinstance(integrator.method, FloatStep)  # noqa: S101 - the one kind that is left
-    return of_measured_area(finding(integrator.method))
+        judged = verdict[area.holds], area.said, ()
+        yield "area", _SYMPLECTIC, judged, integrator.reproduction
+
+
+@_claims.register
+def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    point = (method.points or POINTS)[0]
+    order, area, code = integrator.order, integrator.area_preserving, integrator.reproduction
+    if order is not None:
+        said = of_measured_order(order, finding(method), area)
+        yield "order", f"order {order}", said, reproductions.of_order(code, point, order)
+    if area:
+        said = of_measured_area(finding(method))
+        yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point)
 
 
 # -- tableaux -------------------------------------------------------------------------------------
