@@ -99,7 +99,7 @@ def _moved(
         total = [jets.zero] * (most + 1)
         for a, slope in zip(row, slopes, strict=False):
             for n in range(most):
-                total[n + 1] += slope[part][n] * flint.fmpq(a.numerator, a.denominator)
+                total[n + 1] += slope[part][n] * _exact(a)
         result.append(total)
     return result[0], result[1]
 
@@ -166,10 +166,7 @@ class StageEquations:
             b = b * 0
         found = []
         for stage in self.stages:
-            at_p, at_q, kick, drift = (
-                flint.fmpq(x.numerator, x.denominator)
-                for x in (stage.at_p, stage.at_q, stage.kick, stage.drift)
-            )
+            at_p, at_q, kick, drift = map(_exact, (stage.at_p, stage.at_q, stage.kick, stage.drift))
             # dp' = dp − h kick (b dP + c dQ), dq' = dq + h drift (a dP + b dQ)
             force, speed = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
             left = [
@@ -188,12 +185,14 @@ def _det(m: Sequence[Sequence[Poly]]) -> Poly:
     return m[0][0] * m[1][1] - m[0][1] * m[1][0]
 
 
+def _exact(x: Fraction) -> flint.fmpq:
+    return flint.fmpq(x.numerator, x.denominator)
+
+
 def _between(start: Series, end: Series, share: Fraction) -> Series:
-    part = flint.fmpq(share.numerator, share.denominator)
-    return [x + part * (y - x) for x, y in zip(start, end, strict=True)]
+    return [x + _exact(share) * (y - x) for x, y in zip(start, end, strict=True)]
 
 
 def _added(start: Series, slope: Series, weight: Fraction) -> Series:
     """start + h·weight·slope."""
-    part = flint.fmpq(weight.numerator, weight.denominator)
-    return [start[0], *(x + part * y for x, y in zip(start[1:], slope, strict=False))]
+    return [start[0], *(x + _exact(weight) * y for x, y in zip(start[1:], slope, strict=False))]

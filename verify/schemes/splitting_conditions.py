@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import factorial
+from typing import ClassVar
 
 import flint
 import sympy
@@ -51,17 +52,13 @@ class Splitting:
 
     parts: tuple[Part, ...]
     separable: bool = True
+    most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     @cached_property
     def _exact(self) -> tuple[Ring, list[tuple[str, Poly]]]:
         ring, sizes = embed([size for _, size in self.parts], ())
         kinds = (LETTERS[kind] for kind, _ in self.parts)
         return ring, list(zip(kinds, sizes, strict=True))
-
-    @property
-    def most_order(self) -> int:
-        """The highest order of which there are conditions."""
-        return MOST_ORDER
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """One for each Lyndon word of at most `order` letters; InputError beyond order 8."""

@@ -24,7 +24,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from typing import Generic, Protocol, TypeVar
+from typing import ClassVar, Generic, Protocol, TypeVar
 
 from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
@@ -115,11 +115,7 @@ class TreeConditions:
 
     tableau: ImplicitTableau
     separable: bool = False
-
-    @property
-    def most_order(self) -> int:
-        """The highest order of which there are conditions."""
-        return MOST_ORDER
+    most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those that the trees of 1 … `order` vertices give; see the module's text.

@@ -96,7 +96,7 @@ class NearbyCoefficients:
 
     def apart(self, rows: Sequence[int], units: int) -> bool:
         """Whether no numbers within so many units satisfy all of these conditions."""
-        inverse = self._inverse(rows)
+        inverse = self._inverse(rows, self.slope)
         if inverse is None:
             return False
         count = len(rows)
@@ -126,12 +126,11 @@ class NearbyCoefficients:
         return [list(row) for row in zip(*columns, strict=True)]
 
     def _inverse(
-        self, rows: Sequence[int], slope: Sequence[Sequence[Ball]] | None = None
+        self, rows: Sequence[int], slope: Sequence[Sequence[Ball]]
     ) -> flint.arb_mat | None:
         """U Jᵀ(J U Jᵀ)⁻¹, nearly."""
         if len(rows) > len(self.names):
             return None
-        slope = self.slope if slope is None else slope
         jacobian = flint.arb_mat([[x.mid() for x in slope[k]] for k in rows])
         count = len(self.unit)
         squares = [[self.unit[i] ** 2 if i == j else 0 for j in range(count)] for i in range(count)]
@@ -148,7 +147,7 @@ class NearbyCoefficients:
         None where none is shown to exist."""
         if not rows:
             return Fraction(0), dict(self.table.values)
-        inverse = self._inverse(rows)
+        inverse = self._inverse(rows, self.slope)
         if inverse is None:
             return None
         at = list(self.start)
