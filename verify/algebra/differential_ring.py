@@ -38,6 +38,7 @@ class DifferentialRing:
         # Lexicographic with the newest generator first: relations then reduce to older ones.
         self.context = flint.fmpq_mpoly_ctx.get([*names, *self.variables], flint.Ordering.lex)
         self._gens = self.context.gens()
+        self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.generators: list[Generator] = [
             Generator(self.room + k, "variable", symbol(name))
             for k, name in enumerate(self.variables)
@@ -54,16 +55,6 @@ class DifferentialRing:
         self.expressions: dict[int, sympy.Expr] = {}  # of generators, by `verify.algebra.ring_text`
 
     # -- elements -----------------------------------------------------------------------------
-
-    @property
-    def zero(self) -> Poly:
-        """The element 0."""
-        return self.context.constant(0)
-
-    @property
-    def one(self) -> Poly:
-        """The element 1."""
-        return self.context.constant(1)
 
     def constant(self, value: Fraction) -> Poly:
         """A rational number as an element."""

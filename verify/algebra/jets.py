@@ -12,7 +12,6 @@ h⁰, h¹, …, cut off at the same power.
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import cached_property
 from itertools import product
 
 import flint
@@ -37,16 +36,8 @@ class Jets:
         self.names = tuple(names)
         self._at = {index: k + 2 for k, index in enumerate(self.indices)}
         self._gens = self.context.gens()
-
-    @property
-    def zero(self) -> Poly:
-        """The polynomial 0."""
-        return self.context.constant(0)
-
-    @property
-    def one(self) -> Poly:
-        """The polynomial 1."""
-        return self.context.constant(1)
+        self.p, self.q = self._gens[:2]
+        self.zero, self.one = self.context.constant(0), self.context.constant(1)
 
     def h(self, i: int, j: int) -> Poly:
         """H_ij."""
@@ -55,16 +46,6 @@ class Jets:
         if i + j > self.order:
             raise OverflowError(f"a derivative of order {i + j} of H; there are {self.order}")
         return self._gens[self._at[i, j]]
-
-    @cached_property
-    def p(self) -> Poly:
-        """The variable p."""
-        return self._gens[0]
-
-    @cached_property
-    def q(self) -> Poly:
-        """The variable q."""
-        return self._gens[1]
 
     # -- derivatives --------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ import importlib
 import importlib.util
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
@@ -20,6 +20,7 @@ _NAMES = {
     **dict.fromkeys(("q", "x", "q0", "position", "displacement", "pos"), "q"),
     **dict.fromkeys(("h", "dt", "tau", "step", "step_size", "stepsize", "delta_t"), "h"),
 }
+_USUAL = ("p", "q", "h")
 _MOST_SECONDS = 86_400
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
@@ -92,7 +93,7 @@ def step_from(
     try:
         named = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):  # some functions written in C have none
-        return Step(function, order or ("p", "q", "h"), left=time_limit), []
+        return Step(function, order or _USUAL, left=time_limit), []
     name = getattr(function, "__name__", "step")
     places = [x for x in named if x.kind in _POSITIONAL]
     variadic = any(x.kind is inspect.Parameter.VAR_POSITIONAL for x in named)
@@ -105,18 +106,20 @@ def step_from(
         raise InputError("integrator", shown, "wanted: step(p, q, h), which returns p', q'")
     notes = []
     if order is None:
-        named_so = tuple(_NAMES.get(x.name.lower().strip("_"), "") for x in places[:3])
-        order = ("p", "q", "h")
-        if sorted(named_so) == ["h", "p", "q"]:
-            order = named_so[0], named_so[1], named_so[2]
-        first = ", ".join(x.name for x in places[:3])
-        if order != ("p", "q", "h") or sorted(named_so) != ["h", "p", "q"]:
+        named_so = _as_order([_NAMES.get(x.name.lower().strip("_"), "") for x in places[:3]])
+        order = named_so or _USUAL
+        if named_so != _USUAL:
+            first = ", ".join(x.name for x in places[:3])
             notes.append(f"its arguments ({first}) are taken as ({', '.join(order)})")
     return Step(function, order, given, left=time_limit), notes
 
 
 def _order(arguments: str) -> tuple[str, str, str]:
-    names = [name.strip() for name in arguments.split(",")]
-    if sorted(names) != ["h", "p", "q"]:
+    order = _as_order([name.strip() for name in arguments.split(",")])
+    if order is None:
         raise InputError("--arguments", arguments, "is no order of p, q and h, such as q,p,h")
-    return names[0], names[1], names[2]
+    return order
+
+
+def _as_order(names: Sequence[str]) -> tuple[str, str, str] | None:
+    return (names[0], names[1], names[2]) if sorted(names) == ["h", "p", "q"] else None
