@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from verify.integrators.probe import Point, dual_step
+from verify.integrators.probe import Trial, dual_step
 from verify.integrators.step import Step
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.functions import copied
@@ -52,7 +52,7 @@ def by_duals(step: Step) -> Callable[[Duals], Lifted]:
     return made
 
 
-def must_agree(step: Step, points: Sequence[Point], made: Callable[[Duals], Lifted]) -> None:
+def must_agree(trial: Trial, made: Callable[[Duals], Lifted]) -> None:
     """UntraceableError where our numbers and the user's floats part at a point.
 
     So it is where the code keeps a state, or takes another branch with floats.
@@ -60,10 +60,10 @@ def must_agree(step: Step, points: Sequence[Point], made: Callable[[Duals], Lift
     kind, compared = Duals(), 0
     with kind.running():
         at = made(kind)
-        for point in points:
+        for point in trial.points:
             for h in _SIZES:
                 try:
-                    mine = step.at(float(point[0]), float(point[1]), float(h))
+                    mine = trial.step.at(float(point[0]), float(point[1]), float(h))
                 except Exception:  # noqa: S112 - it fails there; other points may do
                     continue
                 theirs = [x.value for x in at(*kind.state(*point), kind.rational(h))]

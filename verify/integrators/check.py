@@ -11,7 +11,7 @@ from verify.integrators.agreement import by_duals, by_graph, must_agree
 from verify.integrators.claims import with_claims
 from verify.integrators.faults import Fault, changed_since, examined
 from verify.integrators.measured import of_measured
-from verify.integrators.probe import Point, dual_step, measured
+from verify.integrators.probe import Point, Trial, dual_step, measured
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
@@ -49,19 +49,19 @@ def check_integrator(
             raise InputError(
                 name, decimal(x, 3), f"is beyond {_FARTHEST:.0e}, for a step in floats"
             )
-    points = ((start,) if start else ()) + POINTS
-    faults, first = examined(step, points)
+    trial = Trial(step, hamiltonian, ((start,) if start else ()) + POINTS)
+    faults, first = examined(step, trial.points)
     if any(fault.fatal for fault in faults):
         return _no_step(faults)
-    found = _examine(step, hamiltonian, points)
+    found = _examine(trial)
     later = changed_since(step, first)
     if later:
         return _no_step([*faults, *later])
     if found.verdict is Verdict.REFUTED:
-        found = found.noting(*_exchanged(step, hamiltonian, points))
+        found = found.noting(*_exchanged(trial))
     found = replace(found, faults=tuple(fault.name for fault in faults))
     found = found.noting(*(fault.text for fault in faults))
-    return with_claims(found, claims, step, hamiltonian, points)
+    return with_claims(found, claims, trial)
 
 
 def _no_step(faults: Sequence[Fault]) -> Finding:
@@ -69,11 +69,11 @@ def _no_step(faults: Sequence[Fault]) -> Finding:
     return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
 
 
-def _examine(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
-    notes: list[Prose] = []
+def _examine(trial: Trial) -> Finding:
+    step, notes = trial.step, list[Prose]()
     try:
         with within(_PROOF_SECONDS, "its proof takes too long"):
-            return _proved(step, hamiltonian, points)
+            return _proved(trial)
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", _why(error)))
     kept = _KEPT * max(step.left, 0)
@@ -81,9 +81,8 @@ def _examine(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> F
         step.left += -kept if how == "duals" else kept
         try:
             if how == "duals":
-                must_agree(step, points, by_duals(step))
-            found = measured(step, hamiltonian, points, how)
-            told = of_measured(found, step, hamiltonian, points)
+                must_agree(trial, by_duals(step))
+            told = of_measured(measured(trial, how), trial)
             return replace(told, notes=(*notes, *told.notes))
         except Exception as error:  # as above
             notes.append(prose(f"not measured with {how}: ", _why(error)))
@@ -91,12 +90,12 @@ def _examine(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> F
     return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
 
 
-def _exchanged(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> list[str]:
+def _exchanged(trial: Trial) -> list[str]:
     """Whether it is a scheme when p and q stand in each other's place."""
     exchange = {"p": "q", "q": "p", "h": "h"}
-    a, b, c = (exchange[name] for name in step.order)
-    other = replace(step, order=(a, b, c))
-    if not _examine(other, hamiltonian, points).verdict.holds:
+    a, b, c = (exchange[name] for name in trial.step.order)
+    other = replace(trial, step=replace(trial.step, order=(a, b, c)))
+    if not _examine(other).verdict.holds:
         return []
     return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
 
@@ -109,15 +108,15 @@ def _why(error: Exception) -> Prose:
 # -- proved ---------------------------------------------------------------------------------------
 
 
-def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Finding:
-    tape = Tape()
+def _proved(trial: Trial) -> Finding:
+    tape, step = Tape(), trial.step
     symbols = [tape.symbol(name) for name in "pqh"]
     roots = dual_step(step, copied(step.function, tape), *symbols)
     if tape.refused:  # what is traced is then what it does where that fails
         raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
     p_next, q_next = (x.node for x in roots)
-    must_agree(step, points, lambda kind: by_graph(kind, p_next, q_next))
-    traced = traced_map(hamiltonian, p_next, q_next)
+    must_agree(trial, lambda kind: by_graph(kind, p_next, q_next))
+    traced = traced_map(trial.hamiltonian, p_next, q_next)
     proof = prove(traced.step_map)
     found = Finding(
         proof.verdict,
@@ -133,7 +132,7 @@ def _proved(step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]) -> Fi
         proof=proof,
     ).noting(f"traced with symbols; the map {traced.how}", *_readings(tape))
     found = _but_for_rounding(found, traced, tape)
-    return _measured_area(found, step, hamiltonian, points)
+    return _measured_area(found, trial)
 
 
 def _readings(tape: Tape) -> list[Prose]:
@@ -195,15 +194,12 @@ def _rounded_reason(found: Finding, better: Rounded, most: int) -> Prose:
     )
 
 
-def _measured_area(
-    found: Finding, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Finding:
+def _measured_area(found: Finding, trial: Trial) -> Finding:
     """What algebra leaves open of ΔJ is measured with dual numbers."""
     if found.area_preserving is not None or found.verdict is Verdict.REFUTED:
         return found
     try:
-        by_duals = measured(step, hamiltonian, points, "duals")
-        other = of_measured(by_duals, step, hamiltonian, points)
+        other = of_measured(measured(trial, "duals"), trial)
     except Exception as error:  # the user's code may raise anything
         return found.noting(prose("not measured: ", _why(error)))
     if other.verdict is not Verdict.MEASURED:

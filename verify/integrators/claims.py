@@ -1,13 +1,10 @@
 """What a user claims of his step, held against what was found, with a counterexample."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.probe import FINER, Measured, Point, Row, measured
+from verify.integrators.probe import FINER, Measured, Point, Row, Trial, measured
 from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, broken
-from verify.integrators.step import Step
 from verify.prose import prose
 from verify.verdict import Verdict
 
@@ -16,9 +13,7 @@ _PLAINLY = 0.95
 _SHOWN = {"proof": Verdict.PROVED, "duals": Verdict.MEASURED, "floats": Verdict.MEASURED}
 
 
-def with_claims(
-    found: Finding, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Finding:
+def with_claims(found: Finding, claims: Claims, trial: Trial) -> Finding:
     """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided.
 
     Where all that is claimed is shown, and that it is a scheme, what else is not decided does not
@@ -41,15 +36,13 @@ def with_claims(
         found = replace(found, verdict=Verdict.REFUTED, reason=reason)
     else:
         name = prose("order 1")
-    return replace(found, counterexample=_counterexample(name, claims, step, hamiltonian, points))
+    return replace(found, counterexample=_counterexample(name, claims, trial))
 
 
-def _counterexample(
-    name: str, claims: Claims, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Counterexample | None:
+def _counterexample(name: str, claims: Claims, trial: Trial) -> Counterexample | None:
     for how in ("duals", "floats"):
         try:
-            whole = measured(step, hamiltonian, points, how)
+            whole = measured(trial, how)
             row = whole.largest
             if name == "det J ≡ 1":
                 value = f"{row.delta_j:.6e} ± {row.delta_noise:.1e}"
@@ -57,7 +50,8 @@ def _counterexample(
             area = name.startswith("ΔJ")
             power = (claims.area_order or 1) if area else (claims.order or 1) + 1
             at = whole.rows[-1].delta_at if area else whole.rows[-1].error_at
-            return _too_slow(measured(step, hamiltonian, [at], how, FINER[how]), at, power, area)
+            there = measured(replace(trial, points=[at]), how, FINER[how])
+            return _too_slow(there, at, power, area)
         except Exception:  # noqa: S112 - the user's code may raise anything
             continue
     return None

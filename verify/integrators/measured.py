@@ -1,15 +1,12 @@
 """What is said of a step that was measured: its verdict, in words, with what could not be seen."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import Fitted
-from verify.integrators.probe import Measured, Point, measured
+from verify.integrators.probe import Measured, Trial, measured
 from verify.integrators.results import Finding
-from verify.integrators.step import Step
 from verify.prose import Prose, prose, read_prose
 from verify.verdict import Verdict
 
@@ -18,9 +15,7 @@ _NO_AREA = 1e-8  # a ΔJ above it, of no power of h, or a probe's error, leaves 
 _ROUNDING = 1e-12  # a ΔJ that rounded coefficients leave
 
 
-def of_measured(
-    found: Measured, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Finding:
+def of_measured(found: Measured, trial: Trial) -> Finding:
     """What was found of the step, which is measured once more where dual numbers say too little.
 
     Raises StepError, or what the user's code raises.
@@ -28,7 +23,7 @@ def of_measured(
     told = _as_it_stands(found)
     small = told.order is not None and told.largest is not None and told.largest <= _SEEN
     if found.how == "duals" and found.opaque and small:
-        told = _with_floats(told, step, hamiltonian, points)
+        told = _with_floats(told, trial)
     return _consistent(told)
 
 
@@ -127,15 +122,13 @@ def _notes(found: Measured) -> list[Prose]:
     return list(map(read_prose, notes))
 
 
-def _with_floats(
-    found: Finding, step: Step, hamiltonian: Hamiltonian, points: Sequence[Point]
-) -> Finding:
+def _with_floats(found: Finding, trial: Trial) -> Finding:
     """ΔJ of a step that compares values is taken from floats.
 
     A loop with a tolerance ends before the derivatives have settled: what dual numbers have is then
     the derivative of the operations that were done, and no more of the map.
     """
-    other = _as_it_stands(measured(step, hamiltonian, points, "floats"))
+    other = _as_it_stands(measured(trial, "floats"))
     area = replace(
         found,
         verdict=other.verdict if found.verdict is Verdict.MEASURED else found.verdict,

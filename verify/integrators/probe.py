@@ -45,6 +45,15 @@ _ENOUGH = 6  # rows, with which what is slow may end
 
 
 @dataclass(frozen=True)
+class Trial:
+    """A step, the H that it is for, and the points at which it is tried."""
+
+    step: Step
+    hamiltonian: Hamiltonian
+    points: Sequence[Point]
+
+
+@dataclass(frozen=True)
 class Reading:
     """At one point with one step: ΔJ, and the distance from the exact flow, with their noise."""
 
@@ -127,19 +136,13 @@ class Measured:
         return min(seen, default=math.inf)
 
 
-def measured(
-    step: Step,
-    hamiltonian: Hamiltonian,
-    points: Sequence[Point],
-    how: str,
-    ladder: Sequence[Fraction] = (),
-) -> Measured:
+def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measured:
     """All readings, with the steps of `ladder`, falling, or those of `LADDERS[how]`.
 
     Raises StepError, or what the user's code raises, where there are too few.
     """
-    ladder = ladder or LADDERS[how]
-    flow = Flow(hamiltonian.field()[0], _DIGITS[how])
+    ladder, step = ladder or LADDERS[how], trial.step
+    flow = Flow(trial.hamiltonian.field()[0], _DIGITS[how])
     probe = _Duals(step) if how == "duals" else _Floats(step)
     rows, lost = [], ""
 
@@ -152,7 +155,7 @@ def measured(
             return None
 
     # A point at which no step can be made is left out, and so is a step that is too large for one.
-    alive = [point for point in points if at(point, ladder[-1]) is not None]
+    alive = [point for point in trial.points if at(point, ladder[-1]) is not None]
     for h in ladder if alive else ():
         found = {point: at(point, h) for point in alive}
         readings = {point: reading for point, reading in found.items() if reading is not None}

@@ -8,7 +8,7 @@ from verify.integrators.check import POINTS
 from verify.integrators.faults import examined
 from verify.integrators.measured import of_measured
 from verify.integrators.others.integrator import FloatStep
-from verify.integrators.probe import measured
+from verify.integrators.probe import Trial, measured
 from verify.integrators.results import Finding
 from verify.integrators.step import Step, StepError, last_line
 from verify.prose import prose, read_prose
@@ -36,17 +36,17 @@ def finding(method: FloatStep) -> Finding:
     """Its order, and whether an area defect is seen. UNDECIDED, with the reason, where it cannot be
     measured."""
     hamiltonian = Hamiltonian.parse(method.hamiltonian)
-    points = method.points or POINTS
     try:
         step = Step(method.make(), left=_SECONDS)
-        faults, _ = examined(step, points)
+        trial = Trial(step, hamiltonian, method.points or POINTS)
+        faults, _ = examined(step, trial.points)
         fatal = next((fault for fault in faults if fault.fatal), None)
         if fatal is not None:
             wrong = fatal.name in _NO_SCHEME
             verdict = Verdict.REFUTED if wrong else Verdict.UNDECIDED
             return Finding(verdict, prose(fatal.text), "calls")
-        found = measured(step, hamiltonian, points, "floats", method.ladder)
-        told = of_measured(found, step, hamiltonian, points)
+        found = measured(trial, "floats", method.ladder)
+        told = of_measured(found, trial)
         seen = found.distance
         if seen.power is not None and seen.first < _SPAN * seen.last:
             return _undecided(told, seen.first, seen.last)
