@@ -234,14 +234,7 @@ def dual_step(
 ) -> Theirs:
     """p' and q' of a copied function at numbers of ours."""
     with step.timed():
-        if step.arrays:
-            import numpy as np
-
-            boxes = [np.empty(1, dtype=object) for _ in range(2)]
-            boxes[0][0], boxes[1][0] = p, q
-            result = step.raw(function, boxes[0], boxes[1], h)
-        else:
-            result = step.raw(function, p, q, h)
+        result = step.called(function, p, q, h)
     pair = step.pair(result)
     lifted = [p * 0 + x for x in pair]
     if any(type(x) is not type(p) for x in lifted):

@@ -65,15 +65,20 @@ class Step:
         by_name = {"p": p, "q": q, "h": h}
         return function(*(by_name[name] for name in self.order), **self.given)
 
+    def called(self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs) -> Theirs:
+        """The same at one point; with arrays of one entry where it wants arrays."""
+        if not self.arrays:
+            return self.raw(function, p, q, h)
+        import numpy as np
+
+        boxes = [np.empty(1, dtype=float if isinstance(x, float) else object) for x in (p, q)]
+        boxes[0][0], boxes[1][0] = p, q
+        return self.raw(function, boxes[0], boxes[1], h)
+
     def at(self, p: float, q: float, h: float) -> State:
         """(p', q') as floats. Raises StepError, also for what is not finite."""
         with self.timed():
-            if self.arrays:
-                import numpy as np
-
-                result = self.raw(self.function, np.array([p]), np.array([q]), h)
-            else:
-                result = self.raw(self.function, p, q, h)
+            result = self.called(self.function, p, q, h)
         x, y = (_real(x) for x in self.pair(result))
         if x - x != 0 or y - y != 0:
             found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))

@@ -102,6 +102,11 @@ def condition_text(tree: Tree) -> str:
     return f"b·({inner})" if " " in inner else f"b·{inner}"
 
 
+def equation_text(tree: Tree) -> str:
+    """The tree's condition."""
+    return f"{condition_text(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
+
+
 def _vector(tree: Tree) -> str:
     counts = Counter(tree)
     powers = [(f"A({_vector(child)})" if child else "c", n) for child, n in counts.items()]
@@ -230,8 +235,7 @@ class Weights:
 
     def condition(self, tree: Tree, gap: Poly) -> Condition:
         """The tree's condition, of which `gap` is left side − right side."""
-        name = f"{condition_text(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
-        return self.numbers.condition(name, vertices(tree), gap)
+        return self.numbers.condition(equation_text(tree), vertices(tree), gap)
 
     def vector(self, tree: Tree) -> Vector:
         """Φ_i(t)."""

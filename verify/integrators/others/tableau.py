@@ -26,7 +26,7 @@ from verify.schemes.tree_conditions import (
     Tree,
     Weights,
     condition_text,
-    density,
+    equation_text,
     gaps_of,
     trees,
     vertices,
@@ -57,18 +57,15 @@ def order_of(tableau: ImplicitTableau, most: int, rounded: bool = False) -> Tabl
         simple = _simple(tableau.numbers)
         if simple is not None:
             return simple
-    largest = 0.0
-    for n in range(1, min(most + 1, MOST_ORDER) + 1):
+    largest, reach, by = 0.0, min(most + 1, MOST_ORDER), "the conditions of all rooted trees"
+    for n in range(1, reach + 1):
         for tree, gap in gaps_of(tableau, n).items():
             size = abs(value(tableau.numbers, gap))
             if size == 0 or (rounded and size < float(ROUNDING)):
                 largest = max(largest, size)
                 continue
-            name = f"{condition_text(tree)} = 1/{density(tree)}" if tree else "b·1 = 1"
-            return TableauOrder(n - 1, name, size, largest, "the conditions of all rooted trees")
-    return TableauOrder(
-        min(most + 1, MOST_ORDER), "", 0.0, largest, "the conditions of all rooted trees"
-    )
+            return TableauOrder(n - 1, equation_text(tree), size, largest, by)
+    return TableauOrder(reach, "", 0.0, largest, by)
 
 
 def value(numbers: Numbers, x: Poly) -> float:
@@ -141,7 +138,7 @@ def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplectic
         size = abs(value(tableau.numbers, tableau.numbers.ring.reduce(gap)))
         if size > least:
             left = f"{condition_text((*u, v))} + {condition_text((*v, u))}"
-            right = f"({condition_text(u) if u else 'b·1'})({condition_text(v) if v else 'b·1'})"
+            right = f"({condition_text(u)})({condition_text(v)})"
             said = prose(Formula(f"{left} = {right}"), " fails by ", Number(f"{size:.3g}"))
             return Symplecticity(False, said)
     return Symplecticity(None, prose("no pair of trees that was looked at fails"))

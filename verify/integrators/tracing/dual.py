@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 import gmpy2
 
-from verify.integrators.tracing.number import Kind, TracedNumber, UntraceableError
+from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
 
 Number: TypeAlias = gmpy2.mpfr
 BITS = 200
@@ -89,10 +89,9 @@ class Dual(TracedNumber):
     def combined(self, name: str, other: "Dual") -> "Dual":
         x, y = self.value, other.value
         match name:
-            case "add":
-                return Dual(self.kind, x + y, self.by_p + other.by_p, self.by_q + other.by_q)
-            case "subtract":
-                return Dual(self.kind, x - y, self.by_p - other.by_p, self.by_q - other.by_q)
+            case "add" | "subtract":
+                parts = ((x, y), *self._slopes(other))
+                return Dual(self.kind, *(OPERATORS[name](a, b) for a, b in parts))
             case "multiply":
                 by_p, by_q = (a * y + x * b for a, b in self._slopes(other))
                 return Dual(self.kind, x * y, by_p, by_q)
