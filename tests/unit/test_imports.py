@@ -66,7 +66,6 @@ BY_NAME = {
     "verify.integrators.faults": {"modules"},  # numpy, where it is imported
     "verify.integrators.loading": {"import_module", "modules", "spec_from_file_location",
                                    "exec_module"},  # the user's code
-    "verify.integrators.others.integrator": {"exec"},  # reproductions, of libraries alone
     "verify.integrators.others.report": {"import_module"},  # a library that may be broken
     "verify.arithmetic.number_system": {"exec"},  # kernels
     "verify.arithmetic.systems.float64": {"exec"},  # kernels

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 from verify.integrators.others.printed_table import PrintedTable
 from verify.schemes.implicit_tableau import ImplicitTableau
@@ -27,14 +26,6 @@ class FloatStep:
     make: Callable[[], Map]
     points: tuple[Point, ...] = ()
     ladder: tuple[Fraction, ...] = ()
-
-
-def step_of(code: str) -> Map:
-    """The step(p, q, h) that a reproduction defines: what a report shows is what was measured."""
-    defined: dict[str, Any] = {}
-    exec(code, defined)  # noqa: S102 - a text of ours, in a file beside
-    step: Map = defined["step"]
-    return step
 
 
 @dataclass(frozen=True)

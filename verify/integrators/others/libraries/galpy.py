@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
 
-from verify.integrators.others.integrator import FINE, FloatStep, Point, ReleasedIntegrator, step_of
+from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
 
 TITLE = "galpy"
 LIBRARY = "galpy"
@@ -31,16 +31,30 @@ _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
 def integrators() -> Iterator[ReleasedIntegrator]:
     for name, order in _ORDERS.items():
         where = (_POINTS, FINE) if order > 4 else ()
-        code = _script(name)
         yield ReleasedIntegrator(
             name,
             "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step",
             _SOURCE,
-            FloatStep(_HAMILTONIAN, partial(step_of, code), *where),
+            FloatStep(_HAMILTONIAN, partial(_step, name), *where),
             order,
             None if name.startswith("rk") else True,
-            code,
+            _script(name),
         )
+
+
+def _step(name: str) -> Map:
+    import numpy as np
+    from galpy.orbit import Orbit
+    from galpy.potential import KGPotential
+
+    potential = KGPotential(amp=1.0, K=1.0, F=0.25, D=1.0)
+
+    def step(p: float, q: float, h: float) -> tuple[float, float]:
+        orbit = Orbit([q, p])
+        orbit.integrate(np.array([0.0, h]), potential, method=name, dt=h, progressbar=False)
+        return float(orbit.vx(h)), float(orbit.x(h))
+
+    return step
 
 
 def _script(name: str) -> str:

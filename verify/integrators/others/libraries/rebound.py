@@ -8,9 +8,9 @@ star has mass 1, H = p²/2 − 1/q, and for the latter −q/4 is an additional f
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
+from typing import Any
 
-from verify.integrators.others.integrator import FINE, FloatStep, Point, ReleasedIntegrator, step_of
+from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
 
 TITLE = "rebound"
 LIBRARY = "rebound"
@@ -81,16 +81,46 @@ def _integrator(
         points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
     elif order == 6 and problem is _FREE:
         points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
-    code = _script(problem, integrator, settings)
     return ReleasedIntegrator(
         name,
         f"one step of dt = h: {problem.said}",
         _SOURCE,
-        FloatStep(problem.hamiltonian, partial(step_of, code), points, ladder),
+        FloatStep(
+            problem.hamiltonian, lambda: _step(problem, integrator, settings), points, ladder
+        ),
         order,
         True,
-        code,
+        _script(problem, integrator, settings),
     )
+
+
+def _step(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
+    import rebound
+
+    def step(p: float, q: float, h: float) -> tuple[float, float]:
+        simulation = rebound.Simulation()
+        simulation.add(m=problem.mass)
+        simulation.add(m=0.0, x=q, vx=p)
+        simulation.N_active = 1
+        simulation.integrator = integrator
+        for setting in settings:
+            name, _, value = setting.partition(" = ")
+            setattr(simulation.integrator, name, value.strip("'") if "'" in value else int(value))
+        simulation.softening = problem.softening
+        if problem.forced:
+            simulation.additional_forces = _pull
+        simulation.dt = h
+        simulation.steps(1)
+        simulation.synchronize()
+        star, particle = simulation.particles
+        return particle.vx - star.vx, particle.x - star.x
+
+    return step
+
+
+def _pull(reference: Any) -> None:
+    particle = reference.contents.particles[1]
+    particle.ax -= particle.x / 4
 
 
 def _script(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> str:
