@@ -13,6 +13,7 @@ import flint
 from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.property import known, only_if
 from verify.schemes.step_map import StepMap
 
 BITS = 320
@@ -27,40 +28,35 @@ class BallState:
     q: Ball
     product: Ball
 
-    @property
-    def sharp(self) -> bool:
-        """Whether all three are known well enough to tell numbers apart."""
-        return all(map(sharp, (self.p, self.q, self.product)))
+    def sharp(self) -> "BallState":
+        """The same; Silent where one of the three is too wide to tell numbers apart."""
+        only_if(all(map(sharp, (self.p, self.q, self.product))))
+        return self
 
 
 def ball_steps(
     step_map: StepMap, p: Fraction, q: Fraction, h: Fraction, steps: int, bits: int = BITS
-) -> Sequence[BallState] | None:
-    """The states after 0, 1, … steps; None where the map solves equations, or is not defined.
+) -> Sequence[BallState]:
+    """The states after 0, 1, … steps; Silent where the map solves equations, or is not defined.
 
-    h may be negative. Raises nothing: a pole on the way gives None.
+    h may be negative.
     """
-    if step_map.implicit:
-        return None
+    only_if(not step_map.implicit)
     with working_precision(bits):
         states = [BallState(rational_ball(p), rational_ball(q), flint.arb(1))]
         size = rational_ball(h)
         for _ in range(steps):
-            after = stepped(step_map, states[-1], size)
-            if after is None:
-                return None
-            states.append(after)
+            states.append(stepped(step_map, states[-1], size))
     return states
 
 
-def stepped(step_map: StepMap, state: BallState, h: Ball) -> BallState | None:
-    """One step from a state, in flint's present precision; None where it is not defined."""
+def stepped(step_map: StepMap, state: BallState, h: Ball) -> BallState:
+    """One step from a state, in flint's present precision; Silent where it is not defined."""
     p, q, product = state.p, state.q, state.product
     for step in step_map.substeps:
         wanted = step.p_next, step.q_next, *step.jacobian
-        found = enclose_all(step.ring, wanted, {"p": p, "q": q, "h": h})
-        if found is None or not all(x.is_finite() for x in found):
-            return None
+        found = known(enclose_all(step.ring, wanted, {"p": p, "q": q, "h": h}))
+        only_if(all(x.is_finite() for x in found))
         p, q, a, b, c, d = found
         product = product * (a * d - b * c)
     return BallState(p, q, product)

@@ -21,7 +21,7 @@ from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.execution.plan import Plan
-from verify.exploration.property import Property, Violation
+from verify.exploration.property import Property, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.prose import read_prose
 from verify.scenes.results.claim import ClaimResult
@@ -69,34 +69,28 @@ def claim_property(text: str) -> Property:
     sentence = (
         str(read_prose(claim.statement)) or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
     )
-    return Property(claim.id, sentence, lambda sample: _holds(claim, sample), claim.scheme)
+    return Property(claim.id, sentence, lambda sample: _check(claim, sample), claim.scheme)
 
 
-def _holds(claim: Claim, sample: Sample) -> bool:
+def _check(claim: Claim, sample: Sample) -> None:
     """Raises Violation where the claim is refuted for the sample's H and run."""
     separable = getattr(claim, "every", None) == EVERY_SEPARABLE
-    if separable and not sample.field.separable():
-        return False
+    only_if(not separable or sample.field.separable())
     asked = _of_scheme(sample, claim.scheme)
-    if asked is None or not asked.ordinary:
-        return False
-    try:
+    only_if(asked.ordinary)
+    with silent_at(InputError):  # too long a formula, or an end of the run that cannot be had
         found = _verdict_on(claim, asked)
-    except InputError:  # too long a formula, or an end of the run that cannot be had
-        return False
     if found.verdict is Verdict.REFUTED:
         raise Violation(found.evidence)
-    return found.verdict is not Verdict.UNDECIDED
+    only_if(found.verdict is not Verdict.UNDECIDED)
 
 
-def _of_scheme(sample: Sample, name: str) -> Sample | None:
-    """The sample with that scheme; None where the scheme does not take its H."""
+def _of_scheme(sample: Sample, name: str) -> Sample:
+    """The sample with that scheme; Silent where the scheme does not take its H."""
     scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
     asked = replace(sample, scheme=get(name), scene=scene)
-    try:
+    with silent_at(InputError):
         _ = asked.step_map
-    except InputError:
-        return None
     return asked
 
 

@@ -11,8 +11,8 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, BallState, ball_steps, unlike
-from verify.exploration.property import Violation
+from verify.exploration.ball_steps import BITS, ball_steps, unlike
+from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
@@ -38,37 +38,21 @@ def transformed_hamiltonian(sample: Sample, matrix: Matrix, factor: Fraction) ->
     return Hamiltonian(_rational(factor) * expression)
 
 
-def same_step(sample: Sample, matrix: Matrix, factor: Fraction, time: Fraction) -> bool:
-    """Holds Φ_K of h · `time` at M z against M Φ_H(z); False where one of them is not known.
-
-    Raises Violation where they differ.
-    """
-    if not sample.brief:
-        return False
+def must_be_same_step(sample: Sample, matrix: Matrix, factor: Fraction, time: Fraction) -> None:
+    """Violation where Φ_K of h · `time` at M z is not M Φ_H(z); Silent where one is not known."""
+    only_if(sample.brief)
     (a, b), (c, d) = matrix
     p, q = sample.p, sample.q
-    ours = ball_steps(sample.step_map, p, q, sample.step_size, 1)
-    if ours is None or not ours[-1].sharp:
-        return False
+    ours = ball_steps(sample.step_map, p, q, sample.step_size, 1)[-1].sharp()
     other = sample.scheme.step_map(transformed_hamiltonian(sample, matrix, factor))
-    theirs = ball_steps(other, a * p + b * q, c * p + d * q, sample.step_size * time, 1)
-    if theirs is None or not theirs[-1].sharp:
-        return False
+    point = a * p + b * q, c * p + d * q
+    theirs = ball_steps(other, *point, sample.step_size * time, 1)[-1].sharp()
     with working_precision(BITS):
-        p_next, q_next = (
-            rational_ball(x) * ours[-1].p + rational_ball(y) * ours[-1].q for x, y in matrix
-        )
-    wanted = BallState(p_next, q_next, ours[-1].product)
-    _must_overlap(wanted, theirs[-1])
-    return True
-
-
-def _must_overlap(wanted: BallState, found: BallState) -> None:
-    for name in ("p", "q", "product"):
-        x, y = getattr(wanted, name), getattr(found, name)
-        if not x.overlaps(y):
-            what = "det J" if name == "product" else f"{name}'"
-            raise Violation(f"{what} is {unlike(y, x)}")
+        p_next, q_next = (rational_ball(x) * ours.p + rational_ball(y) * ours.q for x, y in matrix)
+    pairs = (theirs.p, p_next), (theirs.q, q_next), (theirs.product, ours.product)
+    for what, (found, wanted) in zip(("p'", "q'", "det J"), pairs, strict=True):
+        if not found.overlaps(wanted):
+            raise Violation(f"{what} is {unlike(found, wanted)}")
 
 
 def _rational(x: Fraction) -> sympy.Rational:

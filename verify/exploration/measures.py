@@ -61,7 +61,7 @@ def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     exact = _stays(sample, digits)
     if exact is None:
         return None
-    found = _kernel_run(sample, frozenset()).run(number_systems.get("float64", 17))
+    found = sample.run("float64", 17)
     if found.done < sample.steps:
         return None
     points = ({"p": sample.p, "q": sample.q}, *exact.trail)
@@ -87,15 +87,11 @@ def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
 
 def _stays(sample: Sample, digits: int) -> Outcome | None:
     """The run with so many digits; None where it goes far."""
-    found = _kernel_run(sample, frozenset({"lambda_max"})).run(number_systems.get("mpfr", digits))
+    found = sample.run("mpfr", digits, "lambda_max")
     if found.done < sample.steps:
         return None
     near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
     return found if near else None
-
-
-def _kernel_run(sample: Sample, observables: frozenset[str]) -> KernelRun:
-    return KernelRun(*sample.kernel_inputs, observables, 0)
 
 
 def _lg(x: Fraction) -> float:

@@ -5,8 +5,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from verify import arithmetic as number_systems
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.scenes.scene import Scene
@@ -121,6 +123,20 @@ class Sample:
     def kernel_inputs(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
         """What a `KernelRun` and a `Separation` begin with."""
         return self.hamiltonian, self.scheme.name, self.start, self.steps
+
+    def run(
+        self,
+        number_system: str,
+        digits: int,
+        *observables: str,
+        start: dict[str, Fraction] | None = None,
+        steps: int | None = None,
+    ) -> Outcome:
+        """Its run in a kernel; `start` and `steps` where they are not its own."""
+        begin, count = start or self.start, self.steps if steps is None else steps
+        asked = frozenset(observables)
+        run = KernelRun(self.hamiltonian, self.scheme.name, begin, count, asked, 0)
+        return run.run(number_systems.get(number_system, digits))
 
     @property
     def run_arguments(self) -> dict[str, Any]:

@@ -40,10 +40,9 @@ def plant(monkeypatch: pytest.MonkeyPatch, planted: Property) -> None:
 def odd_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A property with a planted falsehood: no H has q³ in it."""
 
-    def holds(sample: Sample) -> bool:
+    def holds(sample: Sample) -> None:
         if "q**3" in (sample.scene.hamiltonian or ""):
             raise Violation("it has q**3")
-        return True
 
     made = Property("no-cubes", "No H has q³ in it, which is wrong.", holds)
     plant(monkeypatch, made)
@@ -118,14 +117,14 @@ def test_found_scenes_are_looked_at_again(tmp_path: Path, monkeypatch: pytest.Mo
     asked = exploration(properties=("no-cubes",), examples=1)
     report = explore(asked, Store(None), where=THIS_PROCESS, earlier=load_failures(tmp_path))
     assert [again.message for again in report.again] == ["it has q**3"]
-    mended = Property("no-cubes", "Now anything goes with it.", lambda _: True)
+    mended = Property("no-cubes", "Now anything goes with it.", lambda _: None)
     plant(monkeypatch, mended)
     report = explore(asked, Store(None), where=THIS_PROCESS, earlier=load_failures(tmp_path))
     assert [again.message for again in report.again] == [""]
 
 
 def test_an_exception_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
-    def holds(_: Sample) -> bool:
+    def holds(_: Sample) -> None:
         raise ZeroDivisionError("by\nzero")
 
     made = Property("raises", "It divides by zero in every scene.", holds)

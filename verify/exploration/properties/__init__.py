@@ -1,7 +1,8 @@
 """What holds of every scene: the properties that `verify explore` looks at, one file each.
 
-A file's first line of text is the property's sentence; `holds(sample)` looks at one sample (see
-`verify.exploration.property`). Adding a property is adding one file.
+A file's first line of text is the property's sentence; `holds(sample)` looks at one sample, and
+raises what is to be said of it (see `verify.exploration.property`). Adding a property is adding one
+file.
 """
 
 from functools import cache

@@ -15,7 +15,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
@@ -27,23 +27,17 @@ _COMPILED = 997  # of so many samples one is run in a number system that compile
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.is_turn(_IN, _AFTER) or not sample.short:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN, _AFTER) and sample.short)
     name = _turn(sample)
     wanted = _enclosed(sample)
-    if wanted is None:
-        return False
     found = _run(sample, name, number_systems.about(name).digits or _DIGITS)
-    if found is None:
-        return False
     for quantity, value in found.values.items():
         ours = _ball(value)
         if not ours.overlaps(wanted[quantity]):
             within = f"{value.value} ± {value.bound}"
             true = shown(wanted[quantity], 20)
             raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
-    return True
 
 
 def _turn(sample: Sample) -> str:
@@ -53,18 +47,11 @@ def _turn(sample: Sample) -> str:
     return names[sample.turn // (_COMPILED if seldom else _IN) % len(names)]
 
 
-def _enclosed(sample: Sample) -> dict[str, Ball] | None:
+def _enclosed(sample: Sample) -> dict[str, Ball]:
     if sample.step_map.implicit:
-        found = _run(sample, "mpfr", 40)
-        if found is None:
-            return None
-        return {n: _ball(v) for n, v in found.values.items()}
+        return {n: _ball(v) for n, v in _run(sample, "mpfr", 40).values.items()}
     start = sample.p, sample.q, sample.step_size
-    states = ball_steps(sample.step_map, *start, sample.steps)
-    if states is None:
-        return None
-    if not all(state.sharp for state in states):
-        return None
+    states = [state.sharp() for state in ball_steps(sample.step_map, *start, sample.steps)]
     with working_precision(BITS):
         return _of_states(states)
 
@@ -86,7 +73,7 @@ def _ball(value: Value) -> Ball:
         return around(Fraction(value.value), Fraction(value.bound))
 
 
-def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult | None:
+def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult:
     found = run(
         sample.hamiltonian,
         sample.scheme.name,
@@ -95,4 +82,5 @@ def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult | None:
         digits=digits,
         observables=_OBSERVABLES,
     )
-    return found if found.status == "finished" else None
+    only_if(found.status == "finished")
+    return found

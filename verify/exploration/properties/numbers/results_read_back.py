@@ -17,14 +17,13 @@ _SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
 
 
-def holds(sample: Sample) -> bool:
+def holds(sample: Sample) -> None:
     if sample.is_turn(_SCENES):
         _must_be_same_scene(sample.scene)
     else:
         _must_be_same(sample)
     if sample.is_turn(_MAPS):
         _must_be_same_map(sample)
-    return True
 
 
 def _must_be_same_scene(scene: Scene) -> None:

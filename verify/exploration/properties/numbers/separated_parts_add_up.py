@@ -7,14 +7,12 @@ the Λ that balls enclose, and with the input part it is that at inputs rounded 
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, around, shown
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps
-from verify.exploration.property import Violation
+from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.kernels.stepping import KernelRun
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.chain import PARTS, Chain, Separation
 from verify.studies.separation.kernel import WORKING
@@ -24,13 +22,10 @@ _IN = 2  # one in so many samples
 _DIGITS = 8
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.is_turn(_IN) or not sample.short:
-        return False
-    try:
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN) and sample.short)
+    with silent_at(Stopped):
         chains = Separation(*sample.kernel_inputs).chains(_DIGITS)
-    except Stopped:
-        return False
     exact, rounded = _lambda_by_balls(sample)
     for chain in (chains.plain, chains.closed_form):
         if chain is not None:
@@ -39,13 +34,11 @@ def holds(sample: Sample) -> bool:
             _must_reach("the truncation part is", truncation, bound, exact)
             both = truncation + inputs, bound + more
             _must_reach("truncation and input together are", *both, rounded)
-    run = KernelRun(*sample.kernel_inputs, WORKING, 0)
-    bare = run.run(number_systems.get("float64", 17)).values["lambda_plain"]
+    bare = sample.run("float64", 17, *WORKING).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
     alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
     if alone != other:
         raise Violation(f"float64 gives {alone!r}, and beside exact numbers {other!r}")
-    return True
 
 
 def _must_add_up(chain: Chain) -> None:
@@ -76,11 +69,12 @@ def _nearest(x: Fraction) -> Fraction:
 def _area_error(sample: Sample, step_map: StepMap, start: Sequence[Fraction]) -> Ball | None:
     """Λ of the sample's steps; None where balls do not know it."""
     p, q, h = start
-    states = ball_steps(step_map, p, q, h, sample.steps)
-    if states is None or not states[-1].sharp:
+    try:
+        last = ball_steps(step_map, p, q, h, sample.steps)[-1].sharp()
+    except Silent:
         return None
     with working_precision(BITS):
-        return states[-1].product - 1
+        return last.product - 1
 
 
 def _must_reach(what: str, value: Fraction, bound: Fraction, wanted: Ball | None) -> None:

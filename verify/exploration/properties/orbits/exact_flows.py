@@ -4,13 +4,14 @@ G is the potential of the leading coefficient of ΔJ, where it has one. The flow
 extrapolation, to 40 digits over a short time.
 """
 
+from contextlib import suppress
 from fractions import Fraction
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.property import Violation
+from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.potential import potential_of
@@ -24,48 +25,35 @@ _WITHIN = Fraction(1, 2**20)  # of 1 + |L|: what (G(φ_t z) − G(z))/t leaves o
 Point = tuple[Fraction, Fraction]
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.is_turn(_IN) or not sample.ordinary:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN) and sample.ordinary)
     field = sample.field
     flow = Flow(field, _DIGITS)
     start = sample.p, sample.q
-    try:
-        after = _flow_to(flow, start, _TIME)
-        back = _flow_to(flow, after, -_TIME)
-    except NoFlowError:
-        return False
+    after = _flow_to(flow, start, _TIME)
+    back = _flow_to(flow, after, -_TIME)
     for name, x, y in zip("pq", start, back, strict=True):
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
     before, then = (_value(field.ring, field.energy, point) for point in (start, after))
-    if before is None or then is None:
-        return False
     with working_precision(_BITS):
         if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
             raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
     if sample.is_turn(_OF_POTENTIALS):
-        _potential_must_move(sample)
-    return True
+        with suppress(Silent):  # the flow has been looked at
+            _potential_must_move(sample)
 
 
 def _potential_must_move(sample: Sample) -> None:
     """Holds the change of G over an instant against L, where there is a G."""
-    found = potential_of(sample.proof, sample.scheme) if sample.polynomial else None
-    if found is None or not found.holds or found.element is None:
-        return
-    ring, potential = found.element
-    leading = sample.proof.first.element
-    assert leading is not None  # noqa: S101 - it has a potential
+    only_if(sample.polynomial)
+    found = potential_of(sample.proof, sample.scheme)
+    only_if(bool(found.holds))
+    ring, potential = known(found.element)
     start = sample.p, sample.q
-    try:
-        end = _flow_to(Flow(sample.field, 2 * _DIGITS), start, _INSTANT)
-    except NoFlowError:
-        return
+    end = _flow_to(Flow(sample.field, 2 * _DIGITS), start, _INSTANT)
     ends = [_value(ring, potential, point) for point in (start, end)]
-    wanted = _value(*leading, start)
-    if wanted is None or ends[0] is None or ends[1] is None:
-        return
+    wanted = _value(*known(sample.proof.first.element), start)
     with working_precision(_BITS):
         rate = (ends[1] - ends[0]) / rational_ball(_INSTANT)
         wrong = abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
@@ -76,9 +64,10 @@ def _potential_must_move(sample: Sample) -> None:
 def _flow_to(flow: Flow, start: Point, time: Fraction) -> Point:
     arithmetic = flow.arithmetic
     first = arithmetic.number(start[0]), arithmetic.number(start[1])
-    p, q = flow.follow(first, time, _MOST_STEPS)
+    with silent_at(NoFlowError):
+        p, q = flow.follow(first, time, _MOST_STEPS)
     return arithmetic.exact(p), arithmetic.exact(q)
 
 
-def _value(ring: Ring, x: Poly, point: Point) -> Ball | None:
-    return enclose(ring, x, dict(zip("pq", point, strict=True)), _BITS)
+def _value(ring: Ring, x: Poly, point: Point) -> Ball:
+    return known(enclose(ring, x, dict(zip("pq", point, strict=True)), _BITS))

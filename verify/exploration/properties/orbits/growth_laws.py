@@ -11,7 +11,7 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.exploration.ball_steps import BallState, ball_steps, sharp, unlike
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
 from verify.schemes.every_hamiltonian import TaylorSeries
@@ -23,47 +23,36 @@ _WITHIN = Fraction(1, 2**64)
 _MOST_ORDER = 4
 
 
-def holds(sample: Sample) -> bool:
-    if sample.step_map.implicit or sample.scheme.order > _MOST_ORDER or not sample.ordinary:
-        return False
-    if not (sample.polynomial or isinstance(sample.scheme.every_h, TaylorSeries)):
-        return False  # ΔJ in closed form, which the law is made of, may be long
-    try:
+def holds(sample: Sample) -> None:
+    only_if(not sample.step_map.implicit)
+    only_if(sample.scheme.order <= _MOST_ORDER and sample.ordinary)
+    # ΔJ in closed form, which the law is made of, may be long.
+    only_if(sample.polynomial or isinstance(sample.scheme.every_h, TaylorSeries))
+    with silent_at(NoLawError, InputError):  # ΔJ ≡ 0, or too large a closed form
         law = growth_law(sample.hamiltonian, sample.scheme.name)
-    except (NoLawError, InputError):  # ΔJ ≡ 0, or too large a closed form
-        return False
     bits = _BITS_A_POWER * (law.power + 3) + _SPARE
     states = ball_steps(sample.step_map, sample.p, sample.q, _STEP, _STEPS, bits)
-    if states is None:
-        return False
     with working_precision(bits):
-        return _by_law(law, states[0], states[-1])
+        _by_law(law, states[0], states[-1])
 
 
-def _by_law(law: GrowthLaw, *ends: BallState) -> bool:
+def _by_law(law: GrowthLaw, *ends: BallState) -> None:
     h = rational_ball(_STEP)
     found, rate = ends[-1].product.log(), _at(law.g, ends[0])
-    if rate is None:
-        return False
     if law.potential and law.leading:
         potential, leading = _change(law.potential, *ends), _change(law.leading, *ends)
-        if potential is None or leading is None:
-            return False
         found -= h ** (law.power - 1) * potential - h**law.power * leading / 2
     found /= h ** (law.power + 1) * _STEPS
-    if not (sharp(found) and sharp(rate)):
-        return False
+    only_if(sharp(found) and sharp(rate))
     if abs(found - rate) > (1 + abs(rate)) * rational_ball(_WITHIN):
         raise Violation(f"Λ/(h^{law.power + 1} T) is {unlike(found, rate)}, by the law")
-    return True
 
 
-def _change(element: Element, first: BallState, last: BallState) -> Ball | None:
+def _change(element: Element, first: BallState, last: BallState) -> Ball:
     """[F], from the first state to the last."""
-    before, after = _at(element, first), _at(element, last)
-    return None if before is None or after is None else after - before
+    return _at(element, last) - _at(element, first)
 
 
-def _at(element: Element, state: BallState) -> Ball | None:
+def _at(element: Element, state: BallState) -> Ball:
     ring, x = element
-    return enclose_over(ring, x, {"p": state.p, "q": state.q})
+    return known(enclose_over(ring, x, {"p": state.p, "q": state.q}))

@@ -8,7 +8,7 @@ from fractions import Fraction
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.exact import decimal
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average
@@ -18,23 +18,17 @@ _DIGITS = 12
 _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.is_turn(_IN) or not sample.polynomial or not sample.ordinary:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN) and sample.polynomial and sample.ordinary)
     field = sample.field
     ring = field.ring
     mixed = field.derive(ring.variable("p") * ring.variable("q"))
     start = sample.p, sample.q
-    try:
+    with silent_at(NoFlowError):  # the orbit is open
         found = average(sample.hamiltonian, (ring, field.energy + mixed), start, _DIGITS)
-    except NoFlowError:  # the orbit is open
-        return False
-    at_start = enclose(ring, field.energy, sample.start, 200)
-    if at_start is None:
-        return False
+    at_start = known(enclose(ring, field.energy, sample.start, 200))
     wanted = middle_and_radius(at_start)[0]
     size = 1 + abs(wanted) + Fraction(max(map(abs, found.values), default=0.0))
     if abs(found.value - wanted) > found.bound + _SPARE * size:
         told = f"{decimal(found.value, 12)} ± {decimal(found.bound, 3)}"
         raise Violation(f"the average is {told}, and H is {decimal(wanted, 12)}")
-    return True

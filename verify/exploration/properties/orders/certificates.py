@@ -8,7 +8,7 @@ import json
 from typing import Any
 
 from verify.errors import InputError
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
@@ -18,16 +18,13 @@ _IN = 10  # one in so many samples
 _LONGEST = 400  # terms in a certificate that is checked here
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.is_turn(_IN) or not sample.ordinary or sample.step_map.implicit:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit)
     proof = sample.proof
-    try:
+    with silent_at(InputError):  # such a map, or such functions, have no certificate
         data = of_one(proof, potential_of(proof, sample.scheme))
-    except InputError:  # such a map, or such functions, have no certificate
-        return False
-    if sum(len(c) for name in ("p_next", "q_next", "leading") for c in data[name]) > _LONGEST:
-        return False
+    entries = (entry for name in ("p_next", "q_next", "leading") for entry in data[name])
+    only_if(sum(map(len, entries)) <= _LONGEST)
     refused = _refused(data)
     if refused:
         raise Violation(f"the certificate is refused: {refused}")
@@ -35,7 +32,6 @@ def holds(sample: Sample) -> bool:
         changed = _changed(data, name)
         if changed is not None and not _refused(changed):
             raise Violation(f"with a number of {name} changed the certificate is accepted")
-    return True
 
 
 def _refused(data: dict[str, Any]) -> str:

@@ -3,21 +3,18 @@
 Its ΔJ then has at least one order more than the scheme, as the exact flow has det J = 1.
 """
 
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.verdict import Verdict
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.ordinary:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.ordinary)
     proof, scheme = sample.proof, sample.scheme
     if proof.verdict is Verdict.REFUTED:
         raise Violation(f"{scheme.name} is refuted: {proof.reason}")
-    if proof.verdict is Verdict.UNDECIDED:
-        return False
+    only_if(proof.verdict is not Verdict.UNDECIDED)
     if proof.convergence_order is not None and proof.convergence_order < scheme.order:
         raise Violation(f"{scheme.name} is proved, and has order {proof.convergence_order}")
     if proof.order is not None and proof.order <= scheme.order:
         raise Violation(f"{scheme.name} has order {scheme.order}, and its ΔJ {proof.order}")
-    return True

@@ -11,7 +11,7 @@ from fractions import Fraction
 from verify.arithmetic.arb import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import ball_steps
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 
@@ -22,19 +22,14 @@ _WITHIN = Fraction(1, 10)  # of a whole order
 _BESIDE = Fraction(3, 70), Fraction(1, 55)  # in p and q
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.ordinary or sample.step_map.implicit:
-        return False
-    order = sample.proof.convergence_order
-    if order is None:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.ordinary and not sample.step_map.implicit)
+    order = known(sample.proof.convergence_order)
     for aside in ((0, 0), _BESIDE):
         found = _orders(sample, sample.p + aside[0], sample.q + aside[1], order)
-        if found is None:
-            return False
         _must_reach(found, order + 1)
         if not _passes(found, order + 1):
-            return True
+            return
     raise Violation(f"the step's error has a higher order than {order + 1}, that proved")
 
 
@@ -52,12 +47,9 @@ def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
     return all(ball is None or ball > most for ball in found.values())
 
 
-def _orders(sample: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, Ball | None] | None:
-    """By which power of h the errors in p and q shrink, None for one that may be 0; None where
-    they are not known."""
+def _orders(sample: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, Ball | None]:
+    """By which power of h the errors in p and q shrink, None for one that may be 0."""
     whole, half = (_error(sample, (p, q), h, order) for h in (_STEP, _STEP / 2))
-    if whole is None or half is None:
-        return None
     found: dict[str, Ball | None] = {}
     with working_precision(64):
         for name, large, small in zip("pq", whole, half, strict=True):
@@ -70,23 +62,18 @@ def _orders(sample: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, B
 
 def _error(
     sample: Sample, point: tuple[Fraction, Fraction], h: Fraction, order: int
-) -> tuple[Ball, Ball] | None:
-    """Step minus flow in p and q, as balls; None where one of them is not known."""
+) -> tuple[Ball, Ball]:
+    """Step minus flow in p and q, as balls; Silent where one of them is not known."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE
-    states = ball_steps(sample.step_map, *point, h, 1, bits)
-    if states is None:
-        return None
+    after = ball_steps(sample.step_map, *point, h, 1, bits)[-1]
     flow = Flow(sample.field, int(bits * _DIGITS_A_BIT))
     arithmetic = flow.arithmetic
-    try:
-        with arithmetic.context():
-            start = arithmetic.number(point[0]), arithmetic.number(point[1])
-            end = flow.advance(start, arithmetic.number(h))
-    except NoFlowError:
-        return None
+    with silent_at(NoFlowError), arithmetic.context():
+        start = arithmetic.number(point[0]), arithmetic.number(point[1])
+        end = flow.advance(start, arithmetic.number(h))
     with working_precision(bits):
         exact = [_with_error(arithmetic.exact(x), bits - _LOST) for x in end]
-        return states[-1].p - exact[0], states[-1].q - exact[1]
+        return after.p - exact[0], after.q - exact[1]
 
 
 def _with_error(x: Fraction, bits: int) -> Ball:

@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
@@ -15,13 +15,11 @@ _IN = 3  # one in so many samples is asked whether its leading coefficient teles
 _proved = lru_cache(maxsize=64)(prove_every)
 
 
-def holds(sample: Sample) -> bool:
+def holds(sample: Sample) -> None:
     scheme = sample.scheme
-    if scheme.every_h is None or scheme.order > _MOST_ORDER or not sample.ordinary:
-        return False
+    only_if(scheme.every_h is not None and scheme.order <= _MOST_ORDER and sample.ordinary)
     every, proof = _proved(scheme.name), sample.proof
-    if every.verdict is not Verdict.PROVED:
-        return False
+    only_if(every.verdict is Verdict.PROVED)
     wrong = _contradiction(every, proof)
     if wrong:
         raise Violation(f"{wrong}, against what is proved for {every.quantifier}")
@@ -31,7 +29,6 @@ def holds(sample: Sample) -> bool:
         found = potential_of(proof, scheme)
         if found.holds is False:
             raise Violation(f"L is not X·G: {found.reason}; it is for {every.quantifier}")
-    return True
 
 
 def _contradiction(every: EveryProof, proof: Proof) -> str:

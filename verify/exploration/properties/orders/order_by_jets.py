@@ -14,7 +14,7 @@ from verify.algebra.jets import Jets, Poly
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, known, only_if
 from verify.exploration.sample import Sample
 from verify.schemes.every_hamiltonian import BySeries, RungeKutta, StageEquations, TaylorSeries
 from verify.schemes.scheme import Scheme
@@ -22,28 +22,22 @@ from verify.schemes.scheme import Scheme
 _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 
-def holds(sample: Sample) -> bool:
+def holds(sample: Sample) -> None:
     scheme = sample.scheme
-    if not _has_series_in_jets(scheme) or scheme.order > _MOST_ORDER or not sample.ordinary:
-        return False
+    only_if(_has_series_in_jets(scheme) and scheme.order <= _MOST_ORDER and sample.ordinary)
     proof = sample.proof
-    if proof.area_preserving is None:
-        return False
+    only_if(proof.area_preserving is not None)
     jets, coefficients = _of_every(scheme, scheme.order + 2)
     derivatives = _derivatives(sample, jets)
-    if derivatives is None:
-        return False
     for n, x in enumerate(coefficients, start=1):
         wanted = _value(x, derivatives)
         found = _leading(sample) if n == proof.order else flint.arb(0)
-        if found is None or not (sharp(found) and sharp(wanted)):
-            return False
+        only_if(sharp(found) and sharp(wanted))
         if not found.overlaps(wanted):
             at_point = f"at the initial value {unlike(found, wanted)}, by jets"
             raise Violation(f"the coefficient of h^{n} in ΔJ is {at_point}")
         if n == proof.order:
-            break
-    return True
+            return
 
 
 def _has_series_in_jets(scheme: Scheme) -> bool:
@@ -60,24 +54,22 @@ def _of_every(scheme: Scheme, most: int) -> tuple[Jets, tuple[Poly, ...]]:
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
 
 
-def _leading(sample: Sample) -> Ball | None:
+def _leading(sample: Sample) -> Ball:
     """The leading coefficient of this H's own ΔJ, at the initial value."""
     element = sample.proof.first.element
     assert element is not None  # noqa: S101 - ΔJ has an order
-    return enclose(*element, sample.start, BITS)
+    return known(enclose(*element, sample.start, BITS))
 
 
-def _derivatives(sample: Sample, jets: Jets) -> dict[tuple[int, int], Ball] | None:
-    """H_ij at the initial value; None where one of them is not defined there."""
+def _derivatives(sample: Sample, jets: Jets) -> dict[tuple[int, int], Ball]:
+    """H_ij at the initial value; Silent where one of them is not defined there."""
     field = sample.field
     ring, found = field.ring, {(1, 0): field.h_p, (0, 1): field.h_q}
     for i, j in sorted(jets.indices, key=sum):
         if (i, j) not in found:
             lower, name = ((i, j - 1), "q") if j else ((i - 1, 0), "p")
             found[i, j] = ring.diff(found[lower], name)
-    balls = ((ij, enclose(ring, found[ij], sample.start, BITS)) for ij in jets.indices)
-    values = {ij: ball for ij, ball in balls if ball is not None}
-    return values if len(values) == len(jets.indices) else None
+    return {ij: known(enclose(ring, found[ij], sample.start, BITS)) for ij in jets.indices}
 
 
 def _value(x: Poly, derivatives: dict[tuple[int, int], Ball]) -> Ball:

@@ -1,7 +1,7 @@
 """A map with one term too many is refuted, at the very power of h where the term was planted."""
 
 from verify.errors import InputError
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.order import prove
 from verify.schemes.step_map import StepMap
@@ -11,26 +11,18 @@ from verify.verdict import Verdict
 _IN = 2  # one in so many samples
 
 
-def holds(sample: Sample) -> bool:
+def holds(sample: Sample) -> None:
     order, parts = sample.scheme.order, sample.step_map.substeps
-    if (
-        not sample.is_turn(_IN)
-        or not sample.ordinary
-        or any(part.implicit or part.staged for part in parts)
-    ):
-        return False
-    if sample.proof.verdict is not Verdict.PROVED:
-        return False
-    try:
+    only_if(sample.is_turn(_IN) and sample.ordinary)
+    only_if(not any(part.implicit or part.staged for part in parts))
+    only_if(sample.proof.verdict is Verdict.PROVED)
+    with silent_at(InputError):  # its closed form is too large to be looked at
         found = prove(_planted(sample, order), sample.scheme)
-    except InputError:  # its closed form is too large to be looked at
-        return False
     if found.verdict is not Verdict.REFUTED:
         raise Violation(f"with q·h^{order} added to p' it is {found.verdict.value}")
     if found.convergence_order != order - 1:
         told = f"agrees with the flow up to h^{found.convergence_order}"
         raise Violation(f"with q·h^{order} added to p' it {told}, and truly up to h^{order - 1}")
-    return True
 
 
 def _planted(sample: Sample, power: int) -> StepMap:

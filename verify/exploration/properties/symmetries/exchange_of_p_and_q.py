@@ -5,14 +5,14 @@ Asked of schemes that treat p and q alike.
 
 from fractions import Fraction
 
-from verify.exploration.equivariance import knows_no_coordinates, same_step
+from verify.exploration.equivariance import knows_no_coordinates, must_be_same_step
+from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
 _IN = 2  # one in so many samples
 _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.is_turn(_IN) or not knows_no_coordinates(sample):
-        return False
-    return same_step(sample, _EXCHANGED, Fraction(-1), Fraction(1))
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN) and knows_no_coordinates(sample))
+    must_be_same_step(sample, _EXCHANGED, Fraction(-1), Fraction(1))

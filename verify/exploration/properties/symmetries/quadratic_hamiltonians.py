@@ -17,7 +17,7 @@ from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
-from verify.exploration.property import Violation
+from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
@@ -25,13 +25,11 @@ from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 _UNIT = 100  # coefficients are whole multiples of 1/100
 
 
-def holds(sample: Sample) -> bool:
+def holds(sample: Sample) -> None:
     generic = sample.scheme.every_h
     if not isinstance(generic, TaylorSeries | RungeKutta):
-        return False
+        raise Silent
     hessian = _hessian(sample)
-    if hessian is None:
-        return False
     h_pp, h_pq, h_qq = hessian
     square = -(sample.step_size**2) * (h_pp * h_qq - h_pq**2)
     wanted = _product(_stability_function(generic), square)
@@ -47,18 +45,16 @@ def holds(sample: Sample) -> bool:
         given = f"for Hess H = ({short(h_pp)}, {short(h_pq)}, {short(h_qq)})"
         told = "not defined" if found is None else unlike(found, true)
         raise Violation(f"{given} ΔJ is {told}")
-    return True
 
 
-def _hessian(sample: Sample) -> tuple[Fraction, Fraction, Fraction] | None:
-    """H_pp, H_pq, H_qq at the initial value, rounded; None where they are not ordinary numbers."""
+def _hessian(sample: Sample) -> tuple[Fraction, Fraction, Fraction]:
+    """H_pp, H_pq, H_qq at the initial value, rounded; Silent where they are no usual numbers."""
     field = sample.field
     ring, point = field.ring, {"p": sample.p, "q": sample.q}
     found = []
     for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
-        value = enclose(ring, ring.diff(x, name), point, 128)
-        if value is None or not abs(value) < 10**6:
-            return None
+        value = known(enclose(ring, ring.diff(x, name), point, 128))
+        only_if(abs(value) < 10**6)
         found.append(Fraction(round(middle_and_radius(value)[0] * _UNIT), _UNIT))
     return found[0], found[1], found[2]
 

@@ -3,7 +3,7 @@
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps, stepped, unlike
-from verify.exploration.property import Violation
+from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
@@ -11,21 +11,15 @@ from verify.verdict import Verdict
 _IN = 3  # one in so many samples is looked at by series, too
 
 
-def holds(sample: Sample) -> bool:
-    if not sample.scheme.symmetric:
-        return False
+def holds(sample: Sample) -> None:
+    only_if(sample.scheme.symmetric)
     if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
         series = by_series(sample.step_map, sample.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")
-    states = ball_steps(sample.step_map, sample.p, sample.q, sample.step_size, 1)
-    if states is None:
-        return False
+    first, last = ball_steps(sample.step_map, sample.p, sample.q, sample.step_size, 1)
     with working_precision(BITS):
-        back = stepped(sample.step_map, states[-1], rational_ball(-sample.step_size))
-    if back is None or not back.sharp:
-        return False
-    for name, ball, start in (("p", back.p, states[0].p), ("q", back.q, states[0].q)):
+        back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
+    for name, ball, start in (("p", back.p, first.p), ("q", back.q, first.q)):
         if not ball.overlaps(start):
             raise Violation(f"{name} comes back as {unlike(ball, start)}")
-    return True

@@ -5,7 +5,8 @@ Looked at for one c, that is negative and no power of two.
 
 from fractions import Fraction
 
-from verify.exploration.equivariance import same_step
+from verify.exploration.equivariance import must_be_same_step
+from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
 _IN = 2  # one in so many samples
@@ -13,5 +14,6 @@ _IDENTITY = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))
 _FACTOR = Fraction(-2, 3)
 
 
-def holds(sample: Sample) -> bool:
-    return sample.is_turn(_IN) and same_step(sample, _IDENTITY, _FACTOR, 1 / _FACTOR)
+def holds(sample: Sample) -> None:
+    only_if(sample.is_turn(_IN))
+    must_be_same_step(sample, _IDENTITY, _FACTOR, 1 / _FACTOR)
