@@ -27,7 +27,7 @@ from verify.execution.executors import (
 from verify.execution.keeping import versions
 from verify.formats import check_format
 from verify.reference.check import consistency
-from verify.reference.check.difference import Findings
+from verify.reference.check.difference import Findings, Place
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
 from verify.reference.make.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
@@ -117,9 +117,8 @@ def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -
             run = data.runs[index]
             steps = run.rows[-1].step
             if steps > left:
-                label = f"{run.label}, step {steps}"
-                why = f"with it, more than {most_steps} steps"
-                found.not_recomputed.append(f"{file}: {label}: {why}; see --most-steps")
+                why = f"with it, more than {most_steps} steps; see --most-steps"
+                Place(found, file, f"{run.label}, step {steps}").is_left_out(why)
                 continue
             left -= steps
         kept.append(unit)
@@ -151,11 +150,11 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
             there = listed(each.name, contents[each.name])
             for column in ("bytes", "sha256"):
                 said, is_so = str(getattr(each, column)), str(getattr(there, column))
-                if said != is_so:
-                    found.differs(each.name, "", column, f"{said} (manifest)", is_so)
+                place = Place(found, each.name)
+                place.must(said == is_so, column, f"{said} (manifest)", is_so)
     for name in SCHEMAS.keys() & contents.keys():
         text = text_of(contents[name], name)
-        found.differences += consistency.of_text(schema_text(name), text, name)
+        consistency.of_text(schema_text(name), text, Place(found, name))
     scenes = _scenes(manifest, own, found)
     _check_provenance(manifest, scenes, found)
     _complete(manifest, scenes, found)
@@ -168,18 +167,18 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
 def _of_scene(
     data: Data, file: str, scene: Scene, contents: dict[str, bytes], found: Checked
 ) -> Iterator[tuple[Data, str]]:
-    found.differences += consistency.of_data(data, file, scene)
+    consistency.of_data(data, scene, Place(found, file))
     for name, rows in tables(data).items():
         content = contents.get(f"{name}.csv")
         if content is not None:
-            found.differences += consistency.of_csv(rows, content, f"{name}.csv")
+            consistency.of_csv(rows, content, Place(found, f"{name}.csv"))
         content = contents.get(f"{name}.parquet")
         if content is not None:
             from verify.reference.make.parquet import installed, parquet_rows
 
             if installed():
                 again = parquet_rows(content, f"{name}.parquet")
-                found.differences += consistency.of_table(rows, again, f"{name}.parquet")
+                consistency.of_table(rows, again, Place(found, f"{name}.parquet"))
             else:
                 found.not_compared.append(f"{name}.parquet: pyarrow is not installed")
     yield data, file
@@ -193,9 +192,9 @@ def _model(model: type[M], form: str, content: bytes, name: str, found: Checked)
     except ValidationError as error:
         told = error.errors(include_url=False)[0]
         where, what = ".".join(map(str, told["loc"])), f"as the schema says ({told['msg']})"
-        found.differs(name, where, "", what, str(told["input"]))
+        Place(found, name, where).differs("", what, str(told["input"]))
         return None
-    found.differences += consistency.of_text(json_text(made), text_of(content, name), name)
+    consistency.of_text(json_text(made), text_of(content, name), Place(found, name))
     return made
 
 
@@ -205,11 +204,11 @@ def _listed(folder: Path, manifest: Manifest, found: Checked) -> Iterator[str]:
     names = [each.name for each in manifest.files]
     for name in sorted({*there, *names}):
         if name not in there:
-            found.differs(name, "", "", "a file", "missing")
+            Place(found, name).differs("", "a file", "missing")
         elif name not in names:
-            found.differs(name, "", "", "in the manifest, or not there", "extra")
+            Place(found, name).differs("", "in the manifest, or not there", "extra")
         elif names.count(name) > 1:
-            found.differs(MANIFEST, name, "", "listed once", "listed twice")
+            Place(found, MANIFEST, name).differs("", "listed once", "listed twice")
         else:
             found.files += 1
             yield name
@@ -219,18 +218,16 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
     """The manifest's scenes by name, each from its own text."""
     scenes = {}
     for each in manifest.scenes:
-        where = MANIFEST, f"scene {each.name}"
+        place = Place(found, MANIFEST, f"scene {each.name}")
         actual = digest(each.toml.encode())
-        if each.sha256 != actual:
-            found.differs(*where, "sha256", actual, each.sha256)
+        place.must(each.sha256 == actual, "sha256", actual, each.sha256)
         try:
             scene = scene_from_toml(each.toml, each.name)
         except InputError as error:
-            found.differs(*where, "toml", "a scene", str(error))
+            place.differs("toml", "a scene", str(error))
             continue
         if size_of(scene) > MOST_BYTES:  # what it asks for is listed, and would fill all memory
-            readable = "a scene whose data can be read"
-            found.differs(*where, "toml", readable, each.toml)
+            place.differs("toml", "a scene whose data can be read", each.toml)
             continue
         scenes[each.name] = scene
     if own is not None:
@@ -238,7 +235,7 @@ def _scenes(manifest: Manifest, own: Path | None, found: Checked) -> dict[str, S
         given = {each.name: each.toml for each in manifest.scenes}
         for name in sorted({*wanted, *given}):
             mine, theirs = wanted.get(name, ""), given.get(name, "")
-            found.differences += consistency.of_text(mine, theirs, f"{MANIFEST}: scene {name}")
+            consistency.of_text(mine, theirs, Place(found, f"{MANIFEST}: scene {name}"))
     return scenes
 
 
@@ -246,14 +243,11 @@ def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Check
     """The command and the versions, as far as they can be told to be wrong."""
     wanted = _other_command(manifest, scenes)
     if wanted is not None:
-        found.differs(MANIFEST, "command", "", wanted, manifest.command)
-    if list(manifest.versions) != list(versions()):
-        wanted = ", ".join(versions())
-        given = ", ".join(manifest.versions)
-        found.differs(MANIFEST, "versions", "", wanted, given)
+        Place(found, MANIFEST, "command").differs("", wanted, manifest.command)
+    place, given = Place(found, MANIFEST, "versions"), list(manifest.versions)
+    place.must(given == list(versions()), "", ", ".join(versions()), ", ".join(given))
     for name, version in manifest.versions.items():
-        if not _VERSION.fullmatch(version):
-            found.differs(MANIFEST, "versions", name, "a version", version)
+        place.must(_VERSION.fullmatch(version), name, "a version", version)
 
 
 def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
@@ -277,10 +271,10 @@ def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> N
     """Whether each scene has its files, and each file its scene."""
     wanted = names_of(scenes, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
-    if len(scenes) < len(manifest.scenes):
-        found.differs(MANIFEST, "scenes", "", "one of each name", "two")
+    one_each = len(scenes) == len(manifest.scenes)
+    Place(found, MANIFEST, "scenes").must(one_each, "", "one of each name", "two")
+    files = Place(found, MANIFEST, "files")
     for name in sorted(wanted ^ set(names)):
         given = ("listed", "not listed") if name in wanted else ("not listed", "listed")
-        found.differs(MANIFEST, "files", name, *given)
-    if names != sorted(names):
-        found.differs(MANIFEST, "files", "", "in the order of names", "not")
+        files.differs(name, *given)
+    files.must(names == sorted(names), "", "in the order of names", "not")

@@ -39,12 +39,34 @@ class Findings:
     differences: list[Difference] = field(default_factory=list)
     not_recomputed: list[str] = field(default_factory=list)
 
-    def differs(self, file: str, row: str, column: str, wanted: str, found: str) -> None:
-        """Takes up a difference, as its parts."""
-        self.differences.append(Difference(file, row, column, wanted, found))
-
     def add(self, other: "Findings") -> None:
         """Takes up what another one found."""
         self.recomputed += other.recomputed
         self.differences += other.differences
         self.not_recomputed += other.not_recomputed
+
+
+@dataclass(frozen=True)
+class Place:
+    """A file, or a row of it; what is found there is taken up among the findings."""
+
+    findings: Findings
+    file: str
+    row: str = ""
+
+    def at(self, row: str) -> "Place":
+        """A row of the file."""
+        return Place(self.findings, self.file, row)
+
+    def must(self, right: object, column: str, wanted: str, found: str) -> None:
+        """Takes up a difference unless it is right."""
+        if not right:
+            self.differs(column, wanted, found)
+
+    def differs(self, column: str, wanted: str, found: str) -> None:
+        """Takes up a difference."""
+        self.findings.differences.append(Difference(self.file, self.row, column, wanted, found))
+
+    def is_left_out(self, why: object) -> None:
+        """Takes up that the row is not recomputed."""
+        self.findings.not_recomputed.append(f"{self.file}: {self.row}: {why}")

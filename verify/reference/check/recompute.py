@@ -14,7 +14,7 @@ from typing import Any
 import flint
 
 from verify.arithmetic.exact import magnitude
-from verify.reference.check.difference import Findings
+from verify.reference.check.difference import Findings, Place
 from verify.reference.check.exact_flow import BlowsUpError, State, states_at
 from verify.reference.check.recompute_proof import proof_again, shown
 from verify.reference.check.tape import NotReadError
@@ -44,9 +44,9 @@ def recomputed(data: Data, file: str, kind: str, index: int) -> Findings:
         elif kind == "flow":
             _flow(known, data.flow[index], file, found)
         else:
-            proof_again(known, data, data.proofs[index], file, found)
+            proof_again(known, data, data.proofs[index], Place(found, file))
     except (UnknownSchemeError, NotReadError) as error:
-        found.not_recomputed.append(f"{file}: {kind} no. {index + 1}: {error}")
+        Place(found, file, f"{kind} no. {index + 1}").is_left_out(error)
     return found
 
 
@@ -59,38 +59,35 @@ def _run(known: Field, run: Run, file: str, found: Findings) -> None:
     for attempt in range(_DOUBLINGS):
         again = Findings()
         with suppress(_TooWide), flint.ctx.workprec(bits << attempt):
-            _orbit(step, run, file, again, final=attempt == _DOUBLINGS - 1)
+            _orbit(step, run, Place(again, file), final=attempt == _DOUBLINGS - 1)
             found.add(again)
             return
-    label = f"{run.label}, step {run.rows[-1].step}"
-    most = bits << (_DOUBLINGS - 1)
-    found.not_recomputed.append(f"{file}: {label}: {most} bits do not tell")
+    last = Place(found, file, f"{run.label}, step {run.rows[-1].step}")
+    last.is_left_out(f"{bits << (_DOUBLINGS - 1)} bits do not tell")
 
 
-def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> None:
+def _orbit(step: Step, run: Run, file: Place, *, final: bool) -> None:
     """Every row of a run; _TooWide where a ball does not tell. `final`: there is no further try."""
     orbit = _Orbit(step, Fraction(run.p), Fraction(run.q), Fraction(run.step_size))
     size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
     left: int | None = None
     for row in run.rows:
-        label = f"{run.label}, step {row.step}"
+        at = file.at(f"{run.label}, step {row.step}")
         if left is not None:  # and so it has at all later steps
-            found.recomputed += 1
-            if row.failed_step != left:
-                given = str(row.failed_step)
-                found.differs(file, label, "failed_step", str(left), given)
+            at.findings.recomputed += 1
+            at.must(row.failed_step == left, "failed_step", str(left), str(row.failed_step))
             continue
         if row.status == "unresolved":
-            found.not_recomputed.append(f"{file}: {label}: has no values")
+            at.is_left_out("has no values")
             continue
         if row.status == "left range":
-            left = _leaves_range(orbit, row, file, label, found, final)
+            left = _leaves_range(orbit, row, at, final)
             if left is None:
                 return
             continue
         orbit.to(row.step)
         values = orbit.values()
-        found.recomputed += 1
+        at.findings.recomputed += 1
         for name, cell in values_of(row).items():
             if name == "mse" and row.step == 0:
                 continue
@@ -98,10 +95,10 @@ def _orbit(step: Step, run: Run, file: str, found: Findings, *, final: bool) -> 
                 if not final:
                     raise _TooWide
                 if cell is not None:  # no step begins there
-                    found.differs(file, label, name, "null", cell.value)
+                    at.differs(name, "null", cell.value)
                 continue
             scale = size if name in ("p", "q") else Fraction(1)
-            _compare(cell, values[name], run.digits, scale, (file, label, name), found)
+            _compare(name, cell, values[name], run.digits, scale, at)
 
 
 class _Orbit:
@@ -135,9 +132,7 @@ class _Orbit:
         return dict(zip(VALUES, numbers, strict=True))
 
 
-def _leaves_range(
-    orbit: _Orbit, row: OrbitPoint, file: str, label: str, found: Findings, final: bool
-) -> int | None:
+def _leaves_range(orbit: _Orbit, row: OrbitPoint, at: Place, final: bool) -> int | None:
     """The step after which the orbit is beyond 2^4000, or not defined; None where it is neither.
 
     A ball that is not finite may be too wide only: that is not taken for an answer before `final`.
@@ -156,23 +151,21 @@ def _leaves_range(
         if not all(x < limit for x in sizes):
             raise _TooWide
     else:
-        at = f"{orbit.done} steps"
-        found.differs(file, label, "status", f"defined after {at}", row.status)
+        at.differs("status", f"defined after {orbit.done} steps", row.status)
         return None
-    found.recomputed += 1
-    if orbit.done != row.failed_step:
-        wanted, given = str(orbit.done), str(row.failed_step)
-        found.differs(file, label, "failed_step", wanted, given)
+    at.findings.recomputed += 1
+    given = row.failed_step
+    at.must(orbit.done == given, "failed_step", str(orbit.done), str(given))
     return orbit.done
 
 
 def _compare(
+    name: str,
     cell: Rounded | None,
     ball: Number,
     digits: int,
     size: Fraction,
-    where: tuple[str, str, str],
-    found: Findings,
+    at: Place,
     places: int = 0,
 ) -> None:
     """Whether the printed number is the one to which every number of the ball rounds.
@@ -180,12 +173,12 @@ def _compare(
     An exact number must be met to some digits more; 0 to twice the digits, or to `places`.
     """
     if cell is None:
-        found.differs(*where, shown(ball, digits), "null")
+        at.differs(name, shown(ball, digits), "null")
         return
     value, radius = flint.arb(cell.value), flint.arb(cell.radius)  # no rationals: 1e+999999999
     low, high = value - radius, value + radius
     if ball < low or ball > high:
-        found.differs(*where, shown(ball, digits), cell.value)
+        at.differs(name, shown(ball, digits), cell.value)
         return
     if radius == 0:
         ten, exact_zero = flint.arb(10), bool(value == 0)
@@ -206,55 +199,47 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
     rows = [row for row in flow.rows if row.status != "not followed"]
     for row in flow.rows:
         if row.status == "not followed":
-            label = f"{flow.label}, step {row.step}"
-            found.not_recomputed.append(f"{file}: {label}: has no values")
+            Place(found, file, f"{flow.label}, step {row.step}").is_left_out("has no values")
     times = [row.step * Fraction(flow.step_size) for row in rows]
     for more in _FLOW_DIGITS:
         again, digits = Findings(), flow.digits + more
         states, why = states_at(known, Fraction(flow.p), Fraction(flow.q), times, digits)
         with suppress(_TooWide), flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
             for row, state in zip_longest(rows, states):
-                where = file, f"{flow.label}, step {row.step}"
+                at = Place(again, file, f"{flow.label}, step {row.step}")
                 if state is None:
-                    _not_reached(known, flow, row, why, where, again)
+                    _not_reached(known, flow, row, why, at)
                 else:
-                    _reached(flow, row, state, where, again)
+                    _reached(flow, row, state, at)
             found.add(again)
             return
-    label = f"{flow.label}, step {flow.rows[-1].step}"
-    found.not_recomputed.append(f"{file}: {label}: more digits do not tell")
+    last = Place(found, file, f"{flow.label}, step {flow.rows[-1].step}")
+    last.is_left_out("more digits do not tell")
 
 
-def _reached(
-    flow: Flow, row: FlowPoint, state: State, where: tuple[str, str], found: Findings
-) -> None:
+def _reached(flow: Flow, row: FlowPoint, state: State, at: Place) -> None:
     """A row whose time was reached."""
-    found.recomputed += 1
+    at.findings.recomputed += 1
     if row.status == "blows up":
-        found.differs(*where, "status", "finished", row.status)
+        at.differs("status", "finished", row.status)
         return
     size, places = max(abs(Fraction(flow.p)), abs(Fraction(flow.q))), flow.digits + _SHARP
     for (name, cell), ball in zip(values_of(row).items(), state, strict=True):
-        _compare(cell, ball, flow.digits, size, (*where, name), found, places)
+        _compare(name, cell, ball, flow.digits, size, at, places)
 
 
 def _not_reached(
-    known: Field,
-    flow: Flow,
-    row: FlowPoint,
-    why: Exception | None,
-    where: tuple[str, str],
-    found: Findings,
+    known: Field, flow: Flow, row: FlowPoint, why: Exception | None, at: Place
 ) -> None:
     """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
     if row.status == "blows up" and isinstance(why, BlowsUpError):
-        found.recomputed += 1
+        at.findings.recomputed += 1
         return
-    found.not_recomputed.append(f"{': '.join(where)}: {why}")
+    at.is_left_out(why)
     if row.p is not None and row.q is not None:
         start = (flint.arb(number(Fraction(x))) for x in (flow.p, flow.q))
         ends = (flint.arb(x.value) + flint.arb(0, 1) * flint.arb(x.radius) for x in (row.p, row.q))
         first, last = known.energy(*start), known.energy(*ends)
         if first < last or first > last:
             told = f"p and q where H is {shown(first, flow.digits)}"
-            found.differs(*where, "p, q", told, shown(last, flow.digits))
+            at.differs("p, q", told, shown(last, flow.digits))

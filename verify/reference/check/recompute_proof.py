@@ -10,7 +10,7 @@ from typing import Any
 
 import flint
 
-from verify.reference.check.difference import Findings
+from verify.reference.check.difference import Place
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, flow_series, step_of
 from verify.reference.make.models import Data, Proof
@@ -20,20 +20,19 @@ _ANY_ORDER = 100  # beyond which no proof goes
 _BITS = 512
 
 
-def proof_again(known: Field, data: Data, proof: Proof, file: str, found: Findings) -> None:
+def proof_again(known: Field, data: Data, proof: Proof, file: Place) -> None:
     """The powers of h in det J and in the map, at points near the initial values.
 
     That a coefficient vanishes for every p and q is not seen so, but that it does not is.
     """
     order, convergence = proof.order, proof.convergence_order
-    file_row = file, f"proof of {proof.scheme}"
+    row = file.at(f"proof of {proof.scheme}")
     for column, given in (("order", order), ("convergence_order", convergence)):
         if (given or 0) > _ANY_ORDER:
-            wanted = f"at most {_ANY_ORDER}"
-            found.differs(*file_row, column, wanted, str(given))
+            row.differs(column, f"at most {_ANY_ORDER}", str(given))
             return
     most = max(_MOST_ORDER if order is None else order, (convergence or 0) + 1)
-    looking = _Looking(known, proof, file_row, most, found)
+    looking = _Looking(known, proof, row, most)
     for p, q in _points(data):
         with flint.ctx.workprec(_BITS), _cap(most + 1):
             looking.at(p, q)
@@ -43,15 +42,10 @@ def proof_again(known: Field, data: Data, proof: Proof, file: str, found: Findin
 class _Looking:
     """One proof's coefficients at one point after another."""
 
-    def __init__(
-        self, known: Field, proof: Proof, row: tuple[str, str], most: int, found: Findings
-    ) -> None:
-        self.known, self.proof, self.row, self.most, self.found = known, proof, row, most, found
+    def __init__(self, known: Field, proof: Proof, row: Place, most: int) -> None:
+        self.known, self.proof, self.row, self.most = known, proof, row, most
         self.step, self.leading = step_of(proof.scheme, known), known.tape.read(proof.leading)
         self.looked, self.seen = 0, {"order": False, "convergence_order": False}
-
-    def differs(self, column: str, wanted: str, given: str) -> None:
-        self.found.differs(*self.row, column, wanted, given)
 
     def at(self, p: Fraction, q: Fraction) -> None:
         area, apart, lead = _powers(self.known, self.step, p, q, self.most, self.leading)
@@ -63,8 +57,8 @@ class _Looking:
         upto = self.most - 1 if convergence is None else convergence
         self._vanish("convergence_order", apart[: upto + 1])
         if order is not None:
-            if not (area[order] - lead).contains(0):
-                self.differs("leading", f"{shown(area[order], 20)} at a point", shown(lead, 20))
+            wanted = f"{shown(area[order], 20)} at a point"
+            self.row.must((area[order] - lead).contains(0), "leading", wanted, shown(lead, 20))
             self.seen["order"] |= not area[order].contains(0)
         if convergence is not None:
             self.seen["convergence_order"] |= not apart[convergence + 1].contains(0)
@@ -74,20 +68,19 @@ class _Looking:
             if not c.contains(0):
                 least = k if column == "order" else k - 1
                 wanted = f"{least}, since the coefficient of h^{k} is {shown(c, 12)}"
-                self.differs(column, wanted, str(getattr(self.proof, column)))
+                self.row.differs(column, wanted, str(getattr(self.proof, column)))
                 return
 
     def end(self) -> None:
         """What was claimed not to vanish, and did wherever it was looked at."""
         if not self.looked:
-            told = f"{self.row[0]}: {self.row[1]}: H is not defined nearby"
-            self.found.not_recomputed.append(told)
+            self.row.is_left_out("H is not defined nearby")
             return
-        self.found.recomputed += 1
+        self.row.findings.recomputed += 1
         for column, seen in self.seen.items():
             given = getattr(self.proof, column)
-            if given is not None and not seen:
-                self.differs(column, "more, since that coefficient is 0", str(given))
+            wanted = "more, since that coefficient is 0"
+            self.row.must(seen or given is None, column, wanted, str(given))
 
 
 def _powers(
