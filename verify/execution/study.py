@@ -1,14 +1,17 @@
 """A study: one question that a scene may ask, what it needs, and what is made of what was found."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from verify.execution.plan import Plan
+from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
 
 Results = Mapping[str, Frozen]  # by the keys of tasks
+Need = Callable[[Plan, Scene], None]  # adds to the plan what the scene asks for
+Result = TypeVar("Result", bound=Frozen)
 
 
 @dataclass(frozen=True)
@@ -37,10 +40,24 @@ class Study:
     order: int
     sections: tuple[Section, ...] = ()
     need_of_scheme: Callable[[Plan, Scene, str, bool], None] | None = None
-    need: Callable[[Plan, Scene], None] | None = None
+    need: Need | None = None
     found: Callable[[Scene, Results], dict[str, Any]] | None = None
 
 
 def called(scene: Scene) -> str:
     """The scene's name in the reasons of a plan."""
     return scene.name or scene.title or "scene"
+
+
+def plan_of(scenes: Iterable[Scene], need: Need) -> Plan:
+    """What the scenes ask for, as far as `need` looks at them; a task of several is done once."""
+    plan = Plan()
+    for scene in scenes:
+        need(plan, scene)
+    return plan
+
+
+def known_results(model: type[Result], tasks: Iterable[Task], results: Results) -> list[Result]:
+    """The results of these tasks, in their order; a task that was not done is left out."""
+    found = (results.get(task.key) for task in tasks)
+    return [result for result in found if isinstance(result, model)]

@@ -2,8 +2,11 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import PlainSerializer, PlainValidator, TypeAdapter
 
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number import Number
@@ -26,6 +29,29 @@ _SCALED = {
     "dj": 1,
 }  # powers of the 2^s that the kernel carries
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
+Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
+Note = dict[str, Exact]
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Where a run is after some chunks and their notes, which is all that a checkpoint keeps.
+
+    `trail` has p, q and the observables at points on the way and at the last step done, as the
+    exact rationals that they are; `tangents` what `verify.kernels.tangent_map.NAMES` names, at the
+    same points. `state`: all that is carried; `seen`: extremes since the last note.
+    """
+
+    done: int = 0
+    seconds: float = 0.0
+    state: tuple[Exact, ...] = ()
+    seen: Note = field(default_factory=dict)
+    trail: tuple[Note, ...] = ()
+    tangents: tuple[Note, ...] = ()
+    series: tuple[SeriesPoint, ...] = ()
+
+
+_KEPT = TypeAdapter(Reached)
 
 
 class ChunkedLoop:
@@ -46,16 +72,12 @@ class ChunkedLoop:
         self.fixed += [number(x) for x in limits]
         self.state = self._first_state()
         self.section = -(-run.steps // run.sections)  # steps between two notes
-        self.done, self.seconds = 0, 0.0
-        self.trail: list[dict[str, Fraction]] = []
-        self.tangents: list[dict[str, Fraction]] = []
-        self.series: list[SeriesPoint] = []
-        self._seen: dict[str, Fraction] = {}  # extremes since the last note
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
-        self._restore(run.keeper.load(self._label))
-        self._sound = self._mark()
+        kept = run.keeper.load(self._label)
+        self.reached = Reached() if kept is None else self._restored(kept)
+        self.done, self.seconds = self.reached.done, self.reached.seconds
 
     def _first_state(self) -> State:
         start, number = self.run.start, self.arithmetic.number
@@ -83,7 +105,6 @@ class ChunkedLoop:
                 return
             self.state, self.done = after, self.done + count
             self._note()
-            self._sound = self._mark()
             yield self.done
             if run.keeper.due(self._label):
                 self.keep()
@@ -116,23 +137,31 @@ class ChunkedLoop:
     # -- what is noted ------------------------------------------------------------------------
 
     def _note(self) -> None:
+        """Takes up the state. It is taken up whole: an interruption may come amid this."""
         raw = {n: self._exact(x) for n, x in zip(self.kernel.state_names, self.state, strict=True)}
-        radius = self.arithmetic.radius or (lambda _: Fraction(0))
+        before, seen = self.reached, self._extremes(raw)
+        after = replace(before, done=self.done, seconds=self.seconds, state=tuple(raw.values()),
+                        seen=seen)  # fmt: skip
+        if self.done % self.section == 0 or self.done == self.run.steps:
+            tangents, series = before.tangents, before.series
+            if "growth" in raw:
+                known = {name: raw[name] for name in tangent_map.NAMES if name in raw}
+                tangents += (known | {"done": Fraction(self.done)},)
+            if seen:
+                series += (self._point(len(before.trail) * self.section + 1, seen),)
+            trail = (*before.trail, self._finals(raw))
+            after = replace(after, seen={}, trail=trail, tangents=tangents, series=series)
+        self.reached = after
+
+    def _extremes(self, raw: Mapping[str, Fraction]) -> dict[str, Fraction]:
+        """Those since the last note."""
+        radius, found = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self.reached.seen)
         for name, x in zip(self.kernel.state_names, self.state, strict=True):
             if name in _EXTREMES:
                 low = name.endswith("low")
                 end = raw[name] - radius(x) if low else raw[name] + radius(x)
-                self._seen[name] = (min if low else max)(end, self._seen.get(name, end))
-        if self.done % self.section and self.done < self.run.steps:
-            return
-        self.trail.append(self._finals(raw))
-        if "growth" in raw:
-            seen = {name: raw[name] for name in tangent_map.NAMES if name in raw}
-            self.tangents.append(seen | {"done": Fraction(self.done)})
-        if self._seen:
-            first = (len(self.trail) - 1) * self.section + 1
-            self.series.append(self._point(first))
-            self._seen = {}
+                found[name] = (min if low else max)(end, found.get(name, end))
+        return found
 
     def _exact(self, x: Number) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
@@ -165,9 +194,9 @@ class ChunkedLoop:
             found["mse"] /= self.done
         return found
 
-    def _point(self, first: int) -> SeriesPoint:
+    def _point(self, first: int, seen: Mapping[str, Fraction]) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:
-            ends = (self._seen[f"{name}_{end}"] for end in ("low", "high"))
+            ends = (seen[f"{name}_{end}"] for end in ("low", "high"))
             low, high = (self._unscaled(name, x) for x in ends)
             return decimal(low, 7), decimal(high, 7)
 
@@ -177,44 +206,14 @@ class ChunkedLoop:
 
     def keep(self) -> None:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
-        if self.arithmetic.radius is not None:
-            return  # a ball's radius is not kept; such runs are short
-        done, seconds, state, seen, (trail, tangents, series) = self._sound
-        data = {
-            "done": done,
-            "seconds": seconds,
-            "state": [fraction_text(self._exact(x)) for x in state],
-            "seen": _texts(seen),
-            "trail": list(map(_texts, self.trail[:trail])),
-            "tangents": list(map(_texts, self.tangents[:tangents])),
-            "series": [point.model_dump(mode="json") for point in self.series[:series]],
-        }
-        self.run.keeper.save(self._label, data)
+        # A ball's radius is not kept; such runs are short.
+        if self.arithmetic.radius is None and self.reached.done:
+            self.run.keeper.save(self._label, _KEPT.dump_python(self.reached, mode="json"))
 
-    def _mark(self) -> tuple[int, float, State, dict[str, Fraction], tuple[int, ...]]:
-        """Where the run is after a chunk and its notes; an interruption may come amid them."""
-        notes = len(self.trail), len(self.tangents), len(self.series)
-        return self.done, self.seconds, self.state, dict(self._seen), notes
-
-    def _restore(self, kept: Mapping[str, Any] | None) -> None:
-        if kept is None:
-            return
-        self.done, self.seconds = kept["done"], kept["seconds"]
-        number, kinds = self.arithmetic.number, self.kernel.kinds
-        values = [fraction_of(x) for x in kept["state"]]
+    def _restored(self, kept: Mapping[str, Any]) -> Reached:
+        found = _KEPT.validate_python(kept)
         self.state = tuple(
-            float(x) if kind == "float" else number(x)
-            for kind, x in zip(kinds, values, strict=True)
+            float(x) if kind == "float" else self.arithmetic.number(x)
+            for kind, x in zip(self.kernel.kinds, found.state, strict=True)
         )
-        self._seen = _fractions(kept["seen"])
-        self.trail = list(map(_fractions, kept["trail"]))
-        self.tangents = list(map(_fractions, kept["tangents"]))
-        self.series = [SeriesPoint.model_validate(point) for point in kept["series"]]
-
-
-def _texts(note: Mapping[str, Fraction]) -> dict[str, str]:
-    return {name: fraction_text(x) for name, x in note.items()}
-
-
-def _fractions(note: Mapping[str, str]) -> dict[str, Fraction]:
-    return {name: fraction_of(x) for name, x in note.items()}
+        return found

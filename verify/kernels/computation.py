@@ -4,7 +4,7 @@ It depends on the map, and on what is asked of it, but on no precision and on no
 beyond `Asked`. So it is made once for a map, and shared by the runs of it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -13,7 +13,7 @@ from verify.algebra.ring import Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.increments import increments
 from verify.kernels.program import Evaluator, Program
-from verify.kernels.tangent_map import Tangent
+from verify.kernels.tangent_map import Tangent, product
 from verify.schemes import get
 from verify.schemes.step_map import StepMap, Substep, h_inside
 
@@ -53,47 +53,20 @@ class Computation:
         return [*self.outputs.values(), *(self.tangent.needed if self.tangent else ())]
 
 
-class _Itself:
-    """A step map as a key: that very object, since to compare maps takes long."""
-
-    def __init__(self, step_map: StepMap) -> None:
-        self.step_map = step_map
-
-    def __hash__(self) -> int:
-        return id(self.step_map)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Itself) and self.step_map is other.step_map
-
-
 def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
     """The scheme's map of a Hamiltonian; the same one for the next that asks."""
     return get(scheme).step_map(hamiltonian)
 
 
-def computed(step_map: StepMap, asked: Observed) -> Computation:
-    """What is asked of a map, made once as long as it is among the last ones."""
-    return _computed(_Itself(step_map), asked)
-
-
-@dataclass(frozen=True, eq=False)
-class _FirstPart:
-    """A program with the inputs, `named`, and ΔJ of the first substep, as `evaluator` wrote it."""
-
-    program: Program
-    named: Mapping[str, int]
-    evaluator: Evaluator
-    delta_j: int
-
-    def copy(self) -> tuple[Program, Evaluator]:
-        evaluator = self.evaluator.copy()
-        return evaluator.program, evaluator
-
-
 @lru_cache(maxsize=64)
-def _first_part(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -> _FirstPart:
-    """What all that is asked of a map has in common: ΔJ is the longest part of it."""
-    step_map, program = itself.step_map, Program()
+def _first_part(
+    step_map: StepMap, pipelined: bool, scaled: bool, delta_j: bool
+) -> tuple[Evaluator, Mapping[str, int], int]:
+    """What all that is asked of a map has in common: ΔJ is the longest part of it.
+
+    What wrote it, to be copied, the inputs by their names, and ΔJ of the first substep.
+    """
+    program = Program()
     # A user's parameter may be named like anything; in the source it is x0, x1, ….
     parameters = step_map.hamiltonian.symbols
     arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(parameters)}
@@ -106,21 +79,23 @@ def _first_part(itself: _Itself, pipelined: bool, scaled: bool, delta_j: bool) -
     evaluator = Evaluator(program, first.ring, named, pipelined)
     if delta_j and not first.preserves_area:
         found = _delta_j(evaluator, first, scaled, _common_power(step_map, scaled))
-    return _FirstPart(program, named, evaluator, found)
+    return evaluator, named, found
 
 
 @lru_cache(maxsize=64)
-def _computed(itself: _Itself, asked: Observed) -> Computation:
-    step_map, power = itself.step_map, _common_power(itself.step_map, asked.scaled)
-    begun = _first_part(itself, asked.pipelined, asked.scaled, asked.delta_j)
-    program, evaluator = begun.copy()
+def computed(step_map: StepMap, asked: Observed) -> Computation:
+    """What is asked of a map, made once as long as it is among the last ones."""
+    power = _common_power(step_map, asked.scaled)
+    begun, named, delta_j = _first_part(step_map, asked.pipelined, asked.scaled, asked.delta_j)
+    evaluator = begun.copy()
+    program = evaluator.program
     tangent = Tangent(program) if asked.tangent else None
     total = dict.fromkeys(_STATE, program.constant(Fraction(0)))
-    delta_j, jacobian = begun.delta_j, None
+    jacobian = None
     for k, step in enumerate(step_map.substeps):
         if k > 0:
-            at = {n: program.add(begun.named[n], total[n]) for n in _STATE}
-            evaluator = Evaluator(program, step.ring, {**begun.named, **at}, asked.pipelined)
+            at = {n: program.add(named[n], total[n]) for n in _STATE}
+            evaluator = Evaluator(program, step.ring, {**named, **at}, asked.pipelined)
         if k > 0 and asked.delta_j and not step.preserves_area:
             own = _delta_j(evaluator, step, asked.scaled, power)
             both = program.mul(delta_j, own)
@@ -129,10 +104,10 @@ def _computed(itself: _Itself, asked: Observed) -> Computation:
             delta_j = program.add(program.add(delta_j, own), both)
         if asked.determinant:
             own_j = [evaluator.evaluate(entry) for entry in step.jacobian]
-            jacobian = own_j if jacobian is None else _product(program, own_j, jacobian)
+            jacobian = own_j if jacobian is None else product(program, own_j, jacobian)
         if tangent:
             tangent.follow(step, evaluator)
-        changes = increments(evaluator, step, begun.named["h"])
+        changes = increments(evaluator, step, named["h"])
         for n, change in zip(_STATE, changes, strict=True):
             total[n] = program.add(total[n], change)
     result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
@@ -153,12 +128,6 @@ def _common_power(step_map: StepMap, scaled: bool) -> int:
     """The greatest r for which h^r divides ΔJ of every substep; 0 where it is not divided."""
     changing = [step for step in step_map.substeps if scaled and not step.preserves_area]
     return min(map(lowest_power, changing), default=0)
-
-
-def _product(program: Program, x: Sequence[int], y: Sequence[int]) -> list[int]:
-    """The 2 × 2 matrix product x y, row by row."""
-    add, mul = program.add, program.mul
-    return [add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])) for i in (0, 1) for j in (0, 1)]
 
 
 def lowest_power(step: Substep) -> int:

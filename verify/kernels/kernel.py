@@ -41,15 +41,16 @@ LOOP = "    for k in range(steps):"  # what is before this line is the same for 
 
 
 @dataclass(frozen=True, eq=False)
-class Kernel:
-    """`function(steps, h, *parameters, *scales, *limits, *state)` → (steps done, *state).
+class Kernel(Computation):
+    """What is computed, in an arithmetic.
+
+    `function(steps, h, *parameters, *scales, *limits, *state)` → (steps done, *state).
 
     `state_names` names the state and accumulators in their order: p, q, then those of the
     observables; `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start`
     has the initial values, p and q apart; "p" and "q" there are those in float64. An arithmetic of
-    absolute precision has `scales` and `limits`, the numbers that the loop's guard compares with,
-    and `power` is the r of κ. `lowering` and `outputs` are what is computed: the program and the
-    indices of its results; `names` what the source's names stand for.
+    absolute precision has `scales` and `limits`, the numbers that the loop's guard compares with.
+    `lowering` writes the program; `names` is what the source's names stand for.
     """
 
     function: Callable[..., tuple[int, *tuple[Number, ...]]]
@@ -59,17 +60,9 @@ class Kernel:
     state_names: tuple[str, ...]
     kinds: tuple[str, ...]
     start: tuple[int | str, ...]
-    power: int
     lowering: Lowering
-    outputs: Mapping[str, int]
-    tangent: tangent_map.Tangent | None
     source: str
     names: Mapping[str, Number]
-
-    @property
-    def roots(self) -> list[int]:
-        """What the source computes before its statements, as indices of the program."""
-        return [*self.outputs.values(), *(self.tangent.needed if self.tangent else ())]
 
 
 @lru_cache(maxsize=64)
@@ -120,8 +113,7 @@ class Writer:
 
     def kernel(self) -> Kernel:
         """The kernel, compiled. UnsupportedError where the arithmetic lacks what it needs."""
-        outputs = self.made.outputs
-        lines = self.statements(outputs)
+        lines = self.statements(self.made.outputs)
         limits = LIMITS if self.arithmetic.absolute else ()
         scales = SCALES if self.scaled else ()
         needed = self.made.roots
@@ -135,6 +127,7 @@ class Writer:
         }
         names, kinds, start = zip(*self.state_names, strict=True)
         return Kernel(
+            **vars(self.made),
             function=self.arithmetic.compile(source, "kernel", scope),
             parameters=self.parameters,
             scales=scales,
@@ -142,10 +135,7 @@ class Writer:
             state_names=names,
             kinds=kinds,
             start=start[2:],
-            power=self.made.power,
             lowering=self.lowering,
-            outputs=outputs,
-            tangent=self.tangent,
             source=source,
             names=scope,
         )

@@ -1,6 +1,6 @@
 """A program's operations → lines of source, those before the loop apart from those in it."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -152,10 +152,6 @@ class Lowering:
             return False
         radicand = self.program.ops[op.args[0]]
         return radicand.kind == "const" and radicand.value > 0
-
-    def constants(self) -> Mapping[int, Fraction]:
-        """The rational constants, by their operations."""
-        return {i: op.value for i, op in enumerate(self.program.ops) if op.kind == "const"}
 
     def named_constants(
         self, number: Callable[[Fraction], Number], roots: Sequence[int] | None = None

@@ -59,12 +59,14 @@ class PointMap:
     def __call__(self, p: Any, q: Any) -> Values:
         """All that is carried, for points (p_i, q_i): two sequences of the arithmetic's numbers.
 
-        Raises LeftError.
+        Raises LeftRangeError.
         """
+        found: Sequence[Any]
         if self.arithmetic.name == float64.NAME:
             found = self._in_lanes(np.asarray(p, dtype=np.float64), np.asarray(q, np.float64))
-            return dict(zip(self.kernel.state_names, found, strict=True))
-        return dict(zip(self.kernel.state_names, self._one_by_one(p, q), strict=True))
+        else:
+            found = self._one_by_one(p, q)
+        return dict(zip(self.kernel.state_names, found, strict=True))
 
     def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Number]:
         given = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
@@ -119,7 +121,7 @@ class PointMap:
         )
         if found is None:
             raise UnsupportedError(f"no box around the points is safe in {self.arithmetic.name}")
-        return tuple(found)
+        return found
 
 
 def _points_out_of_range(p: float, q: float, name: str) -> LeftRangeError:

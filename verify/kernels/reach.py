@@ -7,10 +7,10 @@ or a function's value its limit. So an overflow is not looked for at every opera
 happen.
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from fractions import Fraction
 from itertools import product
+from typing import NamedTuple
 
 import flint
 
@@ -28,17 +28,13 @@ _SIDES = tuple(
 )
 
 
-@dataclass(frozen=True)
-class Limits:
+class Limits(NamedTuple):
     """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
     part: Fraction
     value: Fraction
-
-    def __iter__(self) -> Iterator[Fraction]:
-        return iter((self.p, self.q, self.part, self.value))
 
 
 def limits(

@@ -1,35 +1,28 @@
 """Stepping: a run of N steps, in chunks, in whatever arithmetic it is given."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import text
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.chunked_loop import ChunkedLoop, Progress
+from verify.kernels.chunked_loop import ChunkedLoop, Progress, Reached
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.reach import Limits, limits
 from verify.kernels.run_inputs import RunInputs
-from verify.scenes.results.run import SeriesPoint
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """A run's numbers as exact rationals, at checkpoints on its way and at the last step done.
+class Outcome(Reached):
+    """Where a run has ended, by a `kernel`.
 
-    `tangents` has what `verify.kernels.tangent_map.NAMES` names, at the same checkpoints; `kernel`
-    made them. `radii`: how far from the last values the true ones may be, where numbers are
-    enclosures. `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run
-    ended early, where that is the number format's doing.
+    `radii`: how far from the last values the true ones may be, where numbers are enclosures.
+    `shift`: what was carried of ΔJ was 2^shift times it. `reason` says why the run ended early,
+    where that is the number format's doing.
     """
 
-    done: int
-    trail: tuple[dict[str, Fraction], ...]
-    tangents: tuple[dict[str, Fraction], ...]
-    series: tuple[SeriesPoint, ...]
-    seconds: float
-    kernel: Kernel | None
-    radii: Mapping[str, Fraction]
+    kernel: Kernel | None = None
+    radii: Mapping[str, Fraction] = field(default_factory=dict)
     shift: int = 0
     reason: str = ""
 
@@ -40,9 +33,7 @@ class Outcome:
 
 
 _FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
-_NOWHERE = Outcome(
-    0, (), (), (), 0.0, None, {}, 0, "an operation of the first step may leave the range of "
-)
+_NOWHERE = Outcome(reason="an operation of the first step may leave the range of ")
 
 
 class KernelRun(RunInputs):
@@ -77,10 +68,11 @@ class KernelRun(RunInputs):
         made = (self.hamiltonian, self.scheme, arithmetic, observables, compensated)
         kernel = kernel_for(*made)
         if not arithmetic.absolute:
-            return self._loop(kernel, arithmetic, (), 0, progress, enough)
+            return _outcome(ChunkedLoop(self, kernel, arithmetic, (), 0), progress, enough)
         outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
         for shift, found in self._formats(kernel):
-            outcome = self._loop(kernel, arithmetic, tuple(found), shift, progress, enough)
+            loop = ChunkedLoop(self, kernel, arithmetic, found, shift)
+            outcome = _outcome(loop, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             reason = (
@@ -104,36 +96,31 @@ class KernelRun(RunInputs):
                 last = found
                 yield shift, found
 
-    def _loop(
-        self,
-        kernel: Kernel,
-        arithmetic: Arithmetic,
-        limits: tuple[Fraction, ...],
-        shift: int,
-        progress: Progress | None,
-        enough: Callable[[Outcome], bool] | None,
-    ) -> Outcome:
-        loop = ChunkedLoop(self, kernel, arithmetic, limits, shift)
 
-        def outcome() -> Outcome:
-            return Outcome(loop.done, tuple(loop.trail), tuple(loop.tangents), tuple(loop.series),
-                           loop.seconds, kernel, loop.radii(), loop.shift)  # fmt: skip
+def _outcome(
+    loop: ChunkedLoop, progress: Progress | None, enough: Callable[[Outcome], bool] | None
+) -> Outcome:
+    """The loop to its end; a checkpoint is written where it is interrupted."""
 
-        def falls_short() -> bool:
-            return enough is not None and loop.done >= loop.section and not enough(outcome())
+    def outcome() -> Outcome:
+        reached = vars(loop.reached) | {"done": loop.done, "seconds": loop.seconds}
+        return Outcome(**reached, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
 
-        try:
-            # A run that goes on from beyond its first checkpoint is asked about that one as well.
-            asked = loop.done >= loop.section
-            if asked and falls_short():
-                return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)
-            for done in loop.chunks():
-                if progress:
-                    progress(done)
-                if not asked and falls_short():
-                    return replace(_NOWHERE, done=done, seconds=loop.seconds)
-                asked = asked or done >= loop.section
-        except KeyboardInterrupt:
-            loop.keep()
-            raise
-        return outcome()
+    def falls_short() -> bool:
+        return enough is not None and loop.done >= loop.section and not enough(outcome())
+
+    try:
+        # A run that goes on from beyond its first checkpoint is asked about that one as well.
+        asked = loop.done >= loop.section
+        if asked and falls_short():
+            return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)
+        for done in loop.chunks():
+            if progress:
+                progress(done)
+            if not asked and falls_short():
+                return replace(_NOWHERE, done=done, seconds=loop.seconds)
+            asked = asked or done >= loop.section
+    except KeyboardInterrupt:
+        loop.keep()
+        raise
+    return outcome()

@@ -35,6 +35,12 @@ def nearest_double(value: Fraction) -> float:
         return math.inf if value > 0 else -math.inf
 
 
+def product(program: Program, x: Sequence[int], y: Sequence[int]) -> list[int]:
+    """The 2 × 2 matrix product x y, row by row."""
+    add, mul = program.add, program.mul
+    return [add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])) for i in (0, 1) for j in (0, 1)]
+
+
 class Tangent:
     """Collects A − 1 of the whole step, substep by substep."""
 
@@ -53,15 +59,9 @@ class Tangent:
             self.needed.append(at)
             own.set(generator, self.program.input(f"approx(v{at})", static=self.main.static[at]))
         x, y = [own.evaluate(entry) for entry in entries], self.change
-        add, mul = self.program.add, self.program.mul
-        self.change = [
-            add(
-                add(x[2 * i + j], y[2 * i + j]),
-                add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])),
-            )
-            for i in (0, 1)
-            for j in (0, 1)
-        ]
+        add = self.program.add
+        both = zip(x, y, product(self.program, x, y), strict=True)
+        self.change = [add(add(a, b), c) for a, b, c in both]
 
     @property
     def lowering(self) -> Lowering:

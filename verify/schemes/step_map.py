@@ -33,9 +33,11 @@ _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 _MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StepMap:
     """A one-step map of one Hamiltonian, as the composition of its substeps, first one first.
+
+    It equals itself alone, since to compare maps takes long.
 
     `expansion(most)` is `taylor` of a map whose substeps have stages, which it does not look into.
     `known_order()`: up to which power of h it agrees with the exact flow and no further, where that
@@ -44,8 +46,8 @@ class StepMap:
 
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
-    expansion: Callable[[int], Expanded] | None = field(default=None, compare=False, repr=False)
-    known_order: Callable[[], int | None] = field(default=lambda: None, compare=False, repr=False)
+    expansion: Callable[[int], Expanded] | None = field(default=None, repr=False)
+    known_order: Callable[[], int | None] = field(default=lambda: None, repr=False)
 
     @cached_property
     def implicit(self) -> bool:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, called
+from verify.execution.study import Results, called, plan_of
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.studies.kinds import studies
@@ -11,10 +11,7 @@ from verify.studies.kinds import studies
 
 def plan_scenes(scenes: list[Scene]) -> Plan:
     """The tasks of all scenes; a task that several ask for is done once."""
-    plan = Plan()
-    for scene in scenes:
-        _plan_scene(plan, scene)
-    return plan
+    return plan_of(scenes, _plan_scene)
 
 
 def found_of(scene: Scene, results: Results) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def values(kernel: Kernel, arithmetic: Arithmetic, inputs: dict[str, Any]) -> di
     run = arithmetic.compile(source, "f", names)
     with arithmetic.context():
         given = run(*(arithmetic.number(x) for x in inputs.values()))
-    held = {i: x for i, x in kernel.lowering.constants().items() if i in live}
+    held = {i: program.ops[i].value for i in live if program.ops[i].kind == "const"}
     exact = {i: arithmetic.exact(arithmetic.number(x)) for i, x in held.items()}
     return exact | {i: arithmetic.exact(x) for i, x in zip(found, given, strict=False)}
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.scenes.results.proof import EveryResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
@@ -20,9 +20,8 @@ def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    found = (results.get(EveryTask(scheme=name).key) for name in scene.schemes)
-    asked = scene.every_hamiltonian
-    return {"every": tuple(r for r in found if asked and isinstance(r, EveryResult))}
+    tasks = [EveryTask(scheme=name) for name in scene.schemes if scene.every_hamiltonian]
+    return {"every": tuple(known_results(EveryResult, tasks, results))}
 
 
 _SECTION = Section(

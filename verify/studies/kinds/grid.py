@@ -4,7 +4,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
@@ -35,8 +35,7 @@ def grid_tasks(scene: Scene, scheme: str) -> list[RunTask]:
 
 def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
     """Those that were needed, in the same order."""
-    found = (results.get(task.key) for task in grid_tasks(scene, scheme))
-    return [r for r in found if isinstance(r, RunResult)]
+    return known_results(RunResult, grid_tasks(scene, scheme), results)
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:

@@ -127,8 +127,8 @@ class Ladder:
                 self.name, step_size=text(h), steps=kernel_run.steps, failed_step=loop.done + 1,
                 reason="left the range of float64",
             )  # fmt: skip
-        last = loop.trail[-1]["p"], loop.trail[-1]["q"]
-        return self._finished(h, kernel_run.steps, last)
+        last = loop.reached.trail[-1]
+        return self._finished(h, kernel_run.steps, (last["p"], last["q"]))
 
     def _finished(self, h: Fraction, steps: int, last: State) -> WorkPoint:
         error = self.problem.error(last)
