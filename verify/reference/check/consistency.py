@@ -19,7 +19,7 @@ from verify.reference.check.difference import Place
 from verify.reference.make.correct_rounding import correctly_rounded
 from verify.reference.make.models import Data, Flow, Proof, Run, values_of
 from verify.reference.make.reading import rows_of, text_of
-from verify.reference.make.scene_plan import exact_inputs, orbit_tasks, proof_tasks, solution_tasks
+from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import Row, csv_text
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 from verify.scenes.scene import Scene
@@ -53,9 +53,9 @@ def _inputs(data: Data, scene: Scene, file: Place) -> None:
     written = scene.exact_hamiltonian().texts
     wanted: dict[str, Any] = {"name": scene.name, **written}
     wanted["proofs"] = [task.scheme for task in proof_tasks(scene)]
-    wanted["runs"] = [(t.scheme, *exact_inputs(t).values(), t.steps) for t in orbit_tasks(scene)]
+    wanted["runs"] = [(t.scheme, *t.inputs.values(), t.steps) for t in orbit_tasks(scene)]
     wanted["flow"] = [
-        (*exact_inputs(t).values(), tuple((n, text(n * t.step_size)) for n in t.steps))
+        (*t.inputs.values(), tuple((n, text(n * t.step_size)) for n in t.steps))
         for t in solution_tasks(scene)
     ]
     found: dict[str, Any] = {name: getattr(data, name) for name in ("name", *written)}

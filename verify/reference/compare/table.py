@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from verify.errors import InputError
+from verify.reference.make.reading import readable
 
 _LONGEST_LINE = 2**16
 _MOST_COLUMNS = 500
@@ -20,13 +21,8 @@ _MOST_COLUMNS = 500
 @contextmanager
 def opened(path: Path) -> Iterator["Table"]:
     """The table in a file. InputError where it is no file, or cannot be read."""
-    try:
-        if not path.is_file():
-            raise InputError("file", str(path), "is not there, or is no file")
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            yield Table(file, path.name)
-    except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+    with readable(path), path.open(encoding="utf-8-sig", newline="") as file:
+        yield Table(file, path.name)
 
 
 class Table:

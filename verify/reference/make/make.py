@@ -21,13 +21,7 @@ from verify.reference.make.models import (
     SceneFile,
 )
 from verify.reference.make.reading import MOST_BYTES
-from verify.reference.make.scene_plan import (
-    exact_inputs,
-    orbit_tasks,
-    proof_tasks,
-    size_of,
-    solution_tasks,
-)
+from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,
     SCHEMAS,
@@ -90,12 +84,9 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
             for t in proof_tasks(scene)
         ),
         runs=tuple(
-            Run(scheme=t.scheme, **exact_inputs(t), rows=results[t.key].points)
-            for t in orbit_tasks(scene)
+            Run(scheme=t.scheme, **t.inputs, rows=results[t.key].points) for t in orbit_tasks(scene)
         ),
-        flow=tuple(
-            Flow(**exact_inputs(t), rows=results[t.key].points) for t in solution_tasks(scene)
-        ),
+        flow=tuple(Flow(**t.inputs, rows=results[t.key].points) for t in solution_tasks(scene)),
     )
 
 

@@ -5,9 +5,10 @@ reports, with a rigorous bound wherever one can be had. ΔJ at the state is encl
 all states within that bound. More digits are asked for until all numbers round to one decimal.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Literal
 
 import flint
@@ -23,6 +24,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.computation import step_map_of
 from verify.kernels.orbit import Orbit
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
+from verify.reference.make.models import VALUES
 from verify.runs.run import run
 from verify.scenes.results.reference import (
     FlowPoint,
@@ -55,7 +57,7 @@ def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
         if step > 0:
             found = _run(orbit, step, digits + guard)
             if found.status == "left range":
-                return _without(step, "left range", found.failed_step)
+                return _orbit_point(step, "left range", failed_step=found.failed_step)
             if found.status == "unresolved":
                 break
             kind = found.error_kind
@@ -69,9 +71,8 @@ def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
             n: _rounded(x, digits, last, _size(orbit.q, orbit.p, n)) for n, x in known.items()
         }
         if all(values.values()):
-            names = {n: values.get(n) for n in ("p", "q", "delta_j", "mse", "lambda")}
-            return OrbitPoint(step=step, status="finished", failed_step=None, kind=kind, **names)
-    return _without(step, "unresolved", None)
+            return _orbit_point(step, "finished", values, kind=kind)
+    return _orbit_point(step, "unresolved")
 
 
 def _run(orbit: Orbit, steps: int, digits: int) -> RunResult:
@@ -98,11 +99,15 @@ def _rounded(known: Bounded, digits: int, last: bool, size: Fraction) -> Rounded
     return rounded or (near_zero(*known, digits, size) if last else None)
 
 
-def _without(step: int, status: str, failed_step: int | None) -> OrbitPoint:
-    nothing = dict.fromkeys(("p", "q", "delta_j", "mse", "lambda"))
-    return OrbitPoint.model_validate(
-        {"step": step, "status": status, "failed_step": failed_step, "kind": None, **nothing}
-    )
+def _orbit_point(
+    step: int,
+    status: Literal["finished", "left range", "unresolved"],
+    values: Mapping[str, Rounded | None] = MappingProxyType({}),
+    kind: Kind | None = None,
+    failed_step: int | None = None,
+) -> OrbitPoint:
+    named = {name: values.get(name) for name in VALUES}
+    return OrbitPoint(step=step, status=status, failed_step=failed_step, kind=kind, **named)
 
 
 def delta_j_at(
@@ -133,17 +138,10 @@ def delta_j_at(
 
 
 def solution_points(
-    hamiltonian: Hamiltonian,
-    *,
-    q: Fraction,
-    p: Fraction,
-    step_size: Fraction,
-    steps: Sequence[int],
-    digits: int,
+    hamiltonian: Hamiltonian, start: dict[str, Fraction], times: dict[int, Fraction], digits: int
 ) -> SolutionResult:
-    """The exact flow from (q, p) at the times N·h for each of these N, to so many digits."""
-    times = [(n, n * step_size) for n in steps]
-    points = (_flow_point(hamiltonian, {"q": q, "p": p}, *at, digits) for at in times)
+    """The exact flow from q and p in `start`, at these times by their N, to so many digits."""
+    points = (_flow_point(hamiltonian, start, *at, digits) for at in times.items())
     return SolutionResult(points=tuple(points))
 
 

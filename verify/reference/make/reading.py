@@ -7,6 +7,8 @@ import csv
 import io
 import json
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,18 +20,24 @@ _MOST_OPEN = 2**21
 _HALF = re.compile(r"(?<!\\)(?:\\\\)*\\u[dD][89a-fA-F]")  # a surrogate, which no UTF-8 text has
 
 
-def content_of(path: Path) -> bytes:
-    """A regular file's content. InputError names the file and the problem."""
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """While a regular file is read: InputError names the file and the problem."""
     try:
         if not path.is_file():
             raise InputError("file", str(path), "is not there, or is no file")
+        yield
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+
+
+def content_of(path: Path) -> bytes:
+    """A regular file's content. InputError names the file and the problem."""
+    with readable(path), path.open("rb") as file:
         size = path.stat().st_size
         if size > MOST_BYTES:
             raise InputError("file", str(path), f"has {size} bytes; allowed: {MOST_BYTES}")
-        with path.open("rb") as file:
-            return file.read(MOST_BYTES)
-    except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+        return file.read(MOST_BYTES)
 
 
 def text_of(content: bytes, name: str) -> str:

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import Any
 
-from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
 from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.scene import Scene
@@ -54,28 +53,20 @@ def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
 
 def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
     """Section by section: scheme, initial value, step size."""
-    given = scene.hamiltonian_fields() if scene.reference else {}
     for section in scene.reference:
-        starts = section.initial_values, section.step_sizes
-        for scheme, at, h in product(schemes_of(scene, section), *starts):
-            yield OrbitTask(
-                **given, scheme=scheme, q=at.q, p=at.p,
-                step_size=h, steps=section.steps, digits=section.digits,
-            )  # fmt: skip
+        for scheme, given in product(schemes_of(scene, section), _starts(scene, section)):
+            yield OrbitTask(scheme=scheme, **given)
 
 
 def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
     """Section by section, where the flow is asked for: initial value, step size."""
-    given = scene.hamiltonian_fields() if scene.reference else {}
     for section in (x for x in scene.reference if x.flow):
-        for at, h in product(section.initial_values, section.step_sizes):
-            yield SolutionTask(
-                **given, q=at.q, p=at.p,
-                step_size=h, steps=section.steps, digits=section.digits,
-            )  # fmt: skip
+        for given in _starts(scene, section):
+            yield SolutionTask(**given)
 
 
-def exact_inputs(task: OrbitTask | SolutionTask) -> dict[str, Any]:
-    """Step size, initial value and digits of a task, as the files have them."""
-    exact = {"step_size": task.step_size, "q": task.q, "p": task.p}
-    return {**{name: text(x) for name, x in exact.items()}, "digits": task.digits}
+def _starts(scene: Scene, section: Reference) -> Iterator[dict[str, Any]]:
+    """What the tasks from each initial value with each step size have in common."""
+    common = {"steps": section.steps, "digits": section.digits, **scene.hamiltonian_fields()}
+    for at, h in product(section.initial_values, section.step_sizes):
+        yield {"q": at.q, "p": at.p, "step_size": h, **common}

@@ -1,8 +1,9 @@
 """The tasks of reference data: an orbit and the exact flow, every number correctly rounded."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from verify.arithmetic import automatic
+from verify.arithmetic.exact import text
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask, InitialValueTask
 from verify.kernels.orbit import Orbit
@@ -13,15 +14,28 @@ _ROW_COST = 1_000_000  # of a row of reference data, however few its steps
 _FLOW_ROW_COST = 10 * _ROW_COST
 
 
-class OrbitTask(InitialValueTask):
-    """State, ΔJ, MSE and Λ after each of these numbers of steps, correctly rounded."""
+class AtSteps(HamiltonianTask):
+    """What is asked for from an initial value, after each of these numbers of steps."""
 
-    result = OrbitResult
     imports = ("verify.reference.make.orbit_points",)
-    kind: Literal["orbit"] = "orbit"
+    q: Number
+    p: Number
     step_size: StepSize
     steps: tuple[int, ...]
     digits: int
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """Step size, initial value and digits, as the files have them."""
+        exact = {"step_size": self.step_size, "q": self.q, "p": self.p}
+        return {**{name: text(x) for name, x in exact.items()}, "digits": self.digits}
+
+
+class OrbitTask(AtSteps, InitialValueTask):
+    """State, ΔJ, MSE and Λ after each of these numbers of steps, correctly rounded."""
+
+    result = OrbitResult
+    kind: Literal["orbit"] = "orbit"
 
     @property
     def cost(self) -> int:
@@ -35,17 +49,11 @@ class OrbitTask(InitialValueTask):
         return orbit_points(orbit, steps=self.steps, digits=self.digits)
 
 
-class SolutionTask(HamiltonianTask):
+class SolutionTask(AtSteps):
     """The exact flow at the times N·h for each of these N, correctly rounded."""
 
     result = SolutionResult
-    imports = ("verify.reference.make.orbit_points",)
     kind: Literal["solution"] = "solution"
-    q: Number
-    p: Number
-    step_size: StepSize
-    steps: tuple[int, ...]
-    digits: int
 
     @property
     def cost(self) -> int:
@@ -54,11 +62,6 @@ class SolutionTask(HamiltonianTask):
     def compute(self, keeper: Keeper) -> SolutionResult:
         from verify.reference.make.orbit_points import solution_points
 
-        return solution_points(
-            self.exact_hamiltonian(),
-            q=self.q,
-            p=self.p,
-            step_size=self.step_size,
-            steps=self.steps,
-            digits=self.digits,
-        )
+        start = {"q": self.q, "p": self.p}
+        times = {n: n * self.step_size for n in self.steps}
+        return solution_points(self.exact_hamiltonian(), start, times, self.digits)
