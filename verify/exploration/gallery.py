@@ -8,11 +8,11 @@ from verify.arithmetic.exact import decimal, text
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
-from verify.exploration.hunting import Hunt, WorstScenes
+from verify.exploration.hunting import Hunt
 from verify.exploration.island_search import COEFFICIENTS, REACH, STEP_SIZES, scene_of
 from verify.exploration.measures import MEASURES, orbit
 from verify.exploration.sample import Sample
-from verify.scenes.results.exploration import Gallery, GalleryScene, Worst
+from verify.scenes.results.exploration import Gallery, GalleryScene, HuntResult, Worst
 from verify.scenes.results.separation import PartsAt, SeparationResult
 from verify.scenes.toml_text import scene_text
 from verify.studies.separation.task import SeparationTask
@@ -24,7 +24,7 @@ _DIGITS = 8
 
 def gallery(
     asked: Hunt,
-    found: WorstScenes,
+    found: HuntResult,
     store: Store,
     *,
     where: Placement = ANYWHERE,
@@ -51,7 +51,7 @@ def gallery(
         measure=asked.measure,
         sentence=MEASURES[asked.measure].sentence,
         seed=asked.seed,
-        examples=found.measured,
+        examples=found.examples,
         steps=asked.steps,
         reach=text(REACH),
         step_sizes=(text(STEP_SIZES[0]), text(STEP_SIZES[1])),

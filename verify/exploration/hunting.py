@@ -21,7 +21,7 @@ from verify.exploration.island_search import (
 from verify.exploration.measures import MEASURES
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.tasks import HuntTask
-from verify.scenes.results.exploration import HuntResult, Worst
+from verify.scenes.results.exploration import HuntResult
 
 _MOST_STEPS = 10**6
 _ISLAND = 200  # scenes that one task looks at
@@ -69,17 +69,9 @@ class Hunt:
         return plan
 
 
-@dataclass(frozen=True)
-class WorstScenes:
-    """`worst`: of all islands, the worst first, one a shape of H; `measured`: of so many scenes."""
-
-    worst: tuple[Worst, ...]
-    measured: int
-
-
 def hunt(
     asked: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
-) -> WorstScenes:
+) -> HuntResult:
     """The worst scenes found on all islands, six at most, each of another shape of H.
 
     Their values are decimal logarithms (see `verify.exploration.measures`), confirmed with twice
@@ -89,7 +81,5 @@ def hunt(
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
     together = sorted((each for island in islands for each in island.worst), key=by_value)
-    return WorstScenes(
-        tuple(by_shape(together)[:KEPT]),
-        sum(island.examples for island in islands),
-    )
+    examples = sum(island.examples for island in islands)
+    return HuntResult(worst=tuple(by_shape(together)[:KEPT]), examples=examples)

@@ -12,7 +12,8 @@ from verify.kernels.operations import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _GUARD = 64  # bits of a given root beyond those of the arithmetic
-_OPERATORS = ("input", "const", "add", "sub", "mul", "neg", "inverse", "pi", "loop", "solved")
+_WRITTEN = {"input": "{0}", "neg": "-{1}", "inverse": "1 / {1}", "pi": "pi"}  # of name, argument
+_OPERATORS = (*_INFIX, *_WRITTEN, "const", "loop", "solved")
 
 
 @dataclass
@@ -128,22 +129,14 @@ class Lowering:
     def _operation(self, index: int) -> str:
         op = self.program.ops[index]
         args = [self.name(a) for a in op.args]
-        match op.kind:
-            case "input":
-                return op.name
-            case "neg":
-                return f"-{args[0]}"
-            case "inverse":
-                return f"1 / {args[0]}"
-            case "root" if self._given(index):
-                return f"number_{self.name(index)}"
-            case "root" if op.degree != 2:
-                return f"root({args[0]}, {op.degree})"
-            case "pi":
-                return "pi"
-            case "solved":
-                return f"u{self.program.ops[op.args[0]].degree}_{op.degree}"
-        return f"{self.function(index)}({args[0]})"
+        if op.kind in _WRITTEN:
+            return _WRITTEN[op.kind].format(op.name, *args)
+        if op.kind == "solved":
+            return f"u{self.program.ops[op.args[0]].degree}_{op.degree}"
+        if self._given(index):
+            return f"number_{self.name(index)}"
+        more = f", {op.degree}" if op.kind == "root" and op.degree != 2 else ""
+        return f"{self.function(index)}({args[0]}{more})"
 
     def _given(self, index: int) -> bool:
         """Whether it is a root of a number, not a square root, and there is no function for it."""

@@ -11,7 +11,7 @@ from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.exploration.gallery import gallery as gallery_of
 from verify.exploration.gallery import meaningless
-from verify.exploration.hunting import Hunt, WorstScenes
+from verify.exploration.hunting import Hunt
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import HuntResult, Worst
 
@@ -46,7 +46,9 @@ def test_a_run_that_does_not_end_is_shown_by_the_hunts_own() -> None:
     asked = Hunt(measure="growth", seed=1, examples=1, steps=20)
     text = _text("p**2/2 + 9*q**2/2").replace("steps = 2", "steps = 20")
     far = _text("p*q**2").replace("steps = 2", "steps = 20")
-    found = WorstScenes((Worst(value=1.0, scene=text), Worst(value=0.5, scene=far)), 2)
+    found = HuntResult(
+        worst=(Worst(value=1.0, scene=text), Worst(value=0.5, scene=far)), examples=2
+    )
     kept, lost = gallery_of(asked, found, Store(None), where=THIS_PROCESS).scenes
     assert (kept.separation.steps, kept.longer) == (2000, None)
     assert (lost.separation.steps, lost.separation.status) == (20, "finished")
@@ -70,10 +72,10 @@ def test_where_nothing_of_lambda_is_known_neither_part_is_said_to_be_the_larger(
     """Størmer–Verlet of a quadratic H: truncation and rounding are both 0."""
     text = _text("p**2/2 + q**2/2").replace("lie2", "stormer-verlet")
     asked = Hunt(measure="digits-lost", seed=1, examples=1, steps=2)
-    found = WorstScenes((Worst(value=1.0, scene=text),), 1)
+    found = HuntResult(worst=(Worst(value=1.0, scene=text),), examples=1)
     (each,) = gallery_of(asked, found, Store(None), where=THIS_PROCESS).scenes
     assert _when(each) == "over 200 steps no digit of a part of Λ is known but 0"
-    lies = WorstScenes((Worst(value=1.0, scene=_text("p**2/2 + q**2/2")),), 1)
+    lies = HuntResult(worst=(Worst(value=1.0, scene=_text("p**2/2 + q**2/2")),), examples=1)
     (other,) = gallery_of(asked, lies, Store(None), where=THIS_PROCESS).scenes
     assert _when(other) == "over 200 steps truncation is the larger part of Λ"
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 import flint
 
 from verify.arithmetic.arb import in_reach, middle_and_radius, rational_ball
-from verify.reference.compare.setting import Bounded, Setting, number_of
+from verify.reference.compare.setting import Setting
 
 _NEAR = Fraction(1, 10**9)
 
@@ -36,14 +36,9 @@ def readings(name: str) -> Iterator[tuple[str, str, Reading]]:
     yield from {"lambda": _LAMBDA, "mse": _MSE, "delta_j": _DELTA_J}[name]
 
 
-def value_of(setting: Setting, name: str, step: int, digits: int) -> Bounded | None:
-    """A number of the setting's row, by its column; None where there is none."""
-    return number_of(setting.point(step, digits), name)
-
-
 def _shifted(name: str, late: int) -> Reading:
     def read(setting: Setting, digits: int, step: int) -> Foretold | None:
-        known = value_of(replace(setting, late=setting.late + late), name, step, digits)
+        known = replace(setting, late=setting.late + late).numbers(step, digits).get(name)
         return known and Foretold(*known)
 
     return read
@@ -53,7 +48,7 @@ def _changed(name: str, change: Callable[[Fraction, int], Fraction | None]) -> R
     """A function of the right value and N; thrice its radius is taken along, for good measure."""
 
     def read(setting: Setting, digits: int, step: int) -> Foretold | None:
-        known = value_of(setting, name, step, digits)
+        known = setting.numbers(step, digits).get(name)
         if known is None:
             return None
         (x, radius), n = known, step + setting.late
@@ -72,8 +67,8 @@ def _from_second(name: str) -> Reading:
 
     def read(setting: Setting, digits: int, step: int) -> Foretold | None:
         n = step + setting.late
-        whole = value_of(replace(setting, late=setting.late + 1), name, step, digits)
-        first = value_of(setting, "delta_j", -setting.late, digits)
+        whole = replace(setting, late=setting.late + 1).numbers(step, digits).get(name)
+        first = setting.numbers(-setting.late, digits).get("delta_j")
         if whole is None or first is None or first[0] == -1 or (name == "mse" and n < 1):
             return None
         if name == "lambda":
@@ -88,7 +83,8 @@ def _from_second(name: str) -> Reading:
 
 def _sum(setting: Setting, digits: int, step: int) -> Foretold | None:
     """Σ ΔJ_k = log(1 + Λ) + ½ Σ ΔJ_k² − …, what is left out being at most ⅓ Σ |ΔJ_k|³."""
-    lam, mse = value_of(setting, "lambda", step, digits), value_of(setting, "mse", step, digits)
+    known = setting.numbers(step, digits)
+    lam, mse = known.get("lambda"), known.get("mse")
     n = step + setting.late
     if lam is None or (mse is None and n > 0):
         return None

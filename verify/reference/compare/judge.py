@@ -12,12 +12,12 @@ from fractions import Fraction
 
 from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance import Allowance
-from verify.reference.compare.column_meanings import Foretold, value_of
+from verify.reference.compare.column_meanings import Foretold
 from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
 from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Bounded, Points, Setting, number_of
+from verify.reference.compare.setting import Bounded, Points, Setting, numbers_of
 from verify.reference.compare.submitted import Row
 
 STATE, AREA = ("p", "q"), ("delta_j", "mse", "lambda")
@@ -47,10 +47,10 @@ class Judge:
         self.right = Setting(ours.orbit, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
+        known = numbers_of(self.ours.rows[step])
         for name, text in row.cells.items():
-            known = number_of(self.ours.rows[step], name)
-            if known is not None and text.strip():
-                yield name, beside(text, known, self.how[name], f"line {row.line}, {name}")
+            if name in known and text.strip():
+                yield name, beside(text, known[name], self.how[name], f"line {row.line}, {name}")
 
     # -- the right setting --------------------------------------------------------------------
 
@@ -128,19 +128,9 @@ class Judge:
     def known(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Bounded]:
         """The setting's numbers at a row's step, as far as they can be had."""
         if setting == self.right:
-            return self._printed(step)
-        digits = self.digits(unit)
-        found = dict(setting.state(step, digits) or {})
-        for name in AREA:
-            value = value_of(setting, name, step, digits) if name in self.names else None
-            if value is not None:
-                found[name] = value
-        return found
-
-    def _printed(self, step: int) -> dict[str, Bounded]:
-        """What the reference data say."""
-        found = {n: number_of(self.ours.rows[step], n) for n in (*STATE, *AREA)}
-        return {n: x for n, x in found.items() if x}
+            return numbers_of(self.ours.rows[step])
+        known = setting.numbers(step, self.digits(unit))
+        return {n: x for n, x in known.items() if n in STATE or n in self.names}
 
     def digits(self, unit: Fraction) -> int:
         """Those to which numbers are to be known that are judged with this unit roundoff."""

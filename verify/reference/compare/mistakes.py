@@ -139,8 +139,8 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
 def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
     """The initial `name` after half of the scheme's first part, which changes it alone."""
     start = getattr(right.orbit, name)
-    after = replace(right, orbit=replace(right.orbit, scheme=scheme)).state(1, _SHARP)
-    return start + sign * (after[name][0] - start) / 2 if after else None
+    after = replace(right, orbit=replace(right.orbit, scheme=scheme)).numbers(1, _SHARP)
+    return start + sign * (after[name][0] - start) / 2 if name in after else None
 
 
 def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
@@ -151,8 +151,8 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
         there = replace(setting.orbit, q=q, p=p, step_size=h)
         state = None
         if mistake.name.startswith(_OF_SCHEME):
-            known = replace(setting, orbit=there).state(1, _SHARP)
-            state = known and (known["p"][0], known["q"][0])
+            known = replace(setting, orbit=there).numbers(1, _SHARP)
+            state = (known["p"][0], known["q"][0]) if "p" in known else None
         first = found.setdefault(state or mistake.name, mistake)
         if first is not mistake and first.says.startswith(_OTHER):
             also = mistake.name.removeprefix(_OF_SCHEME)

@@ -11,6 +11,7 @@ from functools import lru_cache
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
 from verify.kernels.orbit import Orbit
+from verify.reference.make.models import values_of
 from verify.reference.make.orbit_points import orbit_points
 from verify.scenes.results.reference import OrbitPoint
 
@@ -18,10 +19,10 @@ _MOST_STEPS = 2_000_000  # run; what is farther is not known
 Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
 
-def number_of(point: OrbitPoint | None, name: str) -> Bounded | None:
-    """A number of a point, by its column's name; None where there is none."""
-    found = getattr(point, "lam" if name == "lambda" else name, None)
-    return None if found is None else (Fraction(found.value), Fraction(found.radius))
+def numbers_of(point: OrbitPoint) -> dict[str, Bounded]:
+    """The numbers that a point has, by their columns' names."""
+    known = values_of(point).items()
+    return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
 
 class Points:
@@ -51,25 +52,18 @@ class Setting:
     swapped: bool = False
     negated: bool = False
 
-    def state(self, step: int, digits: int) -> dict[str, Bounded] | None:
-        """p and q as row `step` of such a table has them; None where there is no such state."""
-        point = self.point(step, digits)
-        p, q = number_of(point, "p"), number_of(point, "q")
-        if p is None or q is None:
-            return None
-        if self.negated:
-            p = -p[0], p[1]
-        own = {"p": p, "q": q}
-        return {name: own[self.inner(name)] for name in own}
+    def numbers(self, step: int, digits: int) -> dict[str, Bounded]:
+        """What row `step` of such a table has; without p and q where there is no such state."""
+        after = step + self.late
+        point = None if after < 0 else self.points.at(self.orbit, after, digits)
+        own = numbers_of(point) if point else {}
+        if self.negated and "p" in own:
+            own["p"] = -own["p"][0], own["p"][1]
+        return {self.inner(name): own[name] for name in own}
 
     def inner(self, name: str) -> str:
         """What stands in a column of that name."""
         return {"p": "q", "q": "p"}.get(name, name) if self.swapped else name
-
-    def point(self, step: int, digits: int) -> OrbitPoint | None:
-        """What is known of the run where row `step` is of it."""
-        after = step + self.late
-        return None if after < 0 else self.points.at(self.orbit, after, digits)
 
 
 @lru_cache(maxsize=4096)

@@ -58,7 +58,8 @@ class Worst(Frozen):
 
 
 class HuntResult(Frozen):
-    """The worst scenes of one island of a hunt, the worst first; `examples` were measured."""
+    """The worst scenes of a hunt, or of one of its islands, the worst first, one a shape of H;
+    `examples` were measured."""
 
     worst: tuple[Worst, ...]
     examples: int
