@@ -31,11 +31,11 @@ def transformed_hamiltonian(sample: Sample, matrix: Matrix, factor: Fraction) ->
     (a, b), (c, d) = matrix
     determinant = a * d - b * c
     p, q = (
-        _rational(x / determinant) * _P + _rational(y / determinant) * _Q
+        sympy.Rational(x / determinant) * _P + sympy.Rational(y / determinant) * _Q
         for x, y in ((d, -b), (-c, a))
     )
     expression = sample.hamiltonian.exact.xreplace({_P: p, _Q: q})
-    return Hamiltonian(_rational(factor) * expression)
+    return Hamiltonian(sympy.Rational(factor) * expression)
 
 
 def must_be_same_step(sample: Sample, matrix: Matrix, factor: Fraction, time: Fraction) -> None:
@@ -53,7 +53,3 @@ def must_be_same_step(sample: Sample, matrix: Matrix, factor: Fraction, time: Fr
     for what, (found, wanted) in zip(("p'", "q'", "det J"), pairs, strict=True):
         if not found.overlaps(wanted):
             raise Violation(f"{what} is {unlike(found, wanted)}")
-
-
-def _rational(x: Fraction) -> sympy.Rational:
-    return sympy.Rational(x.numerator, x.denominator)

@@ -1,7 +1,9 @@
 """Scenes that differ from one in a single number, a little: where a local search looks next."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from fractions import Fraction
+from itertools import chain
 
 import sympy
 
@@ -27,27 +29,20 @@ def neighbours(
     H within `coefficients`; without that last bound a search would only make H ever larger."""
     assert scene.grid is not None  # noqa: S101 - the caller's scenes are drawn
     start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
-    seen = {(scene.hamiltonian, start.q, start.p, h)}
-
-    def made(formula: str, q: Fraction, p: Fraction, size: Fraction) -> Iterator[Scene]:
-        if (formula, q, p, size) in seen:
-            return
-        seen.add((formula, q, p, size))
-        try:
-            yield _scene(scene, formula, q, p, size)
-        except InputError:  # such as an H that is not defined there
-            return
-
-    formula = scene.hamiltonian or ""
-    for factor in _FACTORS:
-        size = min(max(_rounded(h * factor), steps[0]), steps[1])
-        yield from made(formula, start.q, start.p, size)
-    for move in _MOVES:
-        for q, p in ((start.q + move, start.p), (start.q, start.p + move)):
-            if max(abs(q), abs(p)) <= reach:
-                yield from made(formula, q, p, h)
-    for other in _formulas(scene.exact_hamiltonian(), coefficients):
-        yield from made(other, start.q, start.p, h)
+    formula, p, q = scene.hamiltonian or "", start.p, start.q
+    moved = [x for move in _MOVES for x in ((q + move, p), (q, p + move))]
+    sizes = [min(max(_rounded(h * factor), steps[0]), steps[1]) for factor in _FACTORS]
+    others = chain(
+        ((formula, q, p, size) for size in sizes),
+        ((formula, *at, h) for at in moved if max(map(abs, at)) <= reach),
+        ((other, q, p, h) for other in _formulas(scene.exact_hamiltonian(), coefficients)),
+    )
+    seen = {(formula, q, p, h)}
+    for other in others:
+        if other not in seen:
+            seen.add(other)
+            with suppress(InputError):  # such as an H that is not defined there
+                yield _scene(scene, *other)
 
 
 def _scene(scene: Scene, formula: str, q: Fraction, p: Fraction, h: Fraction) -> Scene:
@@ -73,7 +68,7 @@ def _formulas(hamiltonian: Hamiltonian, within: tuple[Fraction, Fraction]) -> It
         for factor in (*_FACTORS, Fraction(-1)):
             value = _rounded(Fraction(int(coefficient.p), int(coefficient.q)) * factor)
             if least <= abs(value) <= most:
-                changed = sympy.Rational(value.numerator, value.denominator) * rest
+                changed = sympy.Rational(value) * rest
                 yield to_text(sympy.Add(*terms[:k], changed, *terms[k + 1 :]))
 
 

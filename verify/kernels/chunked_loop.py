@@ -171,6 +171,13 @@ class ChunkedLoop:
 
     def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
         """p, q and the observables after the steps done, as the exact rationals that they are."""
+        result = self._observed(raw)
+        if "lambda_plain" in result:
+            result["lambda_plain"] -= 1
+        return result
+
+    def _observed(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
+        """The same of what is carried, or of its radii; Π det J as it is."""
         total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
         result = {"p": total["p"], "q": total["q"]}
         for name in self.run.observables & set(_ACCUMULATORS):
@@ -178,8 +185,6 @@ class ChunkedLoop:
             result[name] = self._unscaled(carried, total[carried])
         if "mse" in result:
             result["mse"] /= self.done
-        if "lambda_plain" in result:
-            result["lambda_plain"] -= 1
         return result
 
     def radii(self) -> dict[str, Fraction]:
@@ -187,12 +192,8 @@ class ChunkedLoop:
         radius = self.arithmetic.radius
         if radius is None or self.done < self.run.steps:
             return {}
-        raw = {n: radius(x) for n, x in zip(self.kernel.state_names, self.state, strict=True)}
-        names = self.run.observables & set(_ACCUMULATORS)
-        found = {"p": raw["p"], "q": raw["q"]} | {n: raw[_ACCUMULATORS[n]] for n in names}
-        if "mse" in found:
-            found["mse"] /= self.done
-        return found
+        names = self.kernel.state_names
+        return self._observed({n: radius(x) for n, x in zip(names, self.state, strict=True)})
 
     def _point(self, first: int, seen: Mapping[str, Fraction]) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:

@@ -39,13 +39,15 @@ class Observed:
 @dataclass(frozen=True, eq=False)
 class Computation:
     """`outputs`: the indices of the increments of p and q, `dp` and `dq`, of ΔJ, `dj`, and of det J
-    where it is asked for, `det`. `power` is the r of κ. Nobody writes into the program any more.
+    where it is asked for, `det`. `power` is the r of κ; `parameters` are those of H. Nobody writes
+    into the program any more.
     """
 
     program: Program
     outputs: Mapping[str, int]
     tangent: Tangent | None
     power: int
+    parameters: tuple[str, ...]
 
     @property
     def roots(self) -> list[int]:
@@ -115,7 +117,7 @@ def computed(step_map: StepMap, asked: Observed) -> Computation:
         a, b, c, d = jacobian
         minus = program.neg(program.mul(b, c))
         result["det"] = program.add(program.mul(a, d), minus)
-    return Computation(program, result, tangent, power)
+    return Computation(program, result, tangent, power, step_map.hamiltonian.symbols)
 
 
 def _delta_j(evaluator: Evaluator, step: Substep, scaled: bool, power: int) -> int:

@@ -54,7 +54,6 @@ class Kernel(Computation):
     """
 
     function: Callable[..., tuple[int, *tuple[Number, ...]]]
-    parameters: tuple[str, ...]
     scales: tuple[str, ...]
     limits: tuple[str, ...]
     state_names: tuple[str, ...]
@@ -106,7 +105,6 @@ class Writer:
         self.lowering = Lowering(
             self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
         )
-        self.parameters = step_map.hamiltonian.symbols
         self.state_names: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
 
     # -- what is computed ---------------------------------------------------------------------
@@ -129,7 +127,6 @@ class Writer:
         return Kernel(
             **vars(self.made),
             function=self.arithmetic.compile(source, "kernel", scope),
-            parameters=self.parameters,
             scales=scales,
             limits=limits,
             state_names=names,
@@ -249,7 +246,7 @@ class Writer:
             more = self.tangent.lowering.lines(self.tangent.change)
             static, dynamic = static + more[0], dynamic + more[1]
         names = ", ".join(name for name, _, _ in self.state_names)
-        parameters = [f"x{k}" for k in range(len(self.parameters))]
+        parameters = [f"x{k}" for k in range(len(self.made.parameters))]
         given = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]
         annotated = [f"{name}: '{kind}'" for name, kind, _ in self.state_names]
         arguments = ", ".join(["steps: 'int'", "h", *parameters, *given, *annotated])

@@ -12,6 +12,8 @@ What a shape says is seen from how the formula is made:
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import groupby
+from operator import attrgetter
 from typing import NamedTuple
 
 from hypothesis import strategies as st
@@ -105,11 +107,9 @@ def _tree(choices: Sequence[Plan]) -> _Tree:
 
     Each is a choice of its own, and so shrinks by itself.
     """
-    tree: dict[str, dict[bool, list[Plan]]] = {}
-    for plan in choices:
-        tree.setdefault(plan.kind, {}).setdefault(plan.separable, []).append(plan)
-    found = [list(by_separable.values()) for by_separable in tree.values()]
-    return [*found, *found[:1]] if "polynomial" in tree else found  # for its quadratic forms
+    kinds = (list(plans) for _, plans in groupby(choices, attrgetter("kind")))
+    found = [[list(plans) for _, plans in groupby(of, attrgetter("separable"))] for of in kinds]
+    return [*found, *found[:1]] if choices[0].kind == "polynomial" else found  # quadratic forms
 
 
 def _least_degree(plan: Plan) -> int:

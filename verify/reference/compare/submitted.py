@@ -66,32 +66,27 @@ def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[s
     `given`: what holds for all rows, by column: scene, and `KEYS`. `names`: what the table calls a
     column, by ours. InputError where it cannot be read, or does not tell which run a row is of.
     """
-    with opened(path) as lines:
-        return _read(lines, ours, given, names)
-
-
-def _read(
-    lines: Table, ours: Published, given: Mapping[str, str], names: Mapping[str, str]
-) -> Theirs:
     found = Theirs()
-    places = _header(lines, names, found)
-    keys = _Keys(ours, given, places)
-    texts = [(name, places[name]) for name in VALUES if name in places]
-    for row in lines:
-        found.rows += 1
-        if len(row) < lines.width:
-            raise lines.error(f"has {len(row)} cells, and the header {lines.width}")
-        run = keys.run_of(row, lines)
-        step = run and keys.step_of(row, run, lines)
-        if run is None:
-            found.outside += 1
-            found.first_outside = found.first_outside or f"line {lines.line}: {keys.describe(row)}"
-            continue
-        if step not in run.rows:
-            found.other_steps += 1
-            continue
-        _keep(found, run, step, Row(lines.line, {name: row[at] for name, at in texts}), lines)
-    found.read_as = keys.read_as
+    with opened(path) as lines:
+        places = _header(lines, names, found)
+        keys = _Keys(ours, given, places)
+        texts = [(name, places[name]) for name in VALUES if name in places]
+        for row in lines:
+            found.rows += 1
+            if len(row) < lines.width:
+                raise lines.error(f"has {len(row)} cells, and the header {lines.width}")
+            run = keys.run_of(row, lines)
+            step = run and keys.step_of(row, run, lines)
+            if run is None:
+                found.outside += 1
+                if found.outside == 1:
+                    found.first_outside = f"line {lines.line}: {keys.describe(row)}"
+                continue
+            if step not in run.rows:
+                found.other_steps += 1
+                continue
+            _keep(found, run, step, Row(lines.line, {name: row[at] for name, at in texts}), lines)
+        found.read_as = keys.read_as
     return found
 
 

@@ -28,6 +28,9 @@ SCHEMAS: dict[str, type[BaseModel]] = {
 }
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 Row = tuple[str, ...]
+_GIVEN: Row = ("step_size", "q", "p", "digits")
+_OF_ORBIT: Row = ("step", "status", "failed_step", "kind")
+_OF_FLOW: Row = ("step", "time", "status", "kind")
 
 
 def json_text(model: BaseModel) -> str:
@@ -70,8 +73,8 @@ def tables(data: Data) -> dict[str, list[Row]]:
     """The same as tables of texts, by file name without its ending; the first row names columns."""
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
-        f"{data.name}-runs": list(_run_rows(data.runs)),
-        f"{data.name}-flow": list(_flow_rows(data.flow)),
+        f"{data.name}-runs": list(_rows(data.runs, ("scheme", *_GIVEN), _OF_ORBIT, VALUES)),
+        f"{data.name}-flow": list(_rows(data.flow, _GIVEN, _OF_FLOW, ("p", "q"))),
     }
 
 
@@ -101,27 +104,14 @@ def _proof_rows(data: Data) -> Iterator[Row]:
         yield (data.hamiltonian, given, *(_cell(found[n]) for n in names))
 
 
-def _run_rows(runs: tuple[Run, ...]) -> Iterator[Row]:
-    yield ("scheme", "step_size", "q0", "p0", "digits", "step", "status", "failed_step", "kind",
-           *_pairs(VALUES))  # fmt: skip
-    for run in runs:
-        given = run.scheme, run.step_size, run.q, run.p, str(run.digits)
-        for x in run.rows:
-            told = str(x.step), x.status, _cell(x.failed_step), _cell(x.kind)
-            yield (*given, *told, *_numbers(x))
-
-
-def _flow_rows(flows: tuple[Flow, ...]) -> Iterator[Row]:
-    yield ("step_size", "q0", "p0", "digits", "step", "time", "status", "kind",
-           *_pairs(("p", "q")))  # fmt: skip
-    for flow in flows:
-        for x in flow.rows:
-            given = flow.step_size, flow.q, flow.p, str(flow.digits)
-            yield (*given, str(x.step), x.time, x.status, _cell(x.kind), *_numbers(x))
-
-
-def _pairs(names: tuple[str, ...]) -> Row:
-    return tuple(x for name in names for x in (name, f"{name}_radius"))
+def _rows(tables: tuple[Run | Flow, ...], given: Row, told: Row, numbers: Row) -> Iterator[Row]:
+    """A row each; `given` are fields of its run or flow, `told` and `numbers` its own."""
+    pairs = (x for name in numbers for x in (name, f"{name}_radius"))
+    yield (*({"q": "q0", "p": "p0"}.get(name, name) for name in given), *told, *pairs)
+    for of in tables:
+        inputs = [_cell(getattr(of, name)) for name in given]
+        for row in of.rows:
+            yield (*inputs, *(_cell(getattr(row, name)) for name in told), *_numbers(row))
 
 
 def _numbers(row: OrbitPoint | FlowPoint) -> Row:

@@ -34,7 +34,7 @@ def holds(sample: Sample) -> None:
     square = -(sample.step_size**2) * (h_pp * h_qq - h_pq**2)
     wanted = _product(_stability_function(generic), square)
     p, q = symbol("p"), symbol("q")
-    a, b, c = (sympy.Rational(x.numerator, x.denominator) for x in hessian)
+    a, b, c = map(sympy.Rational, hessian)
     step_map = sample.scheme.step_map(Hamiltonian(a * p**2 / 2 + b * p * q + c * q**2 / 2))
     whole = step_map.whole
     found = enclose(whole.ring, whole.delta_j, {"h": sample.step_size}, BITS)
