@@ -1,5 +1,6 @@
 """A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
 
+from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -8,7 +9,7 @@ from verify.errors import InputError
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import Printing, printing
 from verify.reference.compare.diagnosis import Diagnosis
-from verify.reference.compare.findings import Named, RunFindings, Verdict
+from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
 from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import Published, PublishedRun
@@ -24,18 +25,13 @@ _SEPARATED_DIGITS = 3
 
 
 @dataclass(frozen=True)
-class Column:
-    """A column of all runs together; in its `rows`, but for those where a run is lost, `digits`
-    agree at least, in `run` at `step`. In `parts_run` a run first differs by more than rounding."""
+class Column(Of):
+    """The same of a column of all runs together: at `step` of `run` the fewest digits agree, and
+    `parts_run` first differs by more than rounding."""
 
     name: str
-    verdict: Verdict
-    rows: int
-    digits: float
     run: str
-    step: int
     parts_run: str | None
-    parts_at: int | None
 
 
 @dataclass(frozen=True)
@@ -185,25 +181,14 @@ def _column(name: str, judged: Iterable[RunFindings]) -> Column:
     label, least = min(own, key=lambda x: x[1].digits)
     parted = [(of.parts_at, label) for label, of in own if of.parts_at is not None]
     parts_at, parts_run = min(parted, default=(None, None))
-    return Column(
-        name=name,
-        verdict=max(of.verdict for _, of in own),
-        rows=sum(of.rows for _, of in own),
-        digits=least.digits,
-        run=label,
-        step=least.step,
-        parts_run=parts_run,
-        parts_at=parts_at,
-    )
+    verdict, rows = max(of.verdict for _, of in own), sum(of.rows for _, of in own)
+    return Column(verdict, rows, least.digits, least.step, parts_at, name, label, parts_run)
 
 
 def _diagnoses(judged: Iterable[RunFindings]) -> list[Explained]:
     """Which mistakes fit in how many runs. Where several fit in one of them, and some of these in
     all of another, the other rules out the rest."""
-    counts: dict[tuple[Named, ...], int] = {}
-    for each in judged:
-        for fitting in each.mistakes:
-            counts[tuple(fitting)] = counts.get(tuple(fitting), 0) + 1
+    counts = Counter(tuple(fitting) for each in judged for fitting in each.mistakes)
     for group in sorted(counts, key=len, reverse=True):
         smaller = [x for x in counts if set(x) < set(group)]
         if len(smaller) == 1:

@@ -18,11 +18,6 @@ Exact = Annotated[str, Field(pattern=_EXACT)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
 Digest = Annotated[str, Field(pattern=_SHA256)]
 
-_H = "the step size h exactly: a decimal or a quotient"
-_Q0, _P0 = "the initial displacement q exactly", "the initial momentum p exactly"
-_DIGITS = "significant digits of each number"
-_SCHEME = "the scheme, by the name that `verify run --scheme` takes"
-
 
 VALUES = ("p", "q", "delta_j", "mse", "lambda")
 
@@ -35,10 +30,15 @@ def values_of(row: OrbitPoint | FlowPoint) -> dict[str, Rounded | None]:
     return dict(zip(VALUES, numbers, strict=True))
 
 
-class Proof(Frozen):
+class _OfScheme(Frozen):
+    scheme: Annotated[
+        str, Field(description="the scheme, by the name that `verify run --scheme` takes")
+    ]
+
+
+class Proof(_OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
-    scheme: Annotated[str, Field(description=_SCHEME)]
     verdict: Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
     area_preserving: Annotated[
         bool | None, Field(description="whether ΔJ is 0 for all p, q and h; null: not decided")
@@ -56,14 +56,18 @@ class Proof(Frozen):
     ]  # fmt: skip
 
 
-class Run(Frozen):
+class _FromStart(Frozen):
+    step_size: Annotated[
+        Exact, Field(description="the step size h exactly: a decimal or a quotient")
+    ]
+    q: Annotated[Exact, Field(description="the initial displacement q exactly")]
+    p: Annotated[Exact, Field(description="the initial momentum p exactly")]
+    digits: Annotated[int, Field(ge=1, description="significant digits of each number")]
+
+
+class Run(_FromStart, _OfScheme):
     """One scheme's orbit from one initial value with one step size."""
 
-    scheme: Annotated[str, Field(description=_SCHEME)]
-    step_size: Annotated[Exact, Field(description=_H)]
-    q: Annotated[Exact, Field(description=_Q0)]
-    p: Annotated[Exact, Field(description=_P0)]
-    digits: Annotated[int, Field(ge=1, description=_DIGITS)]
     rows: Annotated[tuple[OrbitPoint, ...], Field(description="one a chosen step, ascending")]
 
     @property
@@ -72,13 +76,9 @@ class Run(Frozen):
         return f"{self.scheme}, h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
 
 
-class Flow(Frozen):
+class Flow(_FromStart):
     """The exact solution of p' = −H_q, q' = H_p from one initial value, at the times N·h."""
 
-    step_size: Annotated[Exact, Field(description=_H)]
-    q: Annotated[Exact, Field(description=_Q0)]
-    p: Annotated[Exact, Field(description=_P0)]
-    digits: Annotated[int, Field(ge=1, description=_DIGITS)]
     rows: Annotated[tuple[FlowPoint, ...], Field(description="one a chosen step, ascending")]
 
     @property
