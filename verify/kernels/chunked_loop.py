@@ -21,13 +21,8 @@ Progress = Callable[[int], None]  # called with the number of steps done
 State = tuple[Number, ...]
 _ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
                  "lambda_plain": "plain"}  # fmt: skip
-_SCALED = {
-    "lam": 1,
-    "lam_top": 1,
-    "mse": 2,
-    "top": 1,
-    "dj": 1,
-}  # powers of the 2^s that the kernel carries
+# Powers of the 2^s that the kernel carries.
+_SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1}
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
 Note = dict[str, Exact]

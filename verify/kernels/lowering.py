@@ -112,10 +112,10 @@ class Lowering:
     def called(self, roots: Sequence[int]) -> set[str]:
         """The names of all functions that the roots need, those in inner loops included."""
         live = self.live(roots)
-        names = {self.function(index) for index in live} - {None}
+        names = {name for index in live if (name := self.function(index))}
         for loop in self.loops(live):
             names |= self.inner(loop).called([*loop.updates, *loop.determinants])
-        return {name for name in names if name is not None}
+        return names
 
     def solves(self, roots: Sequence[int]) -> bool:
         """Whether equations are solved for the roots."""

@@ -23,9 +23,8 @@ from verify.kernels.stepping import KernelRun
 
 _LANES = 64  # points whose states stay in the nearest cache
 _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
-Values = Mapping[
-    str, Any
-]  # arrays or lists, by name: "p", "q" and what else is carried; sequences of numbers
+# Sequences of numbers, arrays or lists, by name: "p", "q" and what else is carried.
+Values = Mapping[str, Any]
 
 
 class LeftRangeError(Exception):

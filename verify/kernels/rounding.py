@@ -109,7 +109,7 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
     zero = flint.arb(0)
     match op.kind:
         case "const":
-            return flint.arb(flint.fmpq(op.value.numerator, op.value.denominator)), zero
+            return flint.arb(_fmpq(op.value)), zero
         case "pi":
             return flint.arb.pi(), zero
         case "neg":
@@ -133,9 +133,7 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
 
 
 _SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
-    "sin": lambda x, _: flint.arb(1),
-    "cos": lambda x, _: flint.arb(1),
-    "atan": lambda x, _: flint.arb(1),
+    **dict.fromkeys(("sin", "cos", "atan"), lambda x, _: flint.arb(1)),
     "exp": lambda x, _: x.exp(),
     "sinh": lambda x, _: x.cosh(),
     "cosh": lambda x, _: x.sinh(),

@@ -69,14 +69,14 @@ def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[s
     found = Theirs()
     with opened(path) as lines:
         places = _header(lines, names, found)
-        keys = _Keys(ours, given, places)
+        keys = _Keys(ours, given, places, lines)
         texts = [(name, places[name]) for name in VALUES if name in places]
         for row in lines:
             found.rows += 1
             if len(row) < lines.width:
                 raise lines.error(f"has {len(row)} cells, and the header {lines.width}")
-            run = keys.run_of(row, lines)
-            step = run and keys.step_of(row, run, lines)
+            run = keys.run_of(row)
+            step = run and keys.step_of(row, run)
             if run is None:
                 found.outside += 1
                 if found.outside == 1:
@@ -141,9 +141,9 @@ class _Keys:
     """Which run and which step a row is of."""
 
     def __init__(
-        self, ours: Published, given: Mapping[str, str], places: Mapping[str, int]
+        self, ours: Published, given: Mapping[str, str], places: Mapping[str, int], lines: Table
     ) -> None:
-        self.ours, self.given, self.places = ours, given, places
+        self.ours, self.given, self.places, self.lines = ours, given, places, lines
         self.read_as: dict[str, tuple[Fraction, Fraction]] = {}
         for name in given:
             if name in places:
@@ -157,46 +157,45 @@ class _Keys:
         said = self._inputs(row[at] for at in self.at)
         return ", ".join(f"{name} = {printable(text)}" for name, text in said.items())
 
-    def run_of(self, row: list[str], lines: Table) -> PublishedRun | None:
+    def run_of(self, row: list[str]) -> PublishedRun | None:
         texts = tuple([row[at] for at in self.at])
         if texts not in self._known:
             if len(self._known) > _MOST_KNOWN:
                 self._known.clear()
-            self._known[texts] = self._find(self._inputs(texts), lines)
+            self._known[texts] = self._find(self._inputs(texts))
         return self._known[texts]
 
     def _inputs(self, texts: Iterable[str]) -> dict[str, str]:
         named = zip(self.named, texts, strict=True)
         return {**self.given, **{name: text.strip() for name, text in named}}
 
-    def step_of(self, row: list[str], run: PublishedRun, lines: Table) -> int | None:
+    def step_of(self, row: list[str], run: PublishedRun) -> int | None:
         if "step" in self.places:
             text = row[self.places["step"]]
             if _WHOLE.fullmatch(text):
                 return int(text)
-            count = self._number(text, "step", lines)  # 1e3 and 1000.0 are whole numbers, too
+            count = self._number(text, "step")  # 1e3 and 1000.0 are whole numbers, too
             if count.denominator != 1:
-                raise lines.error(f"has the step {text[:40]!r}, which is not a whole number")
+                raise self.lines.error(f"has the step {text[:40]!r}, which is not a whole number")
             return int(count)
-        time = self._number(row[self.places["time"]], "time", lines)
+        time = self._number(row[self.places["time"]], "time")
         count = time / rational(run.run.step_size)
         near = round(count)
         return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
 
-    def _find(self, inputs: dict[str, str], lines: Table) -> PublishedRun | None:
-        scene = inputs.get("scene") or self._scene(inputs, lines)
+    def _find(self, inputs: dict[str, str]) -> PublishedRun | None:
+        scene = inputs.get("scene") or self._scene(inputs)
         if scene is None:
             return None
         for name in KEYS:
             if name not in inputs:
                 values = self.ours.values_of(scene, name)
                 if len(values) > 1:
-                    raise InputError(
-                        f"--{_option(name)}", "", f"is wanted, as no column of {lines.name} is "
-                        f"{name}; {scene} has: {', '.join(values[:8])}",
-                    )  # fmt: skip
+                    has = f"{scene} has: {', '.join(values[:8])}"
+                    wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
+                    raise InputError(f"--{_option(name)}", "", wanted)
                 inputs[name] = values[0]
-        exact = tuple(self._number(inputs[n], n, lines) for n in KEYS[1:])
+        exact = tuple(self._number(inputs[n], n) for n in KEYS[1:])
         h, q, p = map(nearest_double, exact)
         run = self.ours.run(scene, (inputs["scheme"], h, q, p), exact)
         if run is not None:
@@ -205,7 +204,7 @@ class _Keys:
                     self.read_as[name] = theirs, mine
         return run
 
-    def _scene(self, inputs: dict[str, str], lines: Table) -> str | None:
+    def _scene(self, inputs: dict[str, str]) -> str | None:
         """The one scene that has such runs; InputError where several have."""
         every = sorted(self.ours.by_scene)
         if len(every) == 1:
@@ -213,7 +212,7 @@ class _Keys:
         known = [name for name in KEYS if name in inputs]
 
         def fits(run: PublishedRun) -> bool:
-            return all(self._is(run, name, inputs[name], lines) for name in known)
+            return all(self._is(run, name, inputs[name]) for name in known)
 
         matching = [scene for scene in every if any(map(fits, self.ours.scene(scene)))]
         if len(matching) > 1:
@@ -221,17 +220,17 @@ class _Keys:
             raise InputError("--scene", "", f"is wanted: {len(matching)} have such runs: {names}")
         return matching[0] if matching else None
 
-    def _is(self, run: PublishedRun, name: str, text: str, lines: Table) -> bool:
+    def _is(self, run: PublishedRun, name: str, text: str) -> bool:
         mine = run.inputs[KEYS.index(name)]
         if name == "scheme":
             return mine == text
-        return mine == nearest_double(self._number(text, name, lines))
+        return mine == nearest_double(self._number(text, name))
 
-    def _number(self, text: str, name: str, lines: Table) -> Fraction:
+    def _number(self, text: str, name: str) -> Fraction:
         try:
             return rational(text, name)
         except InputError as error:
-            raise lines.error(f"has the {name} {text[:40]!r}: {error.problem}") from None
+            raise self.lines.error(f"has the {name} {text[:40]!r}: {error.problem}") from None
 
 
 def _option(name: str) -> str:
