@@ -177,12 +177,9 @@ class Writer:
             lines += ["size = abs(dj)", self.keep_extreme("top", "size", ">")]
         if "extremes" in asked:
             for name, kind in (("dj", "wide"), ("lam", "sum")):
-                self.carry(f"{name}_low", 0, kind)
-                self.carry(f"{name}_high", 0, kind)
-                lines += [
-                    self.keep_extreme(f"{name}_low", name, "<", first="k == 0 or "),
-                    self.keep_extreme(f"{name}_high", name, ">", first="k == 0 or "),
-                ]
+                for end, order in ((f"{name}_low", "<"), (f"{name}_high", ">")):
+                    self.carry(end, 0, kind)
+                    lines.append(self.keep_extreme(end, name, order, first="k == 0 or "))
         if self.tangent:
             for name, start in tangent_map.CARRIED:
                 self.carry(name, start, "float")

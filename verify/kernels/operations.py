@@ -8,7 +8,7 @@ A way to write something is tried in the program itself, and taken back; what is
 it was. So a trial costs what it adds, however long the program is.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -264,17 +264,16 @@ class Program:
 
     def times(self, x: int, n: int) -> int:
         """n x for a positive integer n, by sums."""
-        if n == 1:
-            return x
-        half = self.times(x, n // 2)
-        double = self.add(half, half)
-        return self.add(double, x) if n % 2 else double
+        return _repeated(self.add, x, n)
 
     def power(self, x: int, n: int) -> int:
-        if n == 0:
-            return self.quotient(1, 1)
-        if n == 1:
-            return x
-        half = self.power(x, n // 2)
-        square = self.mul(half, half)
-        return self.mul(square, x) if n % 2 else square
+        return _repeated(self.mul, x, n) if n else self.quotient(1, 1)
+
+
+def _repeated(combine: Callable[[int, int], int], x: int, n: int) -> int:
+    """n of x combined, by doubling."""
+    if n == 1:
+        return x
+    half = _repeated(combine, x, n // 2)
+    double = combine(half, half)
+    return combine(double, x) if n % 2 else double

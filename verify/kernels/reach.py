@@ -9,6 +9,7 @@ happen.
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -45,8 +46,7 @@ def limits(
     None where no box that holds the start is safe.
     """
 
-    def safe(p: Fraction, q: Fraction, value: Fraction) -> Fraction | None:
-        return _room(kernel, inputs, p, q, value)
+    safe = partial(_room, kernel, inputs)
 
     def largest(p: Fraction, q: Fraction, value: Fraction) -> Limits:
         """Grows a safe box, first to all sides."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import chain
 
 from verify.arithmetic.exact import text
 from verify.arithmetic.number_system import Arithmetic
@@ -106,20 +107,16 @@ def _outcome(
         reached = vars(loop.reached) | {"done": loop.done, "seconds": loop.seconds}
         return Outcome(**reached, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
 
-    def falls_short() -> bool:
-        return enough is not None and loop.done >= loop.section and not enough(outcome())
-
+    asked = False
     try:
         # A run that goes on from beyond its first checkpoint is asked about that one as well.
-        asked = loop.done >= loop.section
-        if asked and falls_short():
-            return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)
-        for done in loop.chunks():
-            if progress:
+        for done in chain([0], loop.chunks()):
+            if progress and done:
                 progress(done)
-            if not asked and falls_short():
-                return replace(_NOWHERE, done=done, seconds=loop.seconds)
-            asked = asked or done >= loop.section
+            if enough and not asked and loop.done >= loop.section:
+                asked = True
+                if not enough(outcome()):
+                    return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)
     except KeyboardInterrupt:
         loop.keep()
         raise
