@@ -10,6 +10,7 @@ from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import InputError
+from verify.execution.study import known_results
 from verify.execution.task import Task
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.regions import FlowImage
@@ -85,12 +86,11 @@ class FlowClaim(Claim):
 
     def images(self, findings: Findings) -> list[Image]:
         """The images that it speaks of."""
-        found = []
-        for task in self._flow_tasks(findings.scene(self.scene)):
-            image = findings.results.get(task.key)
-            if isinstance(image, FlowImage):
-                found.append(Image(text(task.step_size), image))
-        return found
+        return [
+            Image(text(task.step_size), image)
+            for task in self._flow_tasks(findings.scene(self.scene))
+            for image in known_results(FlowImage, [task], findings.results)
+        ]
 
 
 def around(value: str | None, error: str | None) -> Ends:

@@ -36,11 +36,12 @@ def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> No
     step_size = 0.01
     steps = [5000, 20000]             # or times = [1, 2, 3]
     """
+    from verify.execution.study import plan_of
     from verify.studies.regions.findings import flow_json, flows_of
-    from verify.studies.regions.plan import plan_flows
+    from verify.studies.regions.plan import need_flows
 
     scenes = target(scene)[1]
-    plan = plan_flows(scenes)
+    plan = plan_of(scenes, need_flows)
     if not plan.tasks:
         raise InputError("SCENE", scene, "asks for no [[flow]]")
     results = perform(plan, keep, where)

@@ -59,10 +59,11 @@ def stability(
 def _of_scenes(
     given: str, scenes: "list[Scene]", keep: Path | None, where: "Placement", as_json: bool
 ) -> None:
+    from verify.execution.study import plan_of
     from verify.studies.stability.findings import findings_of
-    from verify.studies.stability.plan import plan_stability
+    from verify.studies.stability.plan import need_stability
 
-    plan = plan_stability(scenes)
+    plan = plan_of(scenes, need_stability)
     if not plan.tasks:
         problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
         raise InputError("SCENE", given, problem)

@@ -14,11 +14,12 @@ from verify.claims.plan import add_claims
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING
 from verify.execution.plan import Plan
+from verify.execution.study import plan_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.scenes.scene import Scene, scene_from
-from verify.studies.regions.plan import plan_flows
+from verify.studies.regions.plan import need_flows
 from verify.studies.regions.task import FlowTask
 from verify.verdict import Verdict
 
@@ -50,7 +51,7 @@ def findings(scene: Scene, given: Any = None) -> Findings:
     """By the real code, or by hand: `given` has what is changed of each image of lie2."""
     results: dict[str, Any] = {}
     count = 0
-    for task in plan_flows([scene]).tasks.values():
+    for task in plan_of([scene], need_flows).tasks.values():
         assert isinstance(task, FlowTask)
         if given is None:
             results[task.key] = task.compute(NOTHING)

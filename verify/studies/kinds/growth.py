@@ -4,7 +4,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.scenes.results.growth import AverageResult, GrowthLawResult
 from verify.scenes.scene import Scene
 from verify.studies.growth.task import GrowthTask
@@ -13,31 +13,25 @@ from verify.studies.kinds.grid import grid_runs
 _DIGITS = 30  # of the time average
 
 
-def growth_task(scene: Scene, scheme: str, start: int) -> GrowthTask:
-    """The growth law for the index of an initial value of the grid."""
-    assert scene.grid is not None  # noqa: S101 - asked for by grids only
-    at = scene.grid.initial_values[start]
-    return GrowthTask(
-        **scene.hamiltonian_fields(), scheme=scheme, q=at.q, p=at.p, digits=_DIGITS
-    )  # fmt: skip
-
-
-def growth_laws(scene: Scene, scheme: str, results: Results) -> list[AverageResult]:
-    """The growth laws of the grid's orbits, by initial value; none where none were asked for."""
-    starts = range(len(scene.grid.initial_values)) if scene.grid else ()
-    found = [results.get(growth_task(scene, scheme, start).key) for start in starts]
-    return [r for r in found if isinstance(r, AverageResult)]
+def _tasks(scene: Scene, scheme: str) -> list[GrowthTask]:
+    """The growth laws of the grid's orbits, by initial value; none where none are asked for."""
+    if scene.grid is None or not scene.grid.growth:
+        return []
+    given = scene.hamiltonian_fields()
+    return [
+        GrowthTask(**given, scheme=scheme, q=at.q, p=at.p, digits=_DIGITS)
+        for at in scene.grid.initial_values
+    ]
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
-    if scene.grid is None or not scene.grid.growth:
-        return
-    if preserves:
+    tasks = _tasks(scene, scheme)
+    if tasks and preserves:
         why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
         plan.leave_out(f"{called(scene)}: growth law of Λ for {scheme}", why)
         return
-    for start in range(len(scene.grid.initial_values)):
-        plan.need(growth_task(scene, scheme, start), f"{called(scene)}: growth law of Λ")
+    for task in tasks:
+        plan.need(task, f"{called(scene)}: growth law of Λ")
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
@@ -48,7 +42,7 @@ def _found(scene: Scene, results: Results) -> dict[str, Any]:
     exact, found = scene.exact_hamiltonian(), []
     for scheme in scene.schemes:
         runs = grid_runs(scene, scheme, results)
-        for law in growth_laws(scene, scheme, results):
+        for law in known_results(AverageResult, _tasks(scene, scheme), results):
             own = [run for run in runs if (run.q, run.p) == (law.q, law.p)]
             own.sort(key=lambda run: Fraction(run.step_size))
             found.append(GrowthLawResult(law=law, predictions=predictions(exact, law, own)))

@@ -1,11 +1,10 @@
 """Truncation separated from rounding in Λ: of the grid's runs, and over step sizes beside it."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
 from verify.scenes.scene import Grid, Scene
 from verify.studies.separation.separate import as_grid
@@ -14,29 +13,19 @@ from verify.studies.separation.task import SeparationTask
 _DIGITS = 6  # of each part
 
 
-def separation_task(
-    scene: Scene, scheme: str, grid: Grid, h: Fraction, start: int
-) -> SeparationTask:
-    """The split of the grid's run for a step size and the index of an initial value."""
-    at = grid.initial_values[start]
-    return SeparationTask(
-        **scene.hamiltonian_fields(), scheme=scheme,
-        step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, digits=_DIGITS,
-    )  # fmt: skip
-
-
 def _rows(scene: Scene, scheme: str, grid: Grid) -> list[list[SeparationTask]]:
-    """By initial value, then step size."""
+    """The splits of the grid's runs, by initial value, then step size."""
+    given = scene.hamiltonian_fields()
     return [
-        [separation_task(scene, scheme, grid, h, start) for h in grid.step_sizes]
-        for start in range(len(grid.initial_values))
-    ]
-
-
-def separations(scene: Scene, scheme: str, grid: Grid, results: Results) -> list[SeparationResult]:
-    """Those over a grid that were found, by initial value, then step size."""
-    found = (results.get(task.key) for row in _rows(scene, scheme, grid) for task in row)
-    return [r for r in found if isinstance(r, SeparationResult)]
+        [
+            SeparationTask(
+                **given, scheme=scheme, step_size=h, steps=grid.steps_for(h),
+                q=at.q, p=at.p, digits=_DIGITS,
+            )
+            for h in grid.step_sizes
+        ]
+        for at in grid.initial_values
+    ]  # fmt: skip
 
 
 def _own(scene: Scene) -> list[Grid]:
@@ -61,14 +50,13 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
     def over(grids: Sequence[Grid]) -> tuple[SeparationGrid, ...]:
-        found = []
-        for scheme in scene.schemes:
-            for grid in grids:
-                points = separations(scene, scheme, grid, results)
-                width = len(grid.step_sizes)
-                rows = [points[i : i + width] for i in range(0, len(points), width)]
-                found += [as_grid(row) for row in rows]
-        return tuple(found)
+        rows = (
+            known_results(SeparationResult, row, results)
+            for scheme in scene.schemes
+            for grid in grids
+            for row in _rows(scene, scheme, grid)
+        )
+        return tuple(as_grid(row) for row in rows if row)
 
     return {"separations": over(_own(scene)), "crossovers": over(_beside(scene))}
 

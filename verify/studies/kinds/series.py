@@ -4,15 +4,14 @@ from collections.abc import Iterator
 
 from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
-from verify.scenes.scene import Scene
+from verify.scenes.scene import Scene, Series
 from verify.scenes.values import CLOSED_FORM
 
 
-def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
-    series = scene.series[index]
+def _task(scene: Scene, scheme: str, series: Series) -> RunTask:
     at = series.initial_value
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
@@ -23,20 +22,19 @@ def series_task(scene: Scene, scheme: str, index: int) -> RunTask:
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
-    for index, series in enumerate(scene.series):
+    for series in scene.series:
         what = f"{called(scene)}: series of {scheme} at h = {text(series.step_size)}"
         if preserves:
             plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
         else:
-            plan.need(series_task(scene, scheme, index), f"{what}, for its plot")
+            plan.need(_task(scene, scheme, series), f"{what}, for its plot")
 
 
 def _runs(scene: Scene, results: Results) -> Iterator[RunResult]:
     """The series that were run, each with what the scene says it repeats."""
     for scheme in scene.schemes:
-        for index, asked in enumerate(scene.series):
-            run = results.get(series_task(scene, scheme, index).key)
-            if isinstance(run, RunResult):
+        for asked in scene.series:
+            for run in known_results(RunResult, [_task(scene, scheme, asked)], results):
                 yield run.model_copy(update={"source": asked.source})
 
 

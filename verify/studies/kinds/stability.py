@@ -4,15 +4,16 @@ from typing import Any
 
 from verify.execution.study import Results, Section, Study
 from verify.scenes.scene import Scene
-from verify.studies.stability.findings import largest_steps, run_verdicts, stability_maps
+from verify.studies.stability.findings import findings_of
 from verify.studies.stability.plan import need_stability
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
+    found = findings_of([scene], results)
     return {
-        "stability": run_verdicts(scene, results),
-        "largest_steps": largest_steps(scene, results),
-        "stability_maps": stability_maps(scene, results),
+        "stability": found.runs,
+        "largest_steps": found.largest_steps,
+        "stability_maps": found.maps,
     }
 
 

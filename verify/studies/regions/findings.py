@@ -1,31 +1,31 @@
 """What was found of a scene's regions carried by maps, in the order the scene asks for them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from verify.arithmetic.exact import text
-from verify.scenes.frozen import PLAIN, Frozen
+from verify.execution.study import Results, known_results
+from verify.scenes.frozen import PLAIN
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import DrawnOutline, FlowImage, FlowResult
 from verify.scenes.scene import Scene
 from verify.studies.regions.plan import flow_tasks
 
 
-def flows_of(scene: Scene, results: Mapping[str, Frozen]) -> tuple[FlowResult, ...]:
+def flows_of(scene: Scene, results: Results) -> tuple[FlowResult, ...]:
     """One a section of the scene that was computed."""
     found = (_flow(scene, flow, results) for flow in scene.flow)
     return tuple(each for each in found if each.images)
 
 
-def _flow(scene: Scene, flow: Flow, results: Mapping[str, Frozen]) -> FlowResult:
-    images = (results.get(task.key) for task in flow_tasks(scene, flow))
+def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
     return FlowResult(
         shape=flow.shape or ("polygon" if flow.polygon else "path"),
         centre=(text(flow.centre.q), text(flow.centre.p)),
         scale=text(flow.scale),
         step_size=text(flow.step_size),
         before=_outlines_to_draw(flow),
-        images=tuple(r for r in images if isinstance(r, FlowImage)),
+        images=tuple(known_results(FlowImage, flow_tasks(scene, flow), results)),
         source=flow.source,
     )
 

@@ -1,8 +1,9 @@
 """A scene's regions carried by maps → the tasks that they need."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from verify.execution.plan import Plan
+from verify.execution.study import called
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.scene import Scene
@@ -10,17 +11,9 @@ from verify.schemes import get
 from verify.studies.regions.task import FlowTask
 
 
-def plan_flows(scenes: Sequence[Scene]) -> Plan:
-    """What the scenes ask for of regions carried by maps, and nothing else of them."""
-    plan = Plan()
-    for scene in scenes:
-        need_flows(plan, scene)
-    return plan
-
-
 def need_flows(plan: Plan, scene: Scene) -> None:
     """Adds what the scene asks for of regions carried by maps."""
-    name = scene.name or scene.title or "scene"
+    name = called(scene)
     for flow in scene.flow:
         for task in flow_tasks(scene, flow):
             what = f"{name}: {flow.source or 'flow'}, {task.map} after {task.steps} steps"

@@ -1,10 +1,11 @@
 """What was found of a scene's stability, in the order in which the scene asks for it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from verify.scenes.frozen import PLAIN, Frozen
+from verify.execution.study import Results, known_results
+from verify.scenes.frozen import PLAIN
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.scene import Scene
 from verify.studies.stability.plan import largest_step_tasks, stability_map_tasks, stability_tasks
@@ -31,32 +32,18 @@ class StabilityFindings:
         }
 
 
-def findings_of(scenes: Sequence[Scene], results: Mapping[str, Frozen]) -> StabilityFindings:
-    """Those of all scenes; `results` by the keys of their tasks. What has no result is left out."""
-    return StabilityFindings(
-        tuple(run for scene in scenes for run in run_verdicts(scene, results)),
-        tuple(step for scene in scenes for step in largest_steps(scene, results)),
-        tuple(over for scene in scenes for over in stability_maps(scene, results)),
+def findings_of(scenes: Sequence[Scene], results: Results) -> StabilityFindings:
+    """Those of all scenes; what has no result is left out."""
+    named = ((name, task) for scene in scenes for name, task in stability_tasks(scene))
+    runs = (
+        run.model_copy(update={"id": name})
+        for name, task in named
+        for run in known_results(StabilityResult, [task], results)
     )
-
-
-def run_verdicts(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityResult, ...]:
-    """The scene's runs, each with its name."""
-    found = []
-    for name, task in stability_tasks(scene):
-        result = results.get(task.key)
-        if isinstance(result, StabilityResult):
-            found.append(result.model_copy(update={"id": name}))
-    return tuple(found)
-
-
-def largest_steps(scene: Scene, results: Mapping[str, Frozen]) -> tuple[LargestStepResult, ...]:
-    """The largest stable steps that were found for the scene."""
-    found = (results.get(task.key) for task in largest_step_tasks(scene))
-    return tuple(r for r in found if isinstance(r, LargestStepResult))
-
-
-def stability_maps(scene: Scene, results: Mapping[str, Frozen]) -> tuple[StabilityMapResult, ...]:
-    """The maps of stability over step sizes and starts that were found for the scene."""
-    found = (results.get(task.key) for task in stability_map_tasks(scene))
-    return tuple(r for r in found if isinstance(r, StabilityMapResult))
+    steps = (task for scene in scenes for task in largest_step_tasks(scene))
+    maps = (task for scene in scenes for task in stability_map_tasks(scene))
+    return StabilityFindings(
+        tuple(runs),
+        tuple(known_results(LargestStepResult, steps, results)),
+        tuple(known_results(StabilityMapResult, maps, results)),
+    )

@@ -4,21 +4,14 @@ from collections.abc import Iterator
 
 from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
+from verify.execution.study import called
 from verify.scenes.scene import Scene
 from verify.studies.stability.task import LargestStepTask, StabilityMapTask, StabilityTask
 
 
-def plan_stability(scenes: list[Scene]) -> Plan:
-    """What the scenes ask for of stability, and nothing else of them."""
-    plan = Plan()
-    for scene in scenes:
-        need_stability(plan, scene)
-    return plan
-
-
 def need_stability(plan: Plan, scene: Scene) -> None:
     """Adds what the scene asks for of stability."""
-    name = scene.name or scene.title or "scene"
+    name = called(scene)
     for run, judged in stability_tasks(scene):
         plan.need(judged, f"{run}: is it stable, and whose fault is it if not")
     for largest in largest_step_tasks(scene):

@@ -10,13 +10,14 @@ from tests.helpers.known_areas import linear_determinant
 from tests.unit.scenes.test_scene import load
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING
+from verify.execution.study import plan_of
 from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.studies.regions import carry as module
 from verify.studies.regions import mean_lambda as region_mean
 from verify.studies.regions.findings import flow_json, flows_of
 from verify.studies.regions.hausdorff import Distance
-from verify.studies.regions.plan import plan_flows
+from verify.studies.regions.plan import need_flows
 from verify.studies.regions.task import FlowTask
 
 HEAD = 'system = "duffing"\nparameters = { delta = 1 }\nschemes = ["lie2", "stormer-verlet"]\n'
@@ -84,7 +85,7 @@ def test_bad_input_is_one_line_that_names_it(name: str, tmp_path: Path) -> None:
 
 
 def tasks(folder: Path, *sections: str, head: str = HEAD) -> list[FlowTask]:
-    plan = plan_flows([load(folder, head + section) for section in sections])
+    plan = plan_of([load(folder, head + section) for section in sections], need_flows)
     return [t for t in plan.tasks.values() if isinstance(t, FlowTask)]
 
 
@@ -107,14 +108,14 @@ def test_tasks_are_shared_between_scenes_and_times_are_steps(tmp_path: Path) -> 
 
 
 def test_what_is_left_out_has_its_reason(tmp_path: Path) -> None:
-    plan = plan_flows([load(tmp_path, HEAD + FLOW)])
+    plan = plan_of([load(tmp_path, HEAD + FLOW)], need_flows)
     assert plan.left_out == [
         (
             "mine: mean of Λ over the region for stormer-verlet",
             "ΔJ ≡ 0 is proved: Λ is exactly 0",
         )
     ]
-    assert not plan_flows([load(tmp_path, HEAD + FLOW + "mean_lambda = false\n")]).left_out
+    assert not plan_of([load(tmp_path, HEAD + FLOW + "mean_lambda = false\n")], need_flows).left_out
 
 
 # -- what is found --------------------------------------------------------------------------------
@@ -145,7 +146,7 @@ def test_every_printed_number_carries_the_rounding_of_its_text() -> None:
 
 def test_numbers_are_decimal_strings_and_survive_json(tmp_path: Path) -> None:
     scene = load(tmp_path, HEAD + FLOW)
-    plan = plan_flows([scene])
+    plan = plan_of([scene], need_flows)
     results = {n: t.compute(NOTHING) for n, t in plan.tasks.items()
                if isinstance(t, FlowTask)}  # fmt: skip
     (found,) = flows_of(scene, results)

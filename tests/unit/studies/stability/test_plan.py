@@ -8,9 +8,10 @@ import pytest
 from tests.unit.scenes.test_scene import load
 from verify.commands.input import suites, target
 from verify.errors import InputError
+from verify.execution.study import plan_of
 from verify.scenes.stability_sections import Stability, StabilityMap
 from verify.studies.plan import plan_scenes
-from verify.studies.stability.plan import plan_stability, stability_tasks
+from verify.studies.stability.plan import need_stability, stability_tasks
 
 HEAD = """
 hamiltonian = "p**2/2 + q**2/2 + d*q**4/4"
@@ -59,7 +60,7 @@ def test_a_range_is_even_on_a_logarithmic_scale(tmp_path: Path) -> None:
 
 def test_only_what_is_asked_for_is_planned(tmp_path: Path) -> None:
     scene = load(tmp_path, HEAD + CASES + LARGEST + MAP)
-    kinds = [task.kind for task in plan_stability([scene]).tasks.values()]
+    kinds = [task.kind for task in plan_of([scene], need_stability).tasks.values()]
     assert kinds.count("stability") == 8
     assert kinds.count("largest_step") == 2
     assert kinds.count("stability_map") == 1
