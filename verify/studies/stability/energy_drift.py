@@ -13,7 +13,7 @@ from math import ceil, sqrt
 from statistics import fmean, pstdev
 
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import MOST_INTERPRETED, Run, Trail, follow, follow_precisely
+from verify.studies.stability.trail import MOST_INTERPRETED, Trail, follow_precisely
 
 _STRETCHES = 8
 _LONGER = 4
@@ -29,20 +29,20 @@ def drift_of(motion: RunMotion) -> Fraction | None:
 
     Of a motion that has died away within the time, over all of it.
     """
-    run, (trail, _), period = motion.run, motion.precise, motion.orbit.period
+    run, trail, period = motion.run, motion.precise, motion.orbit.period
     if period is None or too_short(motion):
         return None
     errors = _errors(motion, trail)
     if errors and errors[-1] and _died(motion, trail, period):
         return Fraction(errors[-1] / float(run.time))
-    first = _rate(motion, run, trail)
+    first = _rate(motion, trail)
     if first is None:
         return None
     longer = replace(run, steps=_LONGER * trail.steps)
     if longer.steps <= MOST_INTERPRETED:
-        again, _ = follow_precisely(longer, motion.digits)
+        again = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
-            second = _rate(motion, longer, again)
+            second = _rate(motion, again)
             if second is None or second / first < 1 / _SLOWER:
                 return None
     return Fraction(first)
@@ -53,10 +53,10 @@ def too_short(motion: RunMotion) -> bool:
 
     Of an orbit that does not come back within the time there is only that one way.
     """
-    orbit, (trail, _) = motion.orbit, motion.precise
+    orbit = motion.orbit
     if orbit.period is None:
         return orbit.kind == "open"
-    return _LONGER * trail.steps * motion.run.step_size < _PERIODS * orbit.period
+    return _LONGER * motion.precise.steps * motion.run.step_size < _PERIODS * orbit.period
 
 
 def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
@@ -64,10 +64,8 @@ def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
 
     Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
     """
-    last = trail.points[-1]
     steps = min(_MOST_LOOKED_AT, ceil(period / motion.run.step_size))
-    onwards = replace(motion.run, p=last.p, q=last.q, steps=max(2, steps))
-    seen = follow(onwards, motion.precise[1]).points
+    seen = trail.onwards(trail.points[-1], max(2, steps)).points
     ends = [[getattr(point, name) for point in seen] for name in ("p", "q")]
     swings = zip(ends, motion.orbit.reach, motion.orbit.turns, strict=True)
     return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
@@ -80,7 +78,7 @@ def _errors(motion: RunMotion, trail: Trail) -> list[float]:
     return known if motion.orbit.scale and len(known) == len(found) else []
 
 
-def _rate(motion: RunMotion, run: Run, trail: Trail) -> float | None:
+def _rate(motion: RunMotion, trail: Trail) -> float | None:
     errors = _errors(motion, trail)
     if len(errors) < 4 * _STRETCHES:
         return None
@@ -93,7 +91,7 @@ def _rate(motion: RunMotion, run: Run, trail: Trail) -> float | None:
         return None
     if abs(moved) < _SURE * _uncertain(errors, length):
         return None
-    stretch = trail.points[length].step * float(run.step_size)
+    stretch = trail.points[length].step * float(motion.run.step_size)
     return float(moved / (stretch * (_STRETCHES - 1)))
 
 

@@ -5,20 +5,20 @@ Linear theory says of a step size h that h ω has to lie in the scheme's interva
 is stiffest. What bounded motion is, is told in `verify.studies.stability.run_motion`.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
-from verify.arithmetic.exact import decimal
+from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
 from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose
+from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
 from verify.studies.stability.linear import linear_stability
 from verify.studies.stability.trail import Run
-from verify.studies.stability.verdict_on_run import Judgement, bounded, judge
+from verify.studies.stability.verdict_on_run import bounded, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
 _LADDER = Fraction(119, 100)  # about 2^(1/4), between the step sizes that are looked at first
@@ -48,47 +48,56 @@ def frequency(orbit: ExactOrbit) -> Fraction:
     return arithmetic.exact(omega)
 
 
-@dataclass(frozen=True)
-class LargestStep:
-    """See `verify.scenes.results.stability.LargestStepResult`."""
+def _linear_step(scheme: str, orbit: ExactOrbit) -> Fraction | None:
+    """The step size that linear theory allows on the orbit; None where it does not say."""
+    omega, limit = frequency(orbit), linear_limit(scheme)
+    return limit / omega if limit is not None and omega else None
 
-    orbit: ExactOrbit
-    bounded: Fraction | None
-    unbounded: Fraction | None
-    linear: Fraction | None
-    detail: Prose
+
+def shortened(x: Fraction | None, digits: int = 4) -> str | None:
+    """To so many significant digits, as results show what may not be known."""
+    return None if x is None else decimal(x, digits)
 
 
 def largest_step(
-    hamiltonian: Hamiltonian, scheme: str, p: Fraction, q: Fraction, time: Fraction
-) -> LargestStep:
-    """The largest h with bounded motion in float64 until `time`, by bisection.
+    hamiltonian: Hamiltonian, scheme: str, *, p: Fraction, q: Fraction, time: Fraction
+) -> LargestStepResult:
+    """The largest h with bounded motion in float64 from (p, q) until `time`, by bisection.
 
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
     orbit = exact_orbit(hamiltonian, p, q, time)
-    omega, limit = frequency(orbit), linear_limit(scheme)
-    linear = limit / omega if limit is not None and omega else None
-    if orbit.kind == "escapes":
-        return LargestStep(orbit, None, None, linear, prose("the exact solution ", orbit.summary))
+    omega, linear = frequency(orbit), _linear_step(scheme, orbit)
+    good = bad = None
 
     def stays(h: Fraction) -> bool:
         steps = time // h
         return steps >= 1 and bounded(Run(hamiltonian, scheme, h, q, p, steps))
 
-    middle = linear or (1 / omega if omega else time / 100)
-    good, bad = _bracket(stays, min(middle, time / 2), time)
-    if bad is None:
-        everywhere = prose("bounded with every step size looked at")
-        return LargestStep(orbit, good, None, linear, everywhere)
-    if good is None:
-        nowhere = prose("not bounded with any step size looked at")
-        return LargestStep(orbit, None, bad, linear, nowhere)
-    while bad / good > _FINER:
+    if orbit.kind == "escapes":
+        detail = prose("the exact solution ", orbit.summary)
+    else:
+        middle = linear or (1 / omega if omega else time / 100)
+        good, bad = _bracket(stays, min(middle, time / 2), time)
+        which = "bounded with every" if bad is None else "not bounded with any"
+        detail = Prose() if good and bad else prose(f"{which} step size looked at")
+    while good and bad and bad / good > _FINER:
         middle = _short((good + bad) / 2)
         good, bad = (middle, bad) if stays(middle) else (good, middle)
-    return LargestStep(orbit, good, bad, linear, Prose())
+    return LargestStepResult(
+        **hamiltonian.texts,
+        scheme=scheme,
+        time=text(time),
+        q=text(q),
+        p=text(p),
+        bounded=shortened(good),
+        unbounded=shortened(bad),
+        linear=shortened(linear),
+        h_omega=shortened(good * omega) if good else None,
+        exact_orbit=orbit.summary,
+        detail=detail,
+    )
 
 
 def _bracket(
@@ -128,14 +137,26 @@ def stability_map(
     steps: int,
     p: Fraction,
     q: Fraction,
-) -> Iterator[tuple[Fraction | None, list[Judgement]]]:
-    """For each value of the parameter: the step size of linear theory, and the verdicts."""
-    given = dict(hamiltonian.values)
-    limit = linear_limit(scheme)
+) -> StabilityMapResult:
+    """For each value of the parameter, a row: the verdicts with each step size, and the step size
+    of linear theory.
+    """
+    cells, linear = [], []
     for value in values:
-        own = hamiltonian.with_values(given | {parameter: value})
-        longest = max(step_sizes) * steps
-        omega = frequency(exact_orbit(own, p, q, longest))
-        run = Run(own, scheme, step_sizes[0], q, p, steps)
-        row = [judge(replace(run, step_size=h)) for h in step_sizes]
-        yield (limit / omega if limit is not None and omega else None), row
+        own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
+        orbit = exact_orbit(own, p, q, max(step_sizes) * steps)
+        row = (judge(Run(own, scheme, h, q, p, steps)) for h in step_sizes)
+        cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
+        linear.append(shortened(_linear_step(scheme, orbit)))
+    return StabilityMapResult(
+        **hamiltonian.texts,
+        scheme=scheme,
+        parameter=parameter,
+        values=tuple(map(text, values)),
+        step_sizes=tuple(map(text, step_sizes)),
+        steps=steps,
+        q=text(q),
+        p=text(p),
+        cells=tuple(cells),
+        linear=tuple(linear),
+    )

@@ -53,13 +53,13 @@ class RunMotion:
         return follow(self.run, float64())
 
     @cached_property
-    def precise(self) -> tuple[Trail, Arithmetic]:
+    def precise(self) -> Trail:
         return follow_precisely(self.run, self.digits)
 
     @cached_property
     def as_far(self) -> Trail:
         """The float64 run for as many steps as were done in high precision."""
-        asked = self.precise[0].steps
+        asked = self.precise.steps
         if asked == self.run.steps:
             return self.float64
         return follow(replace(self.run, steps=asked), float64())

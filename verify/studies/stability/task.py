@@ -41,7 +41,7 @@ class LargestStepTask(InitialValueTask):
     """The largest step size with bounded motion until `time`."""
 
     result = LargestStepResult
-    imports = ("verify.studies.stability.results",)
+    imports = ("verify.studies.stability.limits",)
     kind: Literal["largest_step"] = "largest_step"
     time: Number
 
@@ -50,16 +50,16 @@ class LargestStepTask(InitialValueTask):
         return _RUN_COST * _RUNS_OF_BISECTION
 
     def compute(self, keeper: Keeper) -> LargestStepResult:
-        from verify.studies.stability.results import largest_step_result
+        from verify.studies.stability.limits import largest_step
 
-        return largest_step_result(self.exact_hamiltonian(), self.scheme, **self.asked())
+        return largest_step(self.exact_hamiltonian(), self.scheme, **self.asked())
 
 
 class StabilityMapTask(InitialValueTask):
     """Verdicts over a parameter's values and step sizes."""
 
     result = StabilityMapResult
-    imports = ("verify.studies.stability.results",)
+    imports = ("verify.studies.stability.limits",)
     kind: Literal["stability_map"] = "stability_map"
     parameter: str
     values: tuple[Number, ...]
@@ -71,6 +71,6 @@ class StabilityMapTask(InitialValueTask):
         return _RUN_COST * len(self.values) * len(self.step_sizes)
 
     def compute(self, keeper: Keeper) -> StabilityMapResult:
-        from verify.studies.stability.results import map_result
+        from verify.studies.stability.limits import stability_map
 
-        return map_result(self.exact_hamiltonian(), self.scheme, **self.asked())
+        return stability_map(self.exact_hamiltonian(), self.scheme, **self.asked())

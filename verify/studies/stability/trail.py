@@ -46,15 +46,24 @@ class Point:
 
 @dataclass(frozen=True)
 class Trail:
-    """States of a run; `done` steps of the `steps` stayed in the arithmetic's range."""
+    """States of a run in an arithmetic; `done` of its steps stayed in the arithmetic's range."""
 
+    run: Run
+    arithmetic: Arithmetic
     points: tuple[Point, ...]
     done: int
-    steps: int
+
+    @property
+    def steps(self) -> int:
+        return self.run.steps
 
     @property
     def finished(self) -> bool:
         return self.done == self.steps
+
+    def onwards(self, point: Point, steps: int) -> "Trail":
+        """So many steps from one of its points, followed more closely."""
+        return follow(replace(self.run, p=point.p, q=point.q, steps=steps), self.arithmetic)
 
 
 def follow(run: Run, arithmetic: Arithmetic) -> Trail:
@@ -67,7 +76,7 @@ def follow(run: Run, arithmetic: Arithmetic) -> Trail:
     points = [Point(0, run.p, run.q)]
     for k, state in enumerate(outcome.trail, start=1):
         points.append(Point(min(k * section, run.steps), state["p"], state["q"]))
-    return Trail(tuple(points), outcome.done, run.steps)
+    return Trail(run, arithmetic, tuple(points), outcome.done)
 
 
 def _sections(steps: int) -> int:
@@ -80,28 +89,24 @@ def _sections(steps: int) -> int:
     return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
 
 
-def follow_precisely(run: Run, digits: int) -> tuple[Trail, Arithmetic]:
-    """The run to so many digits, compiled where that repays; with what it was run in.
+def follow_precisely(run: Run, digits: int) -> Trail:
+    """The run to so many digits, compiled where that repays.
 
     Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
     """
     *faster, last = number_systems.automatic()
     for system in faster:
         if worth_compiling(system, run.steps):
-            compiled = system.make(digits)
             try:
-                trail = follow(run, compiled)
+                trail = follow(run, system.make(digits))
             except UnsupportedError:
                 continue
             if trail.finished:
-                return trail, compiled
-    wide = last.make(digits)
-    return follow(replace(run, steps=min(run.steps, MOST_INTERPRETED)), wide), wide
+                return trail
+    return follow(replace(run, steps=min(run.steps, MOST_INTERPRETED)), last.make(digits))
 
 
-def first_step(
-    run: Run, trail: Trail, arithmetic: Arithmetic, happens: Callable[[Point], bool]
-) -> int | None:
+def first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | None:
     """The first step after which it happens, seen at the trail's points and then between them.
 
     A run that leaves its range does so at the step after the last that is done. None where neither
@@ -111,35 +116,29 @@ def first_step(
     for point in trail.points[1:]:
         if happens(point):
             length = point.step - before.step
-            found = _first_from(before, length, run, arithmetic, happens) if length > 1 else None
+            found = _first_from(trail, before, length, happens) if length > 1 else None
             return point.step if found is None else found
         before = point
     if trail.finished:
         return None
     rest = trail.done - before.step
-    found = _first_from(before, rest, run, arithmetic, happens) if rest else None
+    found = _first_from(trail, before, rest, happens) if rest else None
     return trail.done + 1 if found is None else found
 
 
 def _first_from(
-    before: Point, steps: int, run: Run, arithmetic: Arithmetic, happens: Callable[[Point], bool]
+    trail: Trail, before: Point, steps: int, happens: Callable[[Point], bool]
 ) -> int | None:
     """The same for so many steps from a point on the way."""
-    stretch = replace(run, p=before.p, q=before.q, steps=steps)
-    found = first_step(stretch, follow(stretch, arithmetic), arithmetic, happens)
+    found = first_step(trail.onwards(before, steps), happens)
     return None if found is None else before.step + found
 
 
-def first_apart(
-    one: tuple[Run, Trail, Arithmetic],
-    other: tuple[Run, Trail, Arithmetic],
-    apart: Callable[[Point, Point], bool],
-) -> int | None:
+def first_apart(one: Trail, other: Trail, apart: Callable[[Point, Point], bool]) -> int | None:
     """The first step after which two runs of one run are apart; None where none is seen."""
-    (run, trail, arithmetic), (second, second_trail, second_arithmetic) = one, other
     offset = 0
     while True:
-        pairs = list(zip(trail.points, second_trail.points, strict=False))
+        pairs = list(zip(one.points, other.points, strict=False))
         index = next((k for k, pair in enumerate(pairs) if apart(*pair)), None)
         if index is None:
             return None
@@ -150,6 +149,4 @@ def first_apart(
         if length == 1:
             return offset + step
         offset += x.step
-        run = replace(run, p=x.p, q=x.q, steps=length)
-        second = replace(second, p=y.p, q=y.q, steps=length)
-        trail, second_trail = follow(run, arithmetic), follow(second, second_arithmetic)
+        one, other = one.onwards(x, length), other.onwards(y, length)

@@ -19,7 +19,6 @@ told in `verify.studies.stability.run_motion`.
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.flows.orbit import ExactOrbit
 from verify.prose import Number, Prose, prose
@@ -43,7 +42,6 @@ _FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
 _SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
 _LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
-_Precise = tuple[int, Trail, Arithmetic]
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ def judge(run: Run) -> Judgement:
     if motion.orbit.kind == "escapes":
         told = prose("the exact solution ", motion.orbit.summary)
         return Judgement("escapes", told, motion.orbit)
-    precise, _ = motion.precise
+    precise = motion.precise
     if not motion.stays(precise):
         if motion.orbit.kind == "unknown":
             unknown = "the exact solution, to be held against, is not known: "
@@ -93,8 +91,8 @@ def bounded(run: Run) -> bool:
 
 def _scheme(motion: RunMotion) -> Judgement:
     digits = 2 * motion.digits
-    again, arithmetic = follow_precisely(motion.run, digits)
-    step = first_step(motion.run, again, arithmetic, motion.beyond)
+    again = follow_precisely(motion.run, digits)
+    step = first_step(again, motion.beyond)
     if step is None:
         told = prose(f"{motion.digits} and {digits} digits differ in whether the orbit stays")
         return Judgement("undecided", told, motion.orbit)
@@ -110,34 +108,33 @@ def _scheme(motion: RunMotion) -> Judgement:
 
 def _not_the_scheme(motion: RunMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
-    precise, _ = motion.precise
-    run, here = replace(motion.run, steps=precise.steps), motion.as_far
-    confirmed = _confirmed(motion, run, precise)
+    here, confirmed = motion.as_far, _confirmed(motion)
     if confirmed is None:
         told = prose(f"up to {_MOST_DIGITS} digits no two precisions give the same orbit")
         return Judgement("undecided", told, motion.orbit)
-    digits, precise, arithmetic = confirmed
+    digits, precise = confirmed
     if not motion.stays(precise):  # fewer digits did, by rounding
-        step = first_step(run, precise, arithmetic, motion.beyond)
+        step = first_step(precise, motion.beyond)
         told = prose(f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits")
         return Judgement("unstable: scheme", told, motion.orbit, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
-    step = first_apart((run, here, float64()), (run, precise, arithmetic), motion.apart)
+    step = first_apart(here, precise, motion.apart)
     at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
     told = prose(f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits")
     told += describe_rounded_start(motion.run)
     return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
 
 
-def _confirmed(motion: RunMotion, run: Run, precise: Trail) -> _Precise | None:
+def _confirmed(motion: RunMotion) -> tuple[int, Trail] | None:
     """The digits with which the run in high precision comes out the same again, and that run."""
-    digits, last = motion.digits, precise
+    digits, last = motion.digits, motion.precise
+    run = last.run
     while digits <= _MOST_DIGITS:
         digits *= 2
-        again, arithmetic = follow_precisely(run, digits)
+        again = follow_precisely(run, digits)
         if again.steps == last.steps and motion.together(again, last):
-            return digits, again, arithmetic
+            return digits, again
         last = again
     return None
 
@@ -147,9 +144,9 @@ def _range_alone(motion: RunMotion) -> bool:
 
     In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
     """
-    steps = min(motion.precise[0].steps, _RANGE_STEPS, motion.as_far.done + 1)
+    steps = min(motion.precise.steps, _RANGE_STEPS, motion.as_far.done + 1)
     run = replace(motion.run, steps=steps)
-    precise = follow(run, motion.precise[1])
+    precise = follow(run, motion.precise.arithmetic)
     if motion.together(follow(run, float64()), precise):
         return False
     wide = (follow(run, mpfr.at_bits(bits)) for bits in (_FLOAT_BITS, _FEWER_BITS))
@@ -190,7 +187,7 @@ def _vanished(motion: RunMotion) -> Prose:
 
 
 def _bounded(motion: RunMotion) -> Judgement:
-    precise, _ = motion.precise
+    precise = motion.precise
     rate = drift_of(motion)
     told = prose(f"bounded over all {motion.run.steps} steps")
     if precise.steps < motion.run.steps:

@@ -49,19 +49,19 @@ def test_the_first_step_is_found_exactly(size: int) -> None:
     # The square of the radius grows by 1 + h² at each step.
     expected = next(n for n in range(1, 10**4) if Fraction(101, 100) ** n > size)
     trail = follow(GROWING, FLOAT)
-    assert first_step(GROWING, trail, FLOAT, far) == expected
+    assert first_step(trail, far) == expected
 
 
 def test_what_does_not_happen_has_no_step() -> None:
     trail = follow(GROWING, FLOAT)
-    assert first_step(GROWING, trail, FLOAT, lambda point: False) is None
+    assert first_step(trail, lambda point: False) is None
 
 
 def test_leaving_the_range_happens_at_the_step_after_the_last() -> None:
     case = replace(GROWING, step_size=Fraction(10**30), steps=200)
     trail = follow(case, FLOAT)
     assert not trail.finished
-    found = first_step(case, trail, FLOAT, lambda point: False)
+    found = first_step(trail, lambda point: False)
     assert found == trail.done + 1
     assert max(abs(x) for x in stepped(case, trail.done)) < float("inf")
 
@@ -70,7 +70,7 @@ def test_something_within_the_last_unfinished_stretch_is_found() -> None:
     case = replace(GROWING, step_size=Fraction(10**30), steps=200_000)
     trail = follow(case, FLOAT)
     assert len(trail.points) == 1  # the first stretch is not finished
-    assert first_step(case, trail, FLOAT, lambda point: abs(point.q) > 10**59) == 2
+    assert first_step(trail, lambda point: abs(point.q) > 10**59) == 2
 
 
 def test_two_runs_part_where_a_plain_comparison_says() -> None:
@@ -81,7 +81,7 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
     def apart(x: Point, y: Point) -> bool:
         return abs(x.p - y.p) > Fraction(1, 10)
 
-    found = first_apart((case, one, coarse), (case, other, fine), apart)
+    found = first_apart(one, other, apart)
     assert found is not None
     for steps, expected in ((found - 1, False), (found, True)):
         pair = (follow(replace(case, steps=steps), a).points[-1] for a in (coarse, fine))
@@ -91,21 +91,20 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
 def test_two_runs_that_stay_together_part_nowhere() -> None:
     fine = mpfr.at_bits(80)
     trail = follow(GROWING, fine)
-    one = GROWING, trail, fine
-    assert first_apart(one, one, lambda x, y: abs(x.p - y.p) > 0) is None
+    assert first_apart(trail, trail, lambda x, y: abs(x.p - y.p) > 0) is None
 
 
 def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so() -> None:
     hamiltonian = Hamiltonian.parse("p**2/2 + q*atan(q)")  # which fixed has not
     case = Run(hamiltonian, "lie1", Fraction(1, 10**6), Fraction(1), Fraction(0), 400_000)
-    trail, wide = follow_precisely(case, 30)
-    assert wide.name == "mpfr"
+    trail = follow_precisely(case, 30)
+    assert trail.arithmetic.name == "mpfr"
     assert trail.finished
     assert trail.steps == 300_000
 
 
 def test_long_runs_are_compiled() -> None:
     case = replace(GROWING, step_size=Fraction(1, 10**6), steps=100_000)
-    trail, wide = follow_precisely(case, 30)
-    assert wide.name == "fixed"
+    trail = follow_precisely(case, 30)
+    assert trail.arithmetic.name == "fixed"
     assert trail.steps == case.steps
