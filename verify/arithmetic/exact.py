@@ -62,6 +62,15 @@ def positive(value: Exact, name: str) -> Fraction:
     return number
 
 
+def whole(name: str, value: object, least: int, most: int | None = None) -> int:
+    """The value, where it is a whole number from `least` to `most`; else InputError."""
+    fits = isinstance(value, int) and not isinstance(value, bool)
+    if not fits or value < least or (most is not None and value > most):  # type: ignore[operator]
+        allowed = f"{least} or more" if most is None else f"{least} … {most}"
+        raise InputError(name, value, f"must be a whole number, {allowed}")
+    return value  # type: ignore[return-value]
+
+
 def _from_text(text: str, name: str) -> Fraction:
     stripped = text.strip()
     match = _NUMBER.fullmatch(stripped) if len(stripped) <= _MAX_LENGTH else None

@@ -63,6 +63,11 @@ class HamiltonianTask(Task):
     def exact_hamiltonian(self) -> Hamiltonian:
         return Hamiltonian.parse(self.hamiltonian, self.parameters)
 
+    def asked(self, *without: str) -> dict[str, Any]:
+        """What it asks for beside H, by the names of its fields."""
+        beside = {*HamiltonianTask.model_fields, *without}
+        return {name: value for name, value in self if name not in beside}
+
 
 class SchemeTask(HamiltonianTask):
     """A task on one scheme for one H."""
@@ -75,7 +80,3 @@ class InitialValueTask(SchemeTask):
 
     q: Number
     p: Number
-
-    def asked(self, *without: str) -> dict[str, Any]:
-        """What it asks for of the scheme for H, by the names of its fields."""
-        return {n: x for n, x in self if n not in SchemeTask.model_fields and n not in without}

@@ -47,7 +47,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.derivatives import Derivatives
+from verify.runs.derivatives import Derivatives, norm
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
 METHOD = "a-posteriori bound with the tangent map carried along"
@@ -130,8 +130,7 @@ class _Certificate:
             return None
         # ε is Euclid's norm of what both components lose.
         added = [self.adding(name, values[f"d{name}"]) for name in ("p", "q")]
-        state = (added[0] * added[0] + added[1] * added[1]).sqrt().abs_upper()
-        return _Steps(state, values["dj"].error, tangent, values["dj"].magnitude)
+        return _Steps(norm(added), values["dj"].error, tangent, values["dj"].magnitude)
 
     def inputs(self) -> dict[str, Rounded]:
         """The state, which is data and has no error, and h and the parameters as rounded."""
@@ -164,9 +163,7 @@ class _Certificate:
         if found is None:
             return None
         entries = [found[index] for index in tangent.change]
-        size, error = (
-            _norm([getattr(x, part) for x in entries]) for part in ("magnitude", "error")
-        )
+        size, error = norm(x.magnitude for x in entries), norm(x.error for x in entries)
         # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of
         # the products. That is 4 times half a unit, and what is of second order.
         return ((error + 3 * unit * size) * (1 + unit) + unit * unit).abs_upper()
@@ -198,7 +195,7 @@ class _Certificate:
     def first_error(self) -> Ball:
         start, number, exact = self.run.start, self.arithmetic.number, self.arithmetic.exact
         lost = [rational_ball(exact(number(start[n])) - start[n]) for n in ("p", "q")]
-        return _norm(lost)
+        return norm(lost)
 
     def values_of_inputs(self) -> dict[str, Ball]:
         named = {n: rational_ball(x) for n, x in self.run.parameters.items()}
@@ -261,10 +258,3 @@ def _square_of_norm(squares: Ball, least: Ball) -> Ball:
     """A bound of ‖M‖², from those of the sum of its entries' squares and of its determinant; or one
     of the mean of ‖M‖² over several M, from that of those sums."""
     return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()
-
-
-def _norm(entries: list[Ball]) -> Ball:
-    total = flint.arb(0)
-    for x in entries:
-        total += x * x
-    return total.sqrt().abs_upper()

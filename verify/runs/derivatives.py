@@ -1,6 +1,6 @@
 """Bounds of a step map's derivatives over a box of states, by interval arithmetic."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -38,7 +38,7 @@ class Derivatives:
         log are on the other side of 0.
         """
         found = self.values.over({**fixed, **box})
-        return flint.arb.nan() if found is None else _norm(found[len(_STATE) :])
+        return flint.arb.nan() if found is None else norm(found[len(_STATE) :])
 
     def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
         """A bound of ‖∇ΔJ‖ in the box."""
@@ -47,7 +47,7 @@ class Derivatives:
             return flint.arb.nan()
         total = flint.arb(0)
         for k, n in enumerate(self.powers):
-            total += fixed["h"] ** n * _norm(found[2 * k : 2 * k + 2])
+            total += fixed["h"] ** n * norm(found[2 * k : 2 * k + 2])
         return total
 
 
@@ -87,9 +87,6 @@ def _whole(step_map: StepMap) -> Substep:
     return closed if closed and closed.terms_of_delta_j <= _MOST_OF_DELTA_J else step
 
 
-def _norm(values: Sequence[Ball]) -> Ball:
-    total = flint.arb(0)
-    for value in values:
-        size = value.abs_upper()
-        total += size * size
-    return total.sqrt().abs_upper()
+def norm(values: Iterable[Ball]) -> Ball:
+    """A bound of Euclid's norm."""
+    return sum((x.abs_upper() ** 2 for x in values), flint.arb(0)).sqrt().abs_upper()

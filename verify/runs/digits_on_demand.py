@@ -16,7 +16,13 @@ from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import METHOD, certify, certify_at
 from verify.runs.enclosed import enclosed
-from verify.runs.estimated import Bounds, missing_digits, resolved, working_digits
+from verify.runs.estimated import (
+    Bounds,
+    digits_of,
+    missing_digits,
+    resolved,
+    working_digits,
+)
 
 _ATTEMPTS = 5
 _WORTH_COMPILING = (
@@ -136,7 +142,7 @@ def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
 
 
 def _finer(own: Arithmetic, missing: int) -> Arithmetic:
-    return number_systems.get(own.name, own.bits * 30103 // 100000 + missing + 2)
+    return number_systems.get(own.name, digits_of(own) + missing + 2)
 
 
 class _Foresight:

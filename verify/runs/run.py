@@ -13,7 +13,7 @@ from fractions import Fraction
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import in_reach, middle_and_radius
-from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
+from verify.arithmetic.exact import Exact, positive, rational, text, whole
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.systems import ball, float64
 from verify.errors import InputError
@@ -21,9 +21,10 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.computation import step_map_of
-from verify.kernels.stepping import KernelRun
+from verify.kernels.orbit import Orbit
+from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import Measured, choose, measure
-from verify.runs.estimated import Bounded
+from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
@@ -56,41 +57,15 @@ def run(
     """
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, observables)
-    if isinstance(points, bool) or not isinstance(points, int) or points < 0:
-        raise InputError("points", points, "must be a whole number, 0 or more")
-    step_map = step_map_of(hamiltonian, scheme)
-    known = proved(step_map, start["h"], steps, digits)
+    whole("points", points, 0)
+    known = proved(step_map_of(hamiltonian, scheme), start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
     kernel_run = KernelRun(hamiltonian, scheme, start, steps, needed, points, keeper)
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits)
     done = _run(kernel_run, arithmetic, digits, known, progress)
-    found = done.bounds
-    most = min(digits, number_systems.about(done.arithmetic).digits or digits)
-    values = {
-        n: printed(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
-    }
-    if found.status == "finished":
-        values |= {n: printed(*known[n], digits) for n in observables if n in known}
-    return RunResult(
-        **hamiltonian.texts,
-        scheme=scheme,
-        arithmetic=done.arithmetic,
-        fallback=done.fallback,
-        digits=digits,
-        step_size=text(start["h"]),
-        steps=steps,
-        q=text(start["q"]),
-        p=text(start["p"]),
-        status=found.status,
-        failed_step=found.failed_step,
-        values=values,
-        error_kind="enclosed" if found.rigorous else "estimated",
-        error_method=found.method,
-        exact=tuple(o for o in observables if o in known),
-        series=done.outcome.series,
-        seconds=done.outcome.seconds,
-    )
+    orbit = Orbit(hamiltonian, scheme, start["h"], start["q"], start["p"])
+    return _result(orbit, steps, digits, observables, known, done)
 
 
 def proved_run(
@@ -109,23 +84,46 @@ def proved_run(
     known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
     if not set(observables) <= set(known):
         return None
+    found = Bounds({}, "a proof, and no run", rigorous=True)
+    done = Measured(found, ball.NAME, Outcome())
+    orbit = Orbit(hamiltonian, scheme, step_size, q, p)
+    return _result(orbit, steps, digits, observables, known, done)
+
+
+def _result(
+    orbit: Orbit,
+    steps: int,
+    digits: int,
+    observables: Sequence[str],
+    known: Bounded,
+    done: Measured,
+) -> RunResult:
+    """What was found of the run, and what was `known` of it by a proof."""
+    found = done.bounds
+    most = min(digits, number_systems.about(done.arithmetic).digits or digits)
+    values = {
+        n: Value.of(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
+    }
+    if found.status == "finished":
+        values |= {n: Value.of(*known[n], digits) for n in observables if n in known}
     return RunResult(
-        **hamiltonian.texts,
-        scheme=scheme,
-        arithmetic=ball.NAME,
+        **orbit.hamiltonian.texts,
+        scheme=orbit.scheme,
+        arithmetic=done.arithmetic,
+        fallback=done.fallback,
         digits=digits,
-        step_size=text(step_size),
+        step_size=text(orbit.step_size),
         steps=steps,
-        q=text(q),
-        p=text(p),
-        status="finished",
-        failed_step=None,
-        values={n: printed(*known[n], digits) for n in observables},
-        error_kind="enclosed",
-        error_method="a proof, and no run",
-        exact=tuple(observables),
-        series=(),
-        seconds=0.0,
+        q=text(orbit.q),
+        p=text(orbit.p),
+        status=found.status,
+        failed_step=found.failed_step,
+        values=values,
+        error_kind="enclosed" if found.rigorous else "estimated",
+        error_method=found.method,
+        exact=tuple(o for o in observables if o in known),
+        series=done.outcome.series,
+        seconds=done.outcome.seconds,
     )
 
 
@@ -143,8 +141,7 @@ def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequen
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a run needs one")
     for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
-        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
-            raise InputError(name, value, f"must be a whole number, 1 … {most}")
+        whole(name, value, 1, most)
     for name in observables:
         if name not in OBSERVABLES:
             raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
@@ -177,9 +174,3 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
         if delta_j > -1:  # (1 + ΔJ)^k moves in one direction
             found["lambda_max"] = abs(lam)
         return {name: middle_and_radius(x) for name, x in found.items() if in_reach(x)}
-
-
-def printed(value: Fraction, bound: Fraction, digits: int) -> Value:
-    """The digits of a value that its bound leaves, `digits` at most, and their own bound."""
-    shown, within = known_digits(value, bound, digits)
-    return Value(value=shown, bound=within)

@@ -33,8 +33,8 @@ class RunTask(InitialValueTask):
     def proved(self) -> RunResult | None:
         """What a proof gives of the run without a step; None where it is not all that is asked."""
         asked = self.asked("arithmetic", "points")
-        return proved_run(self.exact_hamiltonian(), self.scheme, **asked)
+        return proved_run(self.exact_hamiltonian(), **asked)
 
     def compute(self, keeper: Keeper) -> RunResult:
         """The run, from its last checkpoint where there is one."""
-        return run(self.exact_hamiltonian(), self.scheme, **self.asked(), keeper=keeper)
+        return run(self.exact_hamiltonian(), **self.asked(), keeper=keeper)

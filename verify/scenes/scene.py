@@ -171,6 +171,7 @@ class Series(Frozen):
 
     @property
     def count(self) -> int:
+        """N: as given, or the whole steps that fit into `time`."""
         if self.steps is not None:
             return self.steps
         assert self.time is not None  # noqa: S101 - the validator above

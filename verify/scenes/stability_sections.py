@@ -26,7 +26,7 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import decimal, positive, text
+from verify.arithmetic.exact import decimal, positive, text, whole
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
@@ -45,8 +45,7 @@ def _spread(given: Any) -> Any:
     if set(given) != {"from", "to", "count"}:
         raise InputError("range", ", ".join(map(str, given)), "allowed: from, to, count")
     low, high, count = positive(given["from"], "from"), positive(given["to"], "to"), given["count"]
-    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 200:
-        raise InputError("count", count, "must be a whole number, 2 … 200")
+    whole("count", count, 2, 200)
     if low >= high:
         raise InputError("from, to", given["from"], "from must be less than to")
     return tuple(_evenly(low, high, count))

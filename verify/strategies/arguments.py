@@ -4,16 +4,8 @@ given, not when something is drawn."""
 from fractions import Fraction
 
 from verify.arithmetic.exact import Exact, rational, text
+from verify.arithmetic.exact import whole as whole
 from verify.errors import InputError
-
-
-def whole(name: str, value: object, least: int, most: int | None = None) -> int:
-    """The value, where it is a whole number from `least` to `most`; else InputError."""
-    fits = isinstance(value, int) and not isinstance(value, bool)
-    if not fits or value < least or (most is not None and value > most):  # type: ignore[operator]
-        allowed = f"{least} or more" if most is None else f"{least} … {most}"
-        raise InputError(name, value, f"must be a whole number, {allowed}")
-    return value  # type: ignore[return-value]
 
 
 def exactly(name: str, value: Exact) -> Fraction:

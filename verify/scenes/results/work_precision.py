@@ -23,22 +23,22 @@ class WorkPoint(Frozen):
     """
 
     scheme: str
-    step_size: str | None
-    tolerance: str | None
-    steps: int | None
-    error: Value | None
-    truncation: Value | None
-    rounding: Value | None
-    energy: Value | None
-    lam: Value | None
-    lam_plain: Value | None
+    step_size: str | None = None
+    tolerance: str | None = None
+    steps: int | None = None
+    error: Value | None = None
+    truncation: Value | None = None
+    rounding: Value | None = None
+    energy: Value | None = None
+    lam: Value | None = None
+    lam_plain: Value | None = None
     limited_by: LimitedBy
-    lambda_limited_by: LimitedBy | None
-    failed_step: int | None
-    reason: str
-    seconds_min: Seconds | None
-    seconds_median: Seconds | None
-    evaluations: int | None
+    lambda_limited_by: LimitedBy | None = None
+    failed_step: int | None = None
+    reason: str = ""
+    seconds_min: Seconds | None = None
+    seconds_median: Seconds | None = None
+    evaluations: int | None = None
 
 
 class SlopeResult(Frozen):

@@ -22,8 +22,7 @@ from verify.arithmetic.arb import (
     precision,
     rational_ball,
 )
-from verify.arithmetic.exact import Exact, known_digits, rational, text
-from verify.errors import InputError
+from verify.arithmetic.exact import Exact, rational, text, whole
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -49,8 +48,7 @@ def average_of(
     why. Raises InputError for a parameter without a value, and for digits beyond 200.
     """
     begun = time.perf_counter()
-    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
-        raise InputError("digits", digits, f"must be a whole number, 1 … {MOST_DIGITS}")
+    whole("digits", digits, 1, MOST_DIGITS)
     start = rational(p, "p"), rational(q, "q")
     law: GrowthLaw | None = None
     found: Average | None = None
@@ -73,8 +71,8 @@ def average_of(
         potential=_shown(law.potential) if law and law.potential else "",
         orbit=found.orbit.kind if found else "undecided",
         reason=reason,
-        average=_bounded_value(found.value, found.bound, digits) if found else None,
-        period=_bounded_value(*period, digits) if period else None,
+        average=Value.of(found.value, found.bound, digits) if found else None,
+        period=Value.of(*period, digits) if period else None,
         error_kind="enclosed" if at_rest else "estimated",
         error_method=ENCLOSED if at_rest else ESTIMATED,
         seconds=time.perf_counter() - begun,
@@ -139,12 +137,7 @@ def _between(f: Element, run: RunResult) -> Ball:
 
 
 def _value(x: Ball) -> Value:
-    return _bounded_value(*middle_and_radius(x), _SHOWN)
-
-
-def _bounded_value(value: Fraction, bound: Fraction, digits: int) -> Value:
-    shown, within = known_digits(value, bound, digits)
-    return Value(value=shown, bound=within)
+    return Value.of(*middle_and_radius(x), _SHOWN)
 
 
 def _shown(x: Element) -> str:

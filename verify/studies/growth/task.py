@@ -18,4 +18,4 @@ class GrowthTask(InitialValueTask):
     def compute(self, keeper: Keeper) -> AverageResult:
         from verify.studies.growth.prediction import average_of
 
-        return average_of(self.exact_hamiltonian(), self.scheme, **self.asked())
+        return average_of(self.exact_hamiltonian(), **self.asked())

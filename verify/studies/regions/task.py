@@ -34,13 +34,5 @@ class FlowTask(HamiltonianTask):
         """The images of the outline, as a result."""
         from verify.studies.regions.carry import carry
 
-        return carry(
-            self.exact_hamiltonian(),
-            self.map,
-            self.shape.to_shape(),
-            step_size=self.step_size,
-            steps=self.steps,
-            digits=self.digits,
-            mean_lambda=self.mean_lambda,
-            distance=self.distance,
-        )
+        shape = self.shape.to_shape()
+        return carry(self.exact_hamiltonian(), self.map, shape, **self.asked("map", "shape"))

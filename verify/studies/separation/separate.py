@@ -41,7 +41,8 @@ from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.run import check, printed
+from verify.runs.run import check
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
     CrossoverResult,
     EvaluationResult,
@@ -206,7 +207,7 @@ def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     trails = {name: chain.trail(name) for name in QUANTITIES}
     tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
     return EvaluationResult(
-        parts=Parts(**{name: printed(*chain.final(name), digits) for name in QUANTITIES}),
+        parts=Parts(**{name: Value.of(*chain.final(name), digits) for name in QUANTITIES}),
         largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
         growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *PARTS)},
         series=tuple(_at(chain, trails, k) for k in _shown(chain.marks)),

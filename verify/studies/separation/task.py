@@ -28,4 +28,4 @@ class SeparationTask(InitialValueTask):
 
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
-        return separate(self.exact_hamiltonian(), self.scheme, **self.asked(), keeper=keeper)
+        return separate(self.exact_hamiltonian(), **self.asked(), keeper=keeper)

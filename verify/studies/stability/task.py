@@ -52,7 +52,7 @@ class LargestStepTask(InitialValueTask):
     def compute(self, keeper: Keeper) -> LargestStepResult:
         from verify.studies.stability.limits import largest_step
 
-        return largest_step(self.exact_hamiltonian(), self.scheme, **self.asked())
+        return largest_step(self.exact_hamiltonian(), **self.asked())
 
 
 class StabilityMapTask(InitialValueTask):
@@ -73,4 +73,4 @@ class StabilityMapTask(InitialValueTask):
     def compute(self, keeper: Keeper) -> StabilityMapResult:
         from verify.studies.stability.limits import stability_map
 
-        return stability_map(self.exact_hamiltonian(), self.scheme, **self.asked())
+        return stability_map(self.exact_hamiltonian(), **self.asked())

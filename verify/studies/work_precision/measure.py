@@ -12,7 +12,7 @@ from fractions import Fraction
 from statistics import median
 from time import perf_counter
 
-from verify import arithmetic as number_systems
+from verify.arithmetic import about
 from verify.arithmetic.exact import text, upper
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
@@ -21,30 +21,19 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.work_precision import (
-    SystemPoint,
-    WorkLine,
-    WorkPoint,
-    WorkPrecisionResult,
-)
+from verify.scenes.results.work_precision import SystemPoint, WorkPoint, WorkPrecisionResult
 from verify.studies.work_precision import peers as peer_catalogue
 from verify.studies.work_precision.lines import comparisons, lg, line
-from verify.studies.work_precision.peer_interface import (
-    Answer,
-    InitialValueProblem,
-    PeerError,
-    Solver,
-)
+from verify.studies.work_precision.peer_interface import Answer, PeerError, Solver
 from verify.studies.work_precision.runs import (
     ROUNDING_SHARE,
+    SHOWN,
     Ladder,
     Problem,
-    State,
     distance,
     failed,
-    finished,
-    printed,
 )
 from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
 
@@ -61,16 +50,6 @@ class _Timing:
     blank: Callable[[], object] = nothing
 
 
-@dataclass(frozen=True)
-class NumberSystems:
-    """Which number systems are timed, with how many digits, on one scheme at one step size."""
-
-    names: Sequence[str]
-    digits: Sequence[int]
-    scheme: str
-    step_size: Fraction
-
-
 def work_precision(
     hamiltonian: Hamiltonian,
     *,
@@ -80,18 +59,21 @@ def work_precision(
     schemes: Sequence[str],
     step_sizes: Sequence[Fraction],
     repeats: int,
-    systems: NumberSystems,
-    peers: Sequence[str] = (),
-    left_out: Sequence[tuple[str, str]] = (),
-    advance: Advance = lambda _: None,
+    number_systems: Sequence[str],
+    digits: Sequence[int],
+    number_systems_scheme: str,
+    number_systems_step_size: Fraction,
+    peers: Sequence[str],
+    peers_left_out: Sequence[tuple[str, str]],
+    advance: Advance,
 ) -> WorkPrecisionResult:
     """Errors and run times over [0, time] from (q, p): of each scheme with each step size, of
-    peers, and of number systems. `left_out`: other peers, each with the reason, for the result.
+    peers, and of number systems with so many digits, on one scheme at one step size.
 
     Raises InputError where the exact solution does not reach the time.
     """
     begun = perf_counter()
-    problem = _problem(hamiltonian, (p, q), time)
+    problem = _problem(hamiltonian, p, q, time)
     _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
     own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
@@ -102,10 +84,14 @@ def work_precision(
              ladder.compile_seconds, problem.scale)
         for ladder, timings in zip(ladders, own, strict=True)
     ]  # fmt: skip
-    drawn = [
-        _peer_line(name, timings, compiled)
+    lines += [
+        line([t.point for t in timings], name, None, None, compiled)
         for name, (timings, compiled) in zip(peers, others, strict=True)
     ]
+    pairs = [(name, n) for name in number_systems for n in _digits(name, digits)]
+    systems = _system_points(
+        problem, number_systems_scheme, number_systems_step_size, pairs, repeats
+    )
     return WorkPrecisionResult(
         **hamiltonian.texts,
         time=text(time),
@@ -119,23 +105,22 @@ def work_precision(
         reference=problem.solution.method,
         reference_bound=upper(problem.solution.bound),
         machine=machine(),
-        lines=(*lines, *drawn),
+        lines=tuple(lines),
         comparisons=comparisons(lines, problem.scale),
-        systems=tuple(_system_points(problem, systems, repeats)),
-        systems_scheme=systems.scheme,
-        systems_step_size=text(systems.step_size),
-        left_out=tuple(left_out),
+        systems=tuple(systems),
+        systems_scheme=number_systems_scheme,
+        systems_step_size=text(number_systems_step_size),
+        left_out=tuple(peers_left_out),
         seconds=perf_counter() - begun,
     )
 
 
-def _problem(hamiltonian: Hamiltonian, start: State, time: Fraction) -> Problem:
-    p, q = start
+def _problem(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> Problem:
     try:
         exact = exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS)
     except NoFlowError as error:
         raise InputError("work_precision.time", text(time), str(error)) from None
-    return Problem(hamiltonian, start, time, exact)
+    return Problem(hamiltonian, p, q, time, exact)
 
 
 def _wake_compiler() -> None:
@@ -178,12 +163,10 @@ def _of(blank: Callable[[], object]) -> int:
 
 def _peer(problem: Problem, name: str, advance: Advance) -> tuple[list[_Timing], float]:
     """Its points over its tolerances, and what making it ready took the first time."""
-    p, q = problem.start
-    given = InitialValueProblem(problem.hamiltonian, p, q, problem.time)
     module, timings, compiled = peer_catalogue.get(name), [], 0.0
     for tolerance in module.TOLERANCES:
         try:
-            solver: Solver = module.make(given, tolerance)
+            solver: Solver = module.make(problem, tolerance)
             answer = solver.solve()
         except PeerError as error:
             point = failed(name, tolerance=text(tolerance), reason=str(error))
@@ -200,36 +183,34 @@ def _peer_point(problem: Problem, name: str, tolerance: Fraction, answer: Answer
     if not all(abs(x) < float("inf") for x in values):
         return failed(name, tolerance=text(tolerance), reason="left the range of float64")
     state = Fraction(answer.p), Fraction(answer.q)
-    return finished(
-        name,
+    return WorkPoint(
+        scheme=name,
         tolerance=f"{float(tolerance):.0e}",
         steps=answer.steps,
         evaluations=answer.evaluations,
-        error=printed(*problem.error(state)),
+        error=Value.of(*problem.error(state), SHOWN),
         energy=problem.energy_error(state),
         limited_by="tolerance",
     )
 
 
-def _peer_line(name: str, timings: list[_Timing], compiled: float) -> WorkLine:
-    return line([t.point for t in timings], name, None, None, compiled)
-
-
 # -- number systems -------------------------------------------------------------------------------
 
 
-def _system_points(problem: Problem, asked: NumberSystems, repeats: int) -> list[SystemPoint]:
-    """Certified digits of the end state against run time, of one scheme at one step size."""
-    h = asked.step_size
-    p, q = problem.start
+def _system_points(
+    problem: Problem, scheme: str, h: Fraction, pairs: Sequence[tuple[str, int]], repeats: int
+) -> list[SystemPoint]:
+    """Certified digits of the end state against run time, for each number system with its digits.
+
+    The run times are those of one scheme at one step size.
+    """
 
     def go(name: str, digits: int) -> RunResult:
         return run(
-            problem.hamiltonian, asked.scheme, q=q, p=p, step_size=h,
+            problem.hamiltonian, scheme, q=problem.q, p=problem.p, step_size=h,
             steps=int(problem.time / h), arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 
-    pairs = [(name, digits) for name in asked.names for digits in _digits(name, asked.digits)]
     first = [go(*each) for each in pairs]
     rounds = [[go(*each) for each in pairs] for _ in range(repeats)]
     points = []
@@ -237,18 +218,17 @@ def _system_points(problem: Problem, asked: NumberSystems, repeats: int) -> list
         taken = [each[k].seconds for each in rounds]
         timed: Timed | None = Timed(min(taken), median(taken))
         if name == float64.NAME:  # compiled, as it is in the other figures
-            timed = _compiled_float(problem, asked, repeats)
+            timed = _compiled_float(Ladder(problem, scheme), h, repeats)
         points.append(_system_point(name, digits, result, timed))
     return points
 
 
 def _digits(name: str, asked: Sequence[int]) -> Sequence[int]:
-    own = number_systems.about(name).digits
+    own = about(name).digits
     return asked if own is None else (own,)
 
 
-def _compiled_float(problem: Problem, asked: NumberSystems, repeats: int) -> Timed | None:
-    ladder, h = Ladder(problem, asked.scheme), asked.step_size
+def _compiled_float(ladder: Ladder, h: Fraction, repeats: int) -> Timed | None:
     taken, blank = interleaved([ladder.call(h), ladder.call(h, blank=True)], repeats)
     return above(taken, blank)
 

@@ -18,11 +18,10 @@ from typing import Any
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
-from verify.arithmetic.exact import decimal, known_digits, text
+from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
 from verify.flows.solution import Solution
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
@@ -31,11 +30,12 @@ from verify.runs.estimated import Bounds
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
+from verify.studies.work_precision.peer_interface import InitialValueProblem
 from verify.studies.work_precision.step_cost import cost
 
 ROUNDING_SHARE = Fraction(1, 20)  # of the error: a larger rounding part limits the point
 EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
-_SHOWN = 12  # digits of an error at most
+SHOWN = 12  # digits of an error at most
 _BITS = 400
 _ROOT_BITS = 160
 
@@ -43,13 +43,14 @@ State = tuple[Fraction, Fraction]  # p, q
 
 
 @dataclass(frozen=True)
-class Problem:
-    """H, the initial value and the time, with the exact solution there."""
+class Problem(InitialValueProblem):
+    """An initial value problem with its exact solution at the time."""
 
-    hamiltonian: Hamiltonian
-    start: State
-    time: Fraction
     solution: Solution
+
+    @property
+    def start(self) -> State:
+        return self.p, self.q
 
     @cached_property
     def _energy(self) -> tuple[Ring, Poly]:
@@ -78,7 +79,7 @@ class Problem:
         if len(reached) < len(ends):
             return None
         (a, a_bound), (b, b_bound) = map(middle_and_radius, reached)
-        return printed(abs(a - b), a_bound + b_bound)
+        return Value.of(abs(a - b), a_bound + b_bound, SHOWN)
 
 
 class Ladder:
@@ -99,36 +100,33 @@ class Ladder:
     def cost(self) -> CostResult:
         return cost(self.kernel, self.scheme)
 
-    def _inputs(self, h: Fraction) -> dict[str, Fraction]:
-        p, q = self.problem.start
-        return {"p": p, "q": q, "h": h}
-
     def _kernel_run(self, h: Fraction, observables: frozenset[str]) -> KernelRun:
-        steps = int(self.problem.time / h)
-        return KernelRun(
-            self.problem.hamiltonian, self.name, self._inputs(h), steps, observables, points=0
-        )
+        of = self.problem
+        start, steps = {"p": of.p, "q": of.q, "h": h}, int(of.time / h)
+        return KernelRun(of.hamiltonian, self.name, start, steps, observables, points=0)
+
+    def _loop(self, h: Fraction) -> ChunkedLoop:
+        return ChunkedLoop(self._kernel_run(h, frozenset()), self.kernel, self.arithmetic, (), 0)
 
     def call(self, h: Fraction, *, blank: bool = False) -> Callable[[], object]:
         """The loop over all steps, or over none, which is what a call takes by itself."""
-        kernel_run = self._kernel_run(h, frozenset())
-        loop = ChunkedLoop(kernel_run, self.kernel, self.arithmetic, (), 0)
-        count = 0 if blank else kernel_run.steps
+        loop = self._loop(h)
+        count = 0 if blank else loop.run.steps
         return partial(self.kernel.function, count, *loop.fixed, *loop.state)
 
     def point(self, h: Fraction) -> WorkPoint:
         """The run with this step size, not yet timed."""
-        kernel_run = self._kernel_run(h, frozenset())
-        loop = ChunkedLoop(kernel_run, self.kernel, self.arithmetic, (), 0)
+        loop = self._loop(h)
         for _ in loop.chunks():
             pass
-        if loop.done < kernel_run.steps:
+        steps = loop.run.steps
+        if loop.done < steps:
             return failed(
-                self.name, step_size=text(h), steps=kernel_run.steps, failed_step=loop.done + 1,
+                self.name, step_size=text(h), steps=steps, failed_step=loop.done + 1,
                 reason="left the range of float64",
             )  # fmt: skip
         last = loop.reached.trail[-1]
-        return self._finished(h, kernel_run.steps, (last["p"], last["q"]))
+        return self._finished(h, steps, (last["p"], last["q"]))
 
     def _finished(self, h: Fraction, steps: int, last: State) -> WorkPoint:
         error = self.problem.error(last)
@@ -146,13 +144,13 @@ class Ladder:
         else:
             reason = f"at high precision: {exact.status} ({exact.method})"
         plain, lam, lambda_limited = self._area(h, exact)
-        return finished(
-            self.name,
+        return WorkPoint(
+            scheme=self.name,
             step_size=text(h),
             steps=steps,
-            error=printed(*error),
-            truncation=truncation and printed(*truncation),
-            rounding=rounding and printed(*rounding),
+            error=Value.of(*error, SHOWN),
+            truncation=truncation and Value.of(*truncation, SHOWN),
+            rounding=rounding and Value.of(*rounding, SHOWN),
             energy=self.problem.energy_error(last),
             lam=lam,
             lam_plain=plain,
@@ -177,15 +175,15 @@ class Ladder:
         run = kernel_run.run(float64.make(17))
         if run.done < kernel_run.steps:
             return None, None, "failed"
-        plain = printed(run.values["lambda_plain"], Fraction(0))
+        plain = Value.of(run.values["lambda_plain"], Fraction(0), SHOWN)
         if self.preserves_area:  # proved; what the product shows is rounding
             return plain, Value(value="0", bound="0"), "rounding"
         lam = run.values["lambda"]
-        if "lambda" not in exact.values:
-            return plain, printed(lam, Fraction(0)), "undecided"
-        true, bound = exact.values["lambda"]
-        limited = limited_by((abs(lam), Fraction(0)), (abs(lam - true), bound))
-        return plain, printed(lam, Fraction(0)), limited
+        limited: LimitedBy = "undecided"
+        if "lambda" in exact.values:
+            true, bound = exact.values["lambda"]
+            limited = limited_by((abs(lam), Fraction(0)), (abs(lam - true), bound))
+        return plain, Value.of(lam, Fraction(0), SHOWN), limited
 
 
 def limited_by(error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fraction]) -> LimitedBy:
@@ -197,22 +195,9 @@ def limited_by(error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fract
     return "truncation" if most <= ROUNDING_SHARE * least else "rounding"
 
 
-# Any: keyword arguments of a model, which checks them.
-_NOTHING: dict[str, Any] = dict.fromkeys(
-    ("step_size", "tolerance", "steps", "error", "truncation", "rounding", "energy", "lam",
-     "lam_plain", "lambda_limited_by", "failed_step", "seconds_min", "seconds_median",
-     "evaluations")
-) | {"reason": ""}  # fmt: skip
-
-
-def finished(scheme: str, **found: Any) -> WorkPoint:
-    """A run with what was found of it, not yet timed."""
-    return WorkPoint(**{**_NOTHING, "scheme": scheme, **found})
-
-
-def failed(scheme: str, **found: Any) -> WorkPoint:
+def failed(scheme: str, **found: Any) -> WorkPoint:  # Any: the model checks them
     """A run that gave no values."""
-    return finished(scheme, limited_by="failed", lambda_limited_by="failed", **found)
+    return WorkPoint(scheme=scheme, limited_by="failed", lambda_limited_by="failed", **found)
 
 
 def distance(one: State, other: State) -> tuple[Fraction, Fraction]:
@@ -225,8 +210,3 @@ def distance(one: State, other: State) -> tuple[Fraction, Fraction]:
     half = _ROOT_BITS + max(0, bits)
     root = isqrt((square.numerator << 2 * half) // square.denominator)
     return Fraction(root, 1 << half), Fraction(1, 1 << half)
-
-
-def printed(value: Fraction, bound: Fraction) -> Value:
-    shown, within = known_digits(value, bound, _SHOWN)
-    return Value(value=shown, bound=within)

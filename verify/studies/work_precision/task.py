@@ -44,23 +44,6 @@ class WorkPrecisionTask(HamiltonianTask):
 
     def measure(self, advance: Callable[[int], None]) -> WorkPrecisionResult:
         """As `compute`; `advance` is called with the number of points just done."""
-        from verify.studies.work_precision.measure import NumberSystems, work_precision
+        from verify.studies.work_precision.measure import work_precision
 
-        return work_precision(
-            self.exact_hamiltonian(),
-            q=self.q,
-            p=self.p,
-            time=self.time,
-            schemes=self.schemes,
-            step_sizes=self.step_sizes,
-            repeats=self.repeats,
-            systems=NumberSystems(
-                names=self.number_systems,
-                digits=self.digits,
-                scheme=self.number_systems_scheme,
-                step_size=self.number_systems_step_size,
-            ),
-            peers=self.peers,
-            left_out=self.peers_left_out,
-            advance=advance,
-        )
+        return work_precision(self.exact_hamiltonian(), **self.asked(), advance=advance)
