@@ -21,7 +21,7 @@ from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.runs.run import run
-from verify.studies.separation.chain import Separation
+from verify.studies.separation.chain import separated_chains
 from verify.studies.separation.working import Stopped
 
 STEPS, H = 8, Fraction(1, 100)
@@ -50,9 +50,8 @@ def drawn(draw: random.Random, scheme: str) -> Hamiltonian:
 
 def one_run(hamiltonian: Hamiltonian, scheme: str, name: str) -> None:
     if name == SEPARATION:
-        work = Separation(hamiltonian, scheme, {"p": P, "q": Q, "h": H}, STEPS)
         with contextlib.suppress(Stopped):  # an answer too
-            work.chains(8)
+            separated_chains(hamiltonian, scheme, {"p": P, "q": Q, "h": H}, STEPS, 8)
         return
     run(hamiltonian, scheme, q=Q, p=P, step_size=H, steps=STEPS, arithmetic=name,
         digits=DIGITS[name], observables=("lambda",))  # fmt: skip

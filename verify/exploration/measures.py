@@ -13,7 +13,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
 from verify.exploration.sample import Sample
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.studies.separation.chain import Separation
+from verify.studies.separation.chain import separated_chains
 from verify.studies.separation.working import Stopped
 
 DIGITS = 40  # of what stands for exact arithmetic
@@ -39,7 +39,7 @@ def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
     if _stays(sample, digits) is None:
         return None
     try:
-        chain = Separation(*sample.kernel_inputs).chains(max(1, digits // _SHARE)).plain
+        chain = separated_chains(*sample.kernel_inputs, max(1, digits // _SHARE)).plain
     except Stopped:
         return None
     truncation, rounding = (_greatest(*chain.trail(n)) for n in ("truncation", "total"))

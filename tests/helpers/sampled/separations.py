@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.separation.chain import Chains, Separation
+from verify.studies.separation.chain import Chains, separated_chains
 from verify.studies.separation.working import Stopped
 
 sizes = st.builds(lambda n, k: Fraction(n, 2 * 7**k), st.integers(0, 8), st.integers(0, 9))
@@ -28,11 +28,11 @@ def bent(draw: st.DrawFn) -> str:
 
 def separated(
     text: str, scheme: str, start: dict[str, Fraction], steps: int, digits: int, name: str
-) -> tuple[Chains, list[int], Separation]:
+) -> tuple[Chains, list[int]]:
     advanced: list[int] = []
-    work = Separation(Hamiltonian.parse(text), scheme, start, steps)
+    run = Hamiltonian.parse(text), scheme, start, steps
     try:
-        return work.chains(digits, name, advanced.append), advanced, work
+        return separated_chains(*run, digits, name, advanced.append), advanced
     except Stopped:
         assume(False)
         raise

@@ -11,16 +11,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from math import prod
-from typing import Any
 
+import flint
 import numpy as np
-from mpmath.ctx_mp import MPContext
 
-from verify.arithmetic.exact import of_mpf
+from verify.arithmetic.arb import Ball, middle_and_radius
+from verify.arithmetic.flint_precision import working_precision
 
-Number = Any  # of an mpmath context
 NODES = 16
-_GUARD = 40  # bits, of which Newton's method and differences of nodes take a few
+_GUARD = 40  # bits, of which differences of nodes take a few
 
 
 @dataclass(frozen=True)
@@ -45,43 +44,30 @@ class Rule:
 @cache
 def rule(bits: int) -> Rule:
     """The rule whose numbers are good to 2^−bits."""
-    mp = MPContext()
-    mp.prec = bits + _GUARD
-    points = [_node(mp, k) for k in range(NODES)]
-    nodes = [(1 - x) / 2 for x, _ in points]
-    weights = [1 / ((1 - x * x) * slope * slope) for x, slope in points]
-    d = _derivative(nodes)
-    swept = np.array(
-        [
-            [
-                int(mp.nint(mp.ldexp(weights[i] * d[i][j] - weights[j] * d[j][i], bits - 1)))
-                for j in range(NODES)
-            ]
+    with working_precision(bits + _GUARD):
+        roots = [_root(k) for k in range(NODES)]
+        nodes, weights = [(1 - x) / 2 for x, _ in roots], [w / 2 for _, w in roots]
+        d = _derivative(nodes)
+        pairs = [
+            [weights[i] * d[i][j] - weights[j] * d[j][i] for j in range(NODES)]
             for i in range(NODES)
-        ],
-        dtype=object,
-    )
+        ]
+    whole = [[round(x * 2 ** (bits - 1)) for x in _exact(row)] for row in pairs]
+    swept = np.array(whole, dtype=object)
     return Rule(bits, _exact(nodes), _exact(weights), tuple(map(_exact, d)), swept)
 
 
-def _node(mp: MPContext, k: int) -> tuple[Number, Number]:
-    """The k-th root of Legendre's polynomial, from the right, and the derivative there."""
-    x = mp.cos(mp.pi * (4 * k + 3) / (4 * NODES + 2))
-    for _ in range(mp.prec.bit_length() + 3):
-        before, value = mp.mpf(1), x
-        for n in range(1, NODES):
-            before, value = value, ((2 * n + 1) * x * value - n * before) / (n + 1)
-        slope = NODES * (before - x * value) / (1 - x * x)
-        x = x - value / slope
-    return x, slope
+def _root(k: int) -> tuple[Ball, Ball]:
+    """The k-th root of Legendre's polynomial, from the right, and its weight on −1 … 1."""
+    return flint.arb.legendre_p_root(NODES, k, weight=True)
 
 
-def _derivative(nodes: Sequence[Number]) -> list[list[Number]]:
+def _derivative(nodes: Sequence[Ball]) -> list[list[Ball]]:
     """The differentiation matrix of interpolation at these nodes, by barycentric weights."""
     n = len(nodes)
     weight = [1 / prod(nodes[i] - nodes[j] for j in range(n) if j != i) for i in range(n)]
     d = [
-        [0 if i == j else weight[j] / weight[i] / (nodes[i] - nodes[j]) for j in range(n)]
+        [Ball(0) if i == j else weight[j] / weight[i] / (nodes[i] - nodes[j]) for j in range(n)]
         for i in range(n)
     ]
     for i in range(n):
@@ -89,8 +75,8 @@ def _derivative(nodes: Sequence[Number]) -> list[list[Number]]:
     return d
 
 
-def _exact(values: Sequence[Number]) -> tuple[Fraction, ...]:
-    return tuple(map(of_mpf, values))
+def _exact(values: Sequence[Ball]) -> tuple[Fraction, ...]:
+    return tuple(middle_and_radius(x)[0] for x in values)
 
 
 @cache

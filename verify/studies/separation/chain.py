@@ -120,42 +120,35 @@ class Chains:
     seconds: float
 
 
-class Separation:
-    """What is separated: a scheme's run of `steps` steps from exact inputs."""
+def separated_chains(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    start: dict[str, Fraction],
+    steps: int,
+    digits: int,
+    arithmetic: str = AUTO,
+    advance: Advance = lambda _: None,
+    keeper: Keeper = NOTHING,
+) -> Chains:
+    """Of a scheme's run from exact inputs, every part to so many digits where that can be had.
 
-    def __init__(
-        self,
-        hamiltonian: Hamiltonian,
-        scheme: str,
-        start: dict[str, Fraction],
-        steps: int,
-        keeper: Keeper = NOTHING,
-    ) -> None:
-        self.kernel_run = KernelRun(
-            hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper
-        )
-        self.map = step_map_of(hamiltonian, scheme)
-
-    def chains(
-        self, digits: int, arithmetic: str = AUTO, advance: Advance = lambda _: None
-    ) -> Chains:
-        """Every part to so many digits where that can be had; raises Stopped where Λ has no value.
-
-        `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is
-        called with the steps just done, of three runs of N steps.
-        """
-        begun = time.perf_counter()
-        if arithmetic == AUTO:
-            arithmetic = choose(self.kernel_run, digits + _CANCELLED)
-        links = _Links(self.kernel_run, self.map, arithmetic, digits + _CANCELLED, advance)
-        # How many digits the differences cancel is known once they are made: then what lacks some
-        # is made again with more.
-        for _ in range(_ATTEMPTS):
-            plain, closed = links.chains()
-            lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
-            if not links.refine([max(each) for each in zip(*lacking, strict=True)]):
-                break
-        return Chains(plain, closed, arithmetic, time.perf_counter() - begun)
+    `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
+    with the steps just done, of three runs of N steps. Raises Stopped where Λ has no value.
+    """
+    kernel_run = KernelRun(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
+    step_map = step_map_of(hamiltonian, scheme)
+    begun = time.perf_counter()
+    if arithmetic == AUTO:
+        arithmetic = choose(kernel_run, digits + _CANCELLED)
+    links = _Links(kernel_run, step_map, arithmetic, digits + _CANCELLED, advance)
+    # How many digits the differences cancel is known once they are made: then what lacks some is
+    # made again with more.
+    for _ in range(_ATTEMPTS):
+        plain, closed = links.chains()
+        lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
+        if not links.refine([max(each) for each in zip(*lacking, strict=True)]):
+            break
+    return Chains(plain, closed, arithmetic, time.perf_counter() - begun)
 
 
 class _Links:

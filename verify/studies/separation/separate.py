@@ -52,7 +52,7 @@ from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationResult,
 )
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, Separation
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
 from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
 from verify.studies.separation.working import Stopped
 
@@ -84,17 +84,19 @@ def separate(
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, ())
     _check_reference(arithmetic)
-    work = Separation(hamiltonian, scheme, start, steps, keeper)
-    chains: Chains | None = None
+    found: Chains | None = None
     stopped = None
     try:
-        chains = work.chains(digits, arithmetic, progress or (lambda _: None))
+        advance = progress or (lambda _: None)
+        found = separated_chains(
+            hamiltonian, scheme, start, steps, digits, arithmetic, advance, keeper
+        )
     except Stopped as answer:
         stopped = answer
     return SeparationResult(
         **hamiltonian.texts,
         scheme=scheme,
-        arithmetic=chains.arithmetic if chains else arithmetic,
+        arithmetic=found.arithmetic if found else arithmetic,
         digits=digits,
         step_size=text(start["h"]),
         steps=steps,
@@ -103,12 +105,12 @@ def separate(
         status=stopped.status if stopped else "finished",
         failed_step=stopped.step if stopped else None,
         reason=stopped.reason if stopped else "",
-        plain=_evaluation(chains.plain, digits) if chains else None,
+        plain=_evaluation(found.plain, digits) if found else None,
         closed_form=(
-            _evaluation(chains.closed_form, digits) if chains and chains.closed_form else None
+            _evaluation(found.closed_form, digits) if found and found.closed_form else None
         ),
-        error_method="; ".join(chains.plain.methods) if chains else "none",
-        seconds=chains.seconds if chains else 0.0,
+        error_method="; ".join(found.plain.methods) if found else "none",
+        seconds=found.seconds if found else 0.0,
     )
 
 
@@ -153,21 +155,17 @@ def separate_grid(
 def as_grid(points: Sequence[SeparationResult]) -> SeparationGrid:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ."""
 
-    def of(name: str) -> CrossoverResult:
-        found = []
-        for point in points:
-            evaluation: EvaluationResult | None = getattr(point, name)
-            if evaluation:
-                part, total = (Fraction(evaluation.largest[n]) for n in ("truncation", "total"))
-                found.append((Fraction(point.step_size), part, total))
-        at = crossover(found)
-        return CrossoverResult(
-            step_size=None if at.step_size is None else f"{at.step_size:.3e}",
-            bracket=at.bracket and (text(at.bracket[0]), text(at.bracket[1])),
-            reason=at.reason,
-        )
+    def crossed(name: str) -> CrossoverResult:
+        ways = ((point.step_size, getattr(point, name)) for point in points)
+        parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
+        at = crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
+        size = None if at.step_size is None else f"{at.step_size:.3e}"
+        ends = at.bracket and (text(at.bracket[0]), text(at.bracket[1]))
+        return CrossoverResult(step_size=size, bracket=ends, reason=at.reason)
 
-    return SeparationGrid(points=tuple(points), plain=of("plain"), closed_form=of("closed_form"))
+    return SeparationGrid(
+        points=tuple(points), plain=crossed("plain"), closed_form=crossed("closed_form")
+    )
 
 
 def grid(
@@ -206,17 +204,14 @@ def _check_reference(arithmetic: str) -> None:
 def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     trails = {name: chain.trail(name) for name in QUANTITIES}
     tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
+    shown = log_spaced(range(len(chain.marks)), chain.marks, _CHECKPOINTS)
     return EvaluationResult(
         parts=Parts(**{name: Value.of(*chain.final(name), digits) for name in QUANTITIES}),
         largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
         growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *PARTS)},
-        series=tuple(_at(chain, trails, k) for k in _shown(chain.marks)),
+        series=tuple(_at(chain, trails, k) for k in shown),
         error_kind=chain.kind,
     )
-
-
-def _shown(marks: Sequence[int]) -> list[int]:
-    return log_spaced(range(len(marks)), marks, _CHECKPOINTS)
 
 
 def _at(chain: Chain, trails: dict[str, tuple[tuple[Fraction, ...], Fraction]], k: int) -> PartsAt:
@@ -229,12 +224,5 @@ def _growth(found: Growth) -> GrowthResult:
     def shown(x: float | None) -> str | None:
         return None if x is None else f"{x:.3f}"
 
-    return GrowthResult(
-        exponent=shown(found.exponent),
-        standard_error=shown(found.standard_error),
-        name=found.name,
-        reason=found.reason,
-        first=found.first,
-        last=found.last,
-        points=found.points,
-    )
+    numbers = {"exponent": shown(found.exponent), "standard_error": shown(found.standard_error)}
+    return GrowthResult(**vars(found) | numbers)

@@ -16,6 +16,7 @@ is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this i
 """
 
 import math
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -32,6 +33,7 @@ from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.reach import limits
 from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun
+from verify.runs.estimated import digits_of
 from verify.studies.separation.kernel import MixedKernel, mixed_kernel
 
 Kind = Literal["enclosed", "estimated"]
@@ -98,13 +100,13 @@ class WorkingRun:
 
     def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working:
         """All steps; raises Stopped where float64 leaves its range."""
-        kernel = mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
+        kernel = self._kernel(arithmetic)
         states = self._states(kernel, arithmetic, advance)
         bound_of = self._bounds(kernel, arithmetic, states[-1])
         kind: Kind = "enclosed"
         method = "rounding counted"
         if None in bound_of.values():
-            finer = number_systems.get(arithmetic.name, _digits(arithmetic) + _MORE_DIGITS)
+            finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE_DIGITS)
             again = self._states(self._kernel(finer), finer, lambda _: None)
             bound_of = {n: _apart(n, states, again, arithmetic, finer) for n in bound_of}
             kind, method = "estimated", f"rerun with {_MORE_DIGITS} more digits"
@@ -119,14 +121,14 @@ class WorkingRun:
         determinant = link("determinant")
         assert determinant is not None  # noqa: S101 - every kernel has it
         plain = exact_link([Fraction(s["f_plain"] - 1.0) for s in states], "a float64")
-        if not kernel.closed:
-            zero = exact_link([Fraction(0)] * len(states), "ΔJ ≡ 0")
-            return Working(link("trajectory"), determinant, plain, zero, zero)
-        sums = [_expm1(s["f_sum"] + s["f_rest"]) for s in states]
-        if not all(map(math.isfinite, sums)):
-            return Working(link("trajectory"), determinant, plain, None, None)
-        closed = exact_link([Fraction(x) for x in sums], "a float64")
-        return Working(link("trajectory"), determinant, plain, link("closed"), closed)
+        delta_j: Link | None = exact_link([Fraction(0)] * len(states), "ΔJ ≡ 0")
+        closed = delta_j
+        if kernel.closed:
+            sums = [_expm1(s["f_sum"] + s["f_rest"]) for s in states]
+            finite = all(map(math.isfinite, sums))
+            delta_j = link("closed") if finite else None
+            closed = exact_link([Fraction(x) for x in sums], "a float64") if finite else None
+        return Working(link("trajectory"), determinant, plain, delta_j, closed)
 
     def _kernel(self, arithmetic: Arithmetic) -> MixedKernel:
         return mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
@@ -272,14 +274,11 @@ def _last_good(
     kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number], state: State, count: int
 ) -> int:
     """The greatest number of steps below `count` that stays in range, by bisection."""
-    good, bad = 0, count
-    while bad - good > 1:
-        middle = (good + bad) // 2
-        if _after(kernel, arithmetic, fixed, state, middle) is None:
-            bad = middle
-        else:
-            good = middle
-    return good
+
+    def leaves(steps: int) -> bool:
+        return _after(kernel, arithmetic, fixed, state, steps) is None
+
+    return bisect_left(range(1, count), True, key=leaves)
 
 
 def _accumulated(
@@ -306,10 +305,6 @@ def _apart(
 def _unit(arithmetic: Arithmetic) -> Fraction:
     """One operation's error at most: relative, and twice that of rounding to nearest; or a unit."""
     return Fraction(1 if arithmetic.absolute else 2, 2**arithmetic.bits)
-
-
-def _digits(arithmetic: Arithmetic) -> int:
-    return arithmetic.bits * 30103 // 100000
 
 
 def _expm1(x: float) -> float:

@@ -26,7 +26,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.studies.separation.chain import QUANTITIES, Chain, Separation
+from verify.studies.separation.chain import QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import (
@@ -65,7 +65,7 @@ def test_every_part_is_known_to_the_digits_asked_for_and_within_its_bound(
     text: str, eta: int, p: Fraction, q: Fraction, h: Fraction, steps: int, digits: int, name: str
 ) -> None:
     start = {"p": p, "q": q, "h": h}
-    found, advanced, _ = separated(text, f"lie{eta}", start, steps, digits, name)
+    found, advanced = separated(text, f"lie{eta}", start, steps, digits, name)
     true = links(text, eta, start, steps)
     for way in ("plain", "closed_form"):
         chain: Chain | None = getattr(found, way)
@@ -195,9 +195,9 @@ def test_a_large_lambda_is_estimated_and_a_small_one_counted(
     """p²/2 + q²/2 by lie1: 1 + ΔJ = 1 + h² at every step."""
     assume(p or q)
     for h in (Fraction(1, 3), Fraction(1, 300)):
-        work = Separation(Hamiltonian.parse(DUFFING), "lie1", {"p": p, "q": q, "h": h}, steps)
+        run = Hamiltonian.parse(DUFFING), "lie1", {"p": p, "q": q, "h": h}, steps
         try:
-            plain = work.chains(17, "mpfr").plain
+            plain = separated_chains(*run, 17, "mpfr").plain
         except Stopped:
             continue
         middle = plain.links[3]

@@ -89,7 +89,7 @@ def test_an_input_part_far_below_the_others_is_known_to_as_many_digits(
 ) -> None:
     """One input is off from a float64 by 10^−k: Λ₁ − Λ₀ is about so small, and yet not lost."""
     start[name] += Fraction(1, 10**places)
-    found, _, _ = separated(text, f"lie{eta}", start, steps, digits, "mpfr")
+    found, _ = separated(text, f"lie{eta}", start, steps, digits, "mpfr")
     chain: Chain = found.plain
     true = links(text, eta, start, steps)["plain"]
     value, bound = chain.final("input")

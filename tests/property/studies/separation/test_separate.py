@@ -11,7 +11,7 @@ from tests.examples import drawn
 from tests.helpers.exact_separation import links
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, Separation
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
 from verify.studies.separation.working import Stopped
 
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
@@ -21,9 +21,9 @@ quick = drawn(40)
 
 
 def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> Chains:
-    work = Separation(Hamiltonian.parse(text), f"lie{eta}", start, steps)
+    run = Hamiltonian.parse(text), f"lie{eta}", start, steps
     try:
-        return work.chains(17, "mpfr")
+        return separated_chains(*run, 17, "mpfr")
     except Stopped:
         assume(False)
         raise

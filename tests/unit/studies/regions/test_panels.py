@@ -57,13 +57,13 @@ def test_the_swept_matrix_is_antisymmetric_so_that_no_curve_sweeps_itself() -> N
 
 
 def test_a_wrong_weight_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = panels._node
+    right = panels._root
 
-    def planted(mp: panels.MPContext, k: int) -> tuple[panels.Number, panels.Number]:
-        x, slope = right(mp, k)
-        return x, slope * (1 + mp.ldexp(1, -40)) if k == 3 else slope
+    def planted(k: int) -> tuple[panels.Ball, panels.Ball]:
+        x, weight = right(k)
+        return x, weight / (1 + panels.Ball(2) ** -40) if k == 3 else weight
 
-    monkeypatch.setattr(panels, "_node", planted)
+    monkeypatch.setattr(panels, "_root", planted)
     rule.cache_clear()
     try:
         assert abs(moment(77, 0) - 1) > Fraction(1, 2**50)

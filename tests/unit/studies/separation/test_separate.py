@@ -15,7 +15,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.runs.run import run
 from verify.studies.separation import kernel as separation_kernel
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Separation
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING, mixed_kernel
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import WorkingRun, rounded_inputs
@@ -31,7 +31,7 @@ def chain_of(
     hamiltonian: Hamiltonian, scheme: str, steps: int = 300, name: str = "plain", **start: Any
 ) -> Chain:
     at = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000), **start}
-    found: Chain = getattr(Separation(hamiltonian, scheme, at, steps).chains(17, "mpfr"), name)
+    found: Chain = getattr(separated_chains(hamiltonian, scheme, at, steps, 17, "mpfr"), name)
     return found
 
 
@@ -52,8 +52,8 @@ def test_the_working_value_is_what_run_reports_for_float64() -> None:
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
-    work = Separation(hamiltonian, "lie2", start, 3000)
-    found = [work.chains(17, name) for name in ("fixed", "mpfr")]
+    run = hamiltonian, "lie2", start, 3000
+    found = [separated_chains(*run, 17, name) for name in ("fixed", "mpfr")]
     for way in ("plain", "closed_form"):
         one, other = (getattr(each, way) for each in found)
         assert one.kind == other.kind == "enclosed"
@@ -190,7 +190,7 @@ def test_where_rounding_cannot_be_counted_a_rerun_estimates_it() -> None:
     assert max(map(abs, chain.links[2].trail)) > Fraction(1, 2)
     assert chain.links[2].kind == chain.links[3].kind == "estimated"
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 20)}
-    finer = Separation(DUFFING, "lie1", start, 100).chains(40, "mpfr").plain
+    finer = separated_chains(DUFFING, "lie1", start, 100, 40, "mpfr").plain
     for name in QUANTITIES:
         (x, dx), (y, dy) = chain.final(name), finer.final(name)
         assert abs(x - y) <= dx + dy, name

@@ -14,7 +14,7 @@ from verify.exploration.ball_steps import BITS, ball_steps
 from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.schemes.step_map import StepMap
-from verify.studies.separation.chain import PARTS, Chain, Separation
+from verify.studies.separation.chain import PARTS, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
 from verify.studies.separation.working import Stopped
 
@@ -25,7 +25,7 @@ _DIGITS = 8
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN) and sample.short)
     with silent_at(Stopped):
-        chains = Separation(*sample.kernel_inputs).chains(_DIGITS)
+        chains = separated_chains(*sample.kernel_inputs, _DIGITS)
     exact, rounded = _lambda_by_balls(sample)
     for chain in (chains.plain, chains.closed_form):
         if chain is not None:
