@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any, TypeVar
 
 from verify.execution.plan import Plan
@@ -25,6 +26,12 @@ class Section:
     what: str
     why_not: str
     asked: Callable[[Scene], object]
+
+
+def toml_section(place: int, what: str, header: str) -> Section:
+    """That of a section of the scene's file, with a header such as `[[flow]]`."""
+    asked = attrgetter(header.strip("[]"))
+    return Section(place, what, f"the scene has no {header}", asked)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called, known_results
+from verify.execution.study import Results, Study, called, known_results, toml_section
 from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
@@ -52,5 +52,5 @@ def _found(scene: Scene, results: Results) -> dict[str, Any]:
     return {"runs": tuple(r for name in scene.schemes for r in grid_runs(scene, name, results))}
 
 
-_SECTION = Section(1, "runs over step sizes", "the scene has no [grid]", lambda scene: scene.grid)
+_SECTION = toml_section(1, "runs over step sizes", "[grid]")
 STUDY = Study(2, (_SECTION,), need_of_scheme=_need, found=_found)

@@ -1,15 +1,10 @@
 """Regions carried by maps, and their areas."""
 
-from verify.execution.study import Section, Study
+from verify.execution.study import Study, toml_section
 from verify.studies.regions.findings import flows_of
 from verify.studies.regions.plan import need_flows
 
-_SECTION = Section(
-    7,
-    "regions carried by maps, and their areas",
-    "the scene has no [[flow]]",
-    lambda scene: scene.flow,
-)
+_SECTION = toml_section(7, "regions carried by maps, and their areas", "[[flow]]")
 STUDY = Study(
     8,
     (_SECTION,),

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called, known_results
+from verify.execution.study import Results, Study, called, known_results, toml_section
 from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene, Series
@@ -38,12 +38,7 @@ def _runs(scene: Scene, results: Results) -> Iterator[RunResult]:
                 yield run.model_copy(update={"source": asked.source})
 
 
-_SECTION = Section(
-    4,
-    "trajectories and plots over time",
-    "the scene has no [[series]]",
-    lambda scene: scene.series,
-)
+_SECTION = toml_section(4, "trajectories and plots over time", "[[series]]")
 STUDY = Study(
     5,
     (_SECTION,),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called
+from verify.execution.study import Results, Study, called, toml_section
 from verify.scenes.scene import Scene
 from verify.studies.work_precision.plan import work_precision_task
 
@@ -22,10 +22,5 @@ def _found(scene: Scene, results: Results) -> dict[str, Any]:
     return {"work_precision": results[work_precision_task(scene, scene.work_precision).key]}
 
 
-_SECTION = Section(
-    6,
-    "error against run time",
-    "the scene has no [work_precision]",
-    lambda scene: scene.work_precision,
-)
+_SECTION = toml_section(6, "error against run time", "[work_precision]")
 STUDY = Study(7, (_SECTION,), need=_need, found=_found)

@@ -30,7 +30,7 @@ from verify.scenes.shapes.outline import Outline, Shape
 from verify.schemes import get
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
 from verify.studies.regions.hausdorff import FARTHEST, hausdorff
-from verify.studies.regions.mean_lambda import Mean, RegionMean
+from verify.studies.regions.mean_lambda import mean_over
 from verify.studies.regions.point_carriers import (
     ExactFlowCarrier,
     FloatCarrier,
@@ -38,7 +38,7 @@ from verify.studies.regions.point_carriers import (
     WideCarrier,
     smaller_than_one,
 )
-from verify.studies.regions.polyline import DRAWN, dense, thinned
+from verify.studies.regions.polyline import dense, to_draw
 from verify.studies.regions.polyline import text as points_text
 
 BELOW = 100  # how many times the probe's error is to be below the change of area
@@ -187,7 +187,7 @@ def _areas(
 ) -> dict[str, Any]:
     region = carried[0].measured
     problem = _problem(region, preserves)
-    curves = [dense(each.after, _DRAWN_POINTS)[0] for each in carried]
+    curves = to_draw([dense(each.after, _DRAWN_POINTS)[0] for each in carried])
     change, error = _shown(region.change, region.error)
     return {
         "problem": problem,
@@ -196,7 +196,7 @@ def _areas(
         "arithmetic": plane.name,
         "digits": plane.digits,
         "method": plane.method,
-        "outlines": tuple(_outlines(carried, curves)),
+        "outlines": tuple(map(_outline, carried, curves)),
     }
 
 
@@ -213,14 +213,7 @@ def _problem(region: Measured, preserves: bool) -> Prose:
     return Prose()
 
 
-def _outlines(
-    carried: Sequence[_OutlineImage], curves: Sequence[np.ndarray]
-) -> list[CarriedOutline]:
-    fine = _extent(curves) / DRAWN
-    return [_outline(each, curve, fine) for each, curve in zip(carried, curves, strict=True)]
-
-
-def _outline(carried: _OutlineImage, curve: np.ndarray, fine: float) -> CarriedOutline:
+def _outline(carried: _OutlineImage, points: np.ndarray) -> CarriedOutline:
     measured = carried.measured
     area = abs(measured.area)  # of a curve that runs clockwise it has a sign
     change, error = _shown(measured.change, measured.error)
@@ -230,12 +223,8 @@ def _outline(carried: _OutlineImage, curve: np.ndarray, fine: float) -> CarriedO
         area_change=change,
         probe_error=error,
         nodes=measured.nodes,
-        points=points_text(thinned(curve, fine)),
+        points=points_text(points),
     )
-
-
-def _extent(curves: Sequence[np.ndarray]) -> float:
-    return float(np.ptp(np.concatenate(curves), axis=0).max())
 
 
 def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
@@ -251,9 +240,9 @@ def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
     # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
     x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
-    made = RegionMean(by.hamiltonian, by.map, by.step_size, by.steps)
+    given = by.hamiltonian, by.map, by.step_size, by.steps
     try:
-        found: Mean = made.of(region.outline, (float(x), float(y)))
+        found = mean_over(region.outline, (float(x), float(y)), *given)
     except LeftRangeError:
         return {}
     if not (isfinite(found.value) and isfinite(found.error)):  # areas below float64's range

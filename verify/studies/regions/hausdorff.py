@@ -12,7 +12,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import isfinite, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from verify.errors import InputError
 from verify.studies.regions.segment_tree import (
@@ -24,11 +26,7 @@ from verify.studies.regions.segment_tree import (
     to_segment,
 )
 
-if TYPE_CHECKING:
-    import numpy as np
-
-    Curve = np.ndarray[Any, np.dtype[np.float64]]
-
+Curve = np.ndarray[Any, np.dtype[np.float64]]
 RELATIVE = 1e-6  # how closely the polylines' distance is enclosed
 _ROUNDING = 2.0**-48  # of the greatest coordinate: ours, not that of the points
 FARTHEST, _LEAST = 1e150, 1e-150  # so that no square overflows, nor is lost where it matters
@@ -45,8 +43,8 @@ class Distance:
 
 
 def hausdorff(
-    first: "Sequence[Curve]",
-    second: "Sequence[Curve]",
+    first: Sequence[Curve],
+    second: Sequence[Curve],
     sagitta_first: float = 0.0,
     sagitta_second: float = 0.0,
 ) -> Distance:
@@ -66,9 +64,7 @@ def hausdorff(
     return Distance(low, high - low + sagitta_first + sagitta_second + rounding)
 
 
-def _segments(name: str, curves: "Sequence[Curve]") -> Any:
-    import numpy as np
-
+def _segments(name: str, curves: Sequence[Curve]) -> Any:
     for curve in curves:
         if curve.ndim != 2 or curve.shape[1] != 2 or not len(curve):
             raise InputError(name, curve.shape, "not an array of points, of shape (n, 2), n ≥ 1")
@@ -88,8 +84,6 @@ def _both(first: Any, second: Any, rounding: float) -> tuple[float, float]:
 
 
 def _one_way(rows: Any, others: Any, known: float, rounding: float) -> tuple[float, float]:
-    import numpy as np
-
     near = np.empty((len(rows), 2), dtype=np.int64)
     divided = np.empty((_DEEP + 2, 4)), np.empty((_DEEP + 2, 3), dtype=np.int64)
     work = (new_stack(), *divided)

@@ -35,81 +35,72 @@ class Mean:
 
     value: float
     error: float
-    points: int
 
 
-class RegionMean:
-    """The mean of Λ after N steps of a scheme, over the region inside an outline, in float64."""
+def mean_over(
+    outline: Outline,
+    centre: tuple[float, float],
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    step_size: Fraction,
+    steps: int,
+) -> Mean:
+    """The mean of Λ after N steps of a scheme, over the region inside the outline, in float64.
 
-    def __init__(
-        self, hamiltonian: Hamiltonian, scheme: str, step_size: Fraction, steps: int
-    ) -> None:
-        self._map = PointMap(
-            hamiltonian,
-            scheme,
-            step_size=step_size,
-            steps=steps,
-            arithmetic=number_systems.get(float64.NAME, 17),
-            observables=frozenset({"lambda"}),
-        )
+    By rays from the centre (q, p). Raises LeftRangeError.
+    """
+    arithmetic, asked = number_systems.get(float64.NAME, 17), frozenset({"lambda"})
+    carried = PointMap(
+        hamiltonian, scheme,
+        step_size=step_size, steps=steps, arithmetic=arithmetic, observables=asked,
+    )  # fmt: skip
+    region = _Region(outline, centre, carried)
+    count = -(-_FIRST // len(outline.arcs))
+    first = [
+        (arc, k / count, (k + 1) / count, 0.0, 1.0)
+        for arc in range(len(outline.arcs))
+        for k in range(count)
+    ]
+    found = region.families(first, region.sums(first))
+    points = 5 * NODES**2 * len(first)  # of each cell, and of its quarters
+    while True:
+        area = sum(f.quarters[0].sum() for f in found)
+        mean = sum(f.quarters[1].sum() for f in found) / area
+        noise = _ROUNDING * sum(f.quarters[2].sum() for f in found) / abs(area)
+        error = sum(f.difference(mean) for f in found) / abs(area) + noise
+        share = _AGREED * abs(mean * area) / (2 * len(found))
+        cut = [f for f in found if f.difference(mean) > share]
+        points += 16 * NODES**2 * len(cut)
+        if error <= _AGREED * abs(mean) or not cut or points > _MOST_POINTS:
+            return Mean(float(mean), float(error))
+        kept = [f for f in found if f.difference(mean) <= share]
+        cells = [cell for f in cut for cell in _quarters(f.cell)]
+        sums = np.concatenate([f.quarters for f in cut], axis=1)
+        found = kept + region.families(cells, sums)
 
-    def of(self, outline: Outline, centre: tuple[float, float]) -> Mean:
-        """The mean over the region, by rays from the centre (q, p). Raises LeftError."""
-        count = -(-_FIRST // len(outline.arcs))
-        first = [
-            (arc, k / count, (k + 1) / count, 0.0, 1.0)
-            for arc in range(len(outline.arcs))
-            for k in range(count)
-        ]
-        done = _Count()
-        found = self._families(
-            first, self._sums(outline, centre, first, done), outline, centre, done
-        )
-        while True:
-            area = sum(f.quarters[0].sum() for f in found)
-            mean = sum(f.quarters[1].sum() for f in found) / area
-            noise = _ROUNDING * sum(f.quarters[2].sum() for f in found) / abs(area)
-            error = sum(f.difference(mean) for f in found) / abs(area) + noise
-            share = _AGREED * abs(mean * area) / (2 * len(found))
-            cut = [f for f in found if f.difference(mean) > share]
-            more = 16 * NODES**2 * len(cut)
-            if error <= _AGREED * abs(mean) or not cut or done.points + more > _MOST_POINTS:
-                return Mean(float(mean), float(error), done.points)
-            kept = [f for f in found if f.difference(mean) <= share]
-            cells = [cell for f in cut for cell in _quarters(f.cell)]
-            sums = np.concatenate([f.quarters for f in cut], axis=1)
-            found = kept + self._families(cells, sums, outline, centre, done)
 
-    def _families(
-        self,
-        cells: list[_Cell],
-        sums: np.ndarray,
-        outline: Outline,
-        centre: tuple[float, float],
-        done: "_Count",
-    ) -> "list[_Family]":
+@dataclass(frozen=True)
+class _Region:
+    """The region inside an outline, swept by rays from a centre, and the map of its points."""
+
+    outline: Outline
+    centre: tuple[float, float]
+    carried: PointMap
+
+    def families(self, cells: list[_Cell], sums: np.ndarray) -> "list[_Family]":
+        """The cells, of which the sums are known, in quarters."""
         parts = [part for cell in cells for part in _quarters(cell)]
-        quarters = self._sums(outline, centre, parts, done).reshape(3, len(cells), 4)
+        quarters = self.sums(parts).reshape(3, len(cells), 4)
         apart = quarters.sum(axis=2) - sums
         return [_Family(cell, quarters[:, k], apart[:, k]) for k, cell in enumerate(cells)]
 
-    def _sums(
-        self, outline: Outline, centre: tuple[float, float], cells: list[_Cell], done: "_Count"
-    ) -> np.ndarray:
+    def sums(self, cells: list[_Cell]) -> np.ndarray:
         """Of each cell the area and the integrals of Λ and |Λ|: (3, cells)."""
-        x, y, weights = _cone(outline, centre, cells)
-        lam = self._map(p=y, q=x)["lam"]
-        done.points += len(x)
+        x, y, weights = _cone(self.outline, self.centre, cells)
+        lam = self.carried(p=y, q=x)["lam"]
         parts = np.array([weights, weights * lam, np.abs(weights * lam)])
         summed: np.ndarray = parts.reshape(3, len(cells), -1).sum(axis=2)
         return summed
-
-
-@dataclass
-class _Count:
-    """How many points were carried."""
-
-    points: int = 0
 
 
 @dataclass(frozen=True)

@@ -64,14 +64,14 @@ def _root(k: int) -> tuple[Ball, Ball]:
 
 def _derivative(nodes: Sequence[Ball]) -> list[list[Ball]]:
     """The differentiation matrix of interpolation at these nodes, by barycentric weights."""
-    n = len(nodes)
-    weight = [1 / prod(nodes[i] - nodes[j] for j in range(n) if j != i) for i in range(n)]
+    others = [[x - y for y in nodes if y is not x] for x in nodes]
+    weight = [1 / prod(apart, start=Ball(1)) for apart in others]
     d = [
-        [Ball(0) if i == j else weight[j] / weight[i] / (nodes[i] - nodes[j]) for j in range(n)]
-        for i in range(n)
+        [Ball(0) if y is x else weight[j] / weight[i] / (x - y) for j, y in enumerate(nodes)]
+        for i, x in enumerate(nodes)
     ]
-    for i in range(n):
-        d[i][i] = -sum(d[i])
+    for i in range(len(nodes)):
+        d[i][i] = -sum(d[i], Ball(0))
     return d
 
 

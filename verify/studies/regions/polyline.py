@@ -8,7 +8,7 @@ from verify.arithmetic.float_context import FLOAT
 from verify.scenes.shapes.outline import Shape
 from verify.studies.regions.panels import NODES, interpolation
 
-DRAWN = 800  # a curve is drawn to this part of the picture's size
+_DRAWN = 800  # a curve is drawn to this part of the picture's size
 _TRACED = 400  # points of an arc that is drawn as it is
 _MOST_POINTS = 40_000  # of a dense curve
 _BETWEEN = 16, 128  # points of a panel of 16 nodes, at least and at most
@@ -52,6 +52,12 @@ def thinned(points: np.ndarray, tolerance: float) -> np.ndarray:
     return closed[:-1][kept[:-1]]
 
 
+def to_draw(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """The curves of one picture, each thinned as far as the picture does not show it."""
+    extent = float(np.ptp(np.concatenate(curves), axis=0).max())
+    return [thinned(curve, extent / _DRAWN) for curve in curves]
+
+
 def _from_chord(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Distances of points from a segment."""
     along = end - start
@@ -79,5 +85,4 @@ def traced(shape: Shape) -> list[np.ndarray]:
     for outline in shape.outlines:
         arcs = (np.broadcast_arrays(*arc(FLOAT, s), s)[:2] for arc in outline.arcs)
         curves.append(np.concatenate([np.stack(arc, axis=1) for arc in arcs]))
-    extent = float(np.ptp(np.concatenate(curves), axis=0).max())
-    return [thinned(curve, extent / DRAWN) for curve in curves]
+    return to_draw(curves)

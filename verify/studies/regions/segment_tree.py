@@ -11,27 +11,22 @@ cannot be called from the compiled loop that divides segments and asks for a few
 
 from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import numpy as np
+import numpy as np
 
 LEAF = 8  # segments
 _DEEP = 64  # a stack that no tree of fewer than 2^60 segments fills
 
 
-def segments(curves: "Sequence[np.ndarray[Any, np.dtype[np.float64]]]") -> Any:
+def segments(curves: Sequence[np.ndarray[Any, np.dtype[np.float64]]]) -> Any:
     """Rows x₀, y₀, x₁, y₁ of the closed polylines through the points (x, y) of each curve."""
-    import numpy as np
-
     rows = [np.hstack((curve, np.roll(curve, -1, axis=0))) for curve in curves]
     return np.ascontiguousarray(np.concatenate(rows))
 
 
 def boxes(rows: Any) -> Any:
     """The tree: node k has the box x_min, y_min, x_max, y_max; its children are 2k and 2k + 1."""
-    import numpy as np
-
     leaves = 1
     while leaves * LEAF < len(rows):
         leaves *= 2
@@ -97,8 +92,6 @@ def nearest(x: float, y: float, rows: Any, tree: Any, hint: int, stack: Any) -> 
 
 
 def new_stack() -> Any:
-    import numpy as np
-
     return np.empty(2 * _DEEP, dtype=np.int64)
 
 

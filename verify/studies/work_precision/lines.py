@@ -144,31 +144,30 @@ def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
     """The two at equal run time; see the module's text."""
     errors = _places(one, "error", scale), _places(other, "error", scale)
     span = _overlap(errors)
+    seconds = first = last = error = area = None
     if span is None:
-        names = f"{_called(one)} and {_called(other)}"
-        why = f"{names} have no run time in common: nothing is compared."
-        return ComparisonResult(
-            one=one.name, other=other.name, seconds=None, first=None, last=None, error=None,
-            area=None, sentence=read_prose(why),
-        )  # fmt: skip
-    error = _ratio(*errors, span)
-    middle = sum(span) / 2
-    area = None
-    if not (one.area_preserving or other.area_preserving):
-        areas = _places(one, "lam", scale), _places(other, "lam", scale)
-        shared = _overlap(areas)
-        area = _ratio(*areas, shared) if shared else None
-    parts = [_error_sentence(one, other, middle, span, error)]
-    parts.append(_area_sentence(one, other, area, scale))
+        said = f"{_called(one)} and {_called(other)} have no run time in common: "
+        said += "nothing is compared."
+    else:
+        seconds, first, last = (_few(10**x) for x in (sum(span) / 2, *span))
+        error = _ratio(*errors, span)
+        if not (one.area_preserving or other.area_preserving):
+            areas = _places(one, "lam", scale), _places(other, "lam", scale)
+            shared = _overlap(areas)
+            area = _ratio(*areas, shared) if shared else None
+        times = f"`{first}` to `{last}` s"
+        smaller = _smaller(_called(one), _called(other), error, times)
+        said = f"At equal run time (`{seconds}` s) the solution error of {smaller}. "
+        said += _area_sentence(one, other, area, scale)
     return ComparisonResult(
         one=one.name,
         other=other.name,
-        seconds=_few(10**middle),
-        first=_few(10 ** span[0]),
-        last=_few(10 ** span[1]),
+        seconds=seconds,
+        first=first,
+        last=last,
         error=error,
         area=area,
-        sentence=read_prose(" ".join(parts)),
+        sentence=read_prose(said),
     )
 
 
@@ -209,16 +208,6 @@ def _at(places: list[Place], x: float) -> float:
 def _called(line: WorkLine) -> str:
     """Its name, quoted where that is the formulas of a user's scheme."""
     return f"`{line.name}`" if "=" in line.name else line.name
-
-
-def _error_sentence(
-    one: WorkLine, other: WorkLine, middle: float, span: Place, ratio: RatioResult
-) -> str:
-    times = f"`{_few(10 ** span[0])}` to `{_few(10 ** span[1])}` s"
-    return (
-        f"At equal run time (`{_few(10**middle)}` s) the solution error of "
-        f"{_smaller(_called(one), _called(other), ratio, times)}."
-    )
 
 
 def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:

@@ -14,7 +14,7 @@ from verify.scenes.shapes.outline import Outline
 from verify.scenes.shapes.user_outline import polygon
 from verify.schemes import get
 from verify.studies.regions.area import Goal
-from verify.studies.regions.mean_lambda import RegionMean
+from verify.studies.regions.mean_lambda import mean_over
 from verify.studies.regions.point_carriers import FloatCarrier
 
 GOAL = Goal(change=Fraction(1, 10**5), area=Fraction(1, 10**13))
@@ -41,13 +41,13 @@ def test_the_change_of_area_is_the_mean_of_lambda(
     assume(not get(scheme).step_map(hamiltonian).preserves_area)
     try:
         area = measured(outline, FloatCarrier(hamiltonian, scheme, h, steps), GOAL)
-        mean = RegionMean(hamiltonian, scheme, h, steps).of(outline, centre)
+        mean = mean_over(outline, centre, hamiltonian, scheme, h, steps)
     except LeftRangeError:
         assume(False)
     off = abs(Fraction(mean.value) - area.change)
     assert off <= Fraction(mean.error) + area.error, (formula, scheme, steps, outline, area.change)
     # One step more is another map, and told from it.
-    other = RegionMean(hamiltonian, scheme, h, steps + 1).of(outline, centre)
+    other = mean_over(outline, centre, hamiltonian, scheme, h, steps + 1)
     errors = Fraction(mean.error) + Fraction(other.error) + 2 * area.error
     if abs(Fraction(other.value) - Fraction(mean.value)) > 2 * errors:
         assert abs(Fraction(other.value) - area.change) > Fraction(other.error) + area.error

@@ -19,7 +19,7 @@ from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions import mean_lambda as region_mean
 from verify.studies.regions.area import Goal
-from verify.studies.regions.mean_lambda import RegionMean, _cone
+from verify.studies.regions.mean_lambda import _cone, mean_over
 
 CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
 CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
@@ -47,7 +47,7 @@ def test_polynomials_over_a_square_and_a_disc_are_integrated_exactly(centre: Any
 
 
 def test_the_mean_for_a_linear_map_is_the_determinant() -> None:
-    found = RegionMean(OSCILLATOR, "lie3", H, N).of(CAT, (0.0, 0.0))
+    found = mean_over(CAT, (0.0, 0.0), OSCILLATOR, "lie3", H, N)
     true = float(linear_determinant("lie3", H, N))
     assert abs(found.value - true) <= found.error < 1e-10 * abs(true)
 
@@ -56,7 +56,7 @@ def test_the_mean_for_a_linear_map_is_the_determinant() -> None:
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 def test_the_mean_is_the_change_of_area(hamiltonian: Hamiltonian, outline: Outline) -> None:
     own = placed(outline, 1, 0, "1/2")
-    found = RegionMean(hamiltonian, "lie2", H, N).of(own, (1.0, 0.0))
+    found = mean_over(own, (1.0, 0.0), hamiltonian, "lie2", H, N)
     area = measured(own, floats("lie2", H, N, hamiltonian), CHANGED)
     assert abs(Fraction(found.value) - area.change) <= Fraction(found.error) + area.error
     assert found.error <= 2e-3 * abs(found.value)
@@ -67,7 +67,7 @@ def apart(monkeypatch: pytest.MonkeyPatch, planted: Any, steps: int = N) -> floa
     own = placed(SQUARE, 1, 0, "1/2")
     with monkeypatch.context() as patch:
         patch.setattr(region_mean, "_cone", planted)
-        found = RegionMean(DUFFING, "lie2", H, steps).of(own, (1.0, 0.0))
+        found = mean_over(own, (1.0, 0.0), DUFFING, "lie2", H, steps)
     area = measured(own, floats("lie2", H, N, DUFFING), CHANGED)
     return abs(found.value - float(area.change)) / (found.error + float(area.error))
 
@@ -94,7 +94,7 @@ def test_sums_that_agree_by_chance_are_not_taken_for_right() -> None:
     """Where Λ varies much over the region, the sum of all cells may stand still for a while."""
     own = placed(CAT, 1, 0, "1/2")
     h, steps = Fraction(1, 50), 3000
-    found = RegionMean(DUFFING, "lie2", h, steps).of(own, (1.0, 0.0))
+    found = mean_over(own, (1.0, 0.0), DUFFING, "lie2", h, steps)
     area = measured(own, floats("lie2", h, steps, DUFFING), CHANGED)
     assert abs(found.value - float(area.change)) <= found.error + float(area.error)
 
@@ -102,6 +102,6 @@ def test_sums_that_agree_by_chance_are_not_taken_for_right() -> None:
 def test_the_sign_of_lambda_counts() -> None:
     own = placed(CIRCLE, 1, 0, "1/2")
     for scheme in ("lie2", "lie3"):
-        found = RegionMean(OSCILLATOR, scheme, H, N).of(own, (1.0, 0.0))
+        found = mean_over(own, (1.0, 0.0), OSCILLATOR, scheme, H, N)
         assert found.value * float(linear_determinant(scheme, H, N)) > 0
     assert linear_determinant("lie2", H, N) > 0 > linear_determinant("lie3", H, N)
