@@ -63,22 +63,17 @@ class _Steps:
     size: Ball  # a bound of |D|
 
 
-def certify(run: KernelRun, arithmetic: Arithmetic, outcome: Outcome) -> dict[str, Fraction] | None:
+def certify(
+    run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int = -1
+) -> dict[str, Fraction] | None:
     """Bounds of the errors of a run's final values, rigorous; None where there is none.
 
-    The run must have carried the tangent map. Errors are those against the exact orbit of the exact
-    map for the exact h, parameters and initial values.
+    Or of those at the checkpoint of index `note`. The run must have carried the tangent map. Errors
+    are those against the exact orbit of the exact map for the exact h, parameters and initial
+    values.
     """
-    return certify_at(run, arithmetic, outcome, len(outcome.trail) - 1)
-
-
-def certify_at(
-    run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int
-) -> dict[str, Fraction] | None:
-    """`certify` for the values at one of the run's checkpoints."""
     with working_precision(PRECISION):
-        found = _Certificate(run, arithmetic, outcome, note).bounds()
-    return found
+        return _Certificate(run, arithmetic, outcome, note).bounds()
 
 
 class _Certificate:

@@ -27,9 +27,25 @@ class Derivatives:
     powers: tuple[int, ...]
 
     @classmethod
+    @lru_cache(maxsize=64)
     def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "Derivatives | None":
         """None for a scheme that does not take this H, or is given by equations for it."""
-        return _derivatives(hamiltonian, scheme)
+        try:
+            step_map = step_map_of(hamiltonian, scheme)
+        except InputError:
+            return None
+        if step_map.implicit:
+            return None
+        step = _whole(step_map)
+        ring, diff = step.ring, step.ring.diff
+        values = (step.p_next, step.q_next)
+        hessians = [diff(diff(x, a), b) for x in values for a in _STATE for b in _STATE]
+        delta_j = ring.zero if step_map.preserves_area else step.delta_j
+        whole = h_inside(ring, delta_j)
+        parts = {0: delta_j} if whole else ring.powers(delta_j, "h")
+        gradients = [diff(parts[n], a) for n in sorted(parts) for a in _STATE]
+        found = Enclosures(ring, [*values, *hessians]), Enclosures(ring, gradients)
+        return cls(*found, tuple(sorted(parts)))
 
     def second(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
         """B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² in the box.
@@ -49,27 +65,6 @@ class Derivatives:
         for k, n in enumerate(self.powers):
             total += fixed["h"] ** n * norm(found[2 * k : 2 * k + 2])
         return total
-
-
-@lru_cache(maxsize=64)
-def _derivatives(hamiltonian: Hamiltonian, scheme: str) -> Derivatives | None:
-    try:
-        step_map = step_map_of(hamiltonian, scheme)
-    except InputError:
-        return None
-    if step_map.implicit:
-        return None
-    step = _whole(step_map)
-    ring, diff = step.ring, step.ring.diff
-    values = (step.p_next, step.q_next)
-    hessians = [diff(diff(x, a), b) for x in values for a in _STATE for b in _STATE]
-    delta_j = ring.zero if step_map.preserves_area else step.delta_j
-    whole = h_inside(ring, delta_j)
-    parts = {0: delta_j} if whole else ring.powers(delta_j, "h")
-    gradients = [diff(parts[n], a) for n in sorted(parts) for a in _STATE]
-    return Derivatives(
-        Enclosures(ring, [*values, *hessians]), Enclosures(ring, gradients), tuple(sorted(parts))
-    )
 
 
 def _whole(step_map: StepMap) -> Substep:

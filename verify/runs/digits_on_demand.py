@@ -14,7 +14,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, UnsupportedError
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.a_posteriori import METHOD, certify, certify_at
+from verify.runs.a_posteriori import METHOD, certify
 from verify.runs.enclosed import enclosed
 from verify.runs.estimated import (
     Bounds,
@@ -152,7 +152,7 @@ class _Foresight:
         self.kernel_run, self.own, self.digits, self.missing = kernel_run, own, digits, 0
 
     def __call__(self, outcome: Outcome) -> bool:
-        errors = certify_at(self.kernel_run, self.own, outcome, 0)
+        errors = certify(self.kernel_run, self.own, outcome, 0)
         if errors is None:  # let it run: what follows is for estimates
             return True
         growth = Fraction(self.kernel_run.steps, int(outcome.tangents[0]["done"]))

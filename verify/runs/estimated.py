@@ -101,6 +101,7 @@ def _rounded(name: str, value: Fraction) -> Fraction:
 
 
 def digits_of(own: Arithmetic) -> int:
+    """So many decimal digits it has."""
     return own.bits * 30103 // 100000
 
 

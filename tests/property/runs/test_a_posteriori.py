@@ -16,7 +16,7 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.a_posteriori import certify_at
+from verify.runs.a_posteriori import certify
 from verify.runs.run import run
 from verify.scenes.values import REPORTED
 
@@ -76,7 +76,7 @@ def check(case: Case, arithmetic: Arithmetic, observables: frozenset[str]) -> No
         assume(False)
     assume(walked.tangents)
     for note in sorted({0, len(walked.tangents) // 2, len(walked.tangents) - 1}):
-        errors = certify_at(kernel_run, arithmetic, walked, note)
+        errors = certify(kernel_run, arithmetic, walked, note)
         if errors is not None:
             at = Case(
                 case.text, case.scheme, case.q, case.p, case.h, int(walked.tangents[note]["done"])

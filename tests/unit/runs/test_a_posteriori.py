@@ -26,7 +26,7 @@ from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import ball, fixed, mpfr, mpmath
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.a_posteriori import certify, certify_at
+from verify.runs.a_posteriori import certify
 
 VECTORS = vectors()
 DUFFING, PENDULUM = "p**2/2 + q**2/2 + delta*q**4/4", "p**2/2 - cos(q)"
@@ -111,7 +111,7 @@ def test_ball_arithmetic_and_every_checkpoint_of_a_certified_run_overlap(name: s
     run = kernel_run.run(own, tangent=True)
     steps = [int(note["done"]) for note in run.tangents]
     for note in (0, len(steps) // 2, len(steps) - 1):
-        errors = certify_at(kernel_run, own, run, note)
+        errors = certify(kernel_run, own, run, note)
         assert errors is not None
         here = Case(at.text, at.scheme, at.q, at.p, at.h, steps[note], at.parameters)
         true = here.kernel_run().run(wide)
@@ -183,7 +183,7 @@ def test_every_checkpoint_of_a_long_run_contains_what_64_more_bits_give(
     run, finer = (kernel_run.run(a, tangent=True) for a in (arithmetic, fixed.at_bits(BITS)))
     for note, (rough, fine) in enumerate(zip(run.trail, finer.trail, strict=True)):
         errors, small = (
-            certify_at(kernel_run, *pair, note)
+            certify(kernel_run, *pair, note)
             for pair in ((arithmetic, run), (fixed.at_bits(BITS), finer))
         )
         assert errors

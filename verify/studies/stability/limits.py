@@ -17,6 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose
 from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
 from verify.studies.stability.linear import linear_stability
+from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run
 from verify.studies.stability.verdict_on_run import bounded, judge
 
@@ -145,7 +146,7 @@ def stability_map(
     for value in values:
         own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
         orbit = exact_orbit(own, p, q, max(step_sizes) * steps)
-        row = (judge(Run(own, scheme, h, q, p, steps)) for h in step_sizes)
+        row = (judge(RunMotion(Run(own, scheme, h, q, p, steps))) for h in step_sizes)
         cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
         linear.append(shortened(_linear_step(scheme, orbit)))
     return StabilityMapResult(

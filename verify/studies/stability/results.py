@@ -6,14 +6,16 @@ from verify.arithmetic.exact import plain, text
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
 from verify.studies.stability.limits import frequency, linear_limit, shortened
+from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
 
 def run_result(run: Run) -> StabilityResult:
     """The verdict on one run."""
-    found = judge(run)
-    limit, h_omega = linear_limit(run.scheme), run.step_size * frequency(found.orbit)
+    motion = RunMotion(run)
+    found, orbit = judge(motion), motion.orbit
+    limit, h_omega = linear_limit(run.scheme), run.step_size * frequency(orbit)
     return StabilityResult(
         **run.hamiltonian.texts,
         scheme=run.scheme,
@@ -27,7 +29,7 @@ def run_result(run: Run) -> StabilityResult:
         energy_error=shortened(found.energy_error, 3),
         h_omega=shortened(h_omega, 3) if h_omega else None,
         linear_limit=shortened(limit, 6),
-        exact_orbit=found.orbit.summary,
+        exact_orbit=orbit.summary,
         detail=found.detail + _against_theory(found, h_omega, limit),
     )
 

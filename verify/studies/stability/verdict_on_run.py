@@ -20,7 +20,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.orbit import ExactOrbit
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import Kind
 from verify.schemes import get
@@ -50,24 +49,20 @@ class Judgement:
 
     kind: Kind
     detail: Prose
-    orbit: ExactOrbit
     step: int | None = None
     rate: Fraction | None = None
     energy_error: Fraction | None = None
 
 
-def judge(run: Run) -> Judgement:
+def judge(motion: RunMotion) -> Judgement:
     """The verdict on one run."""
-    motion = RunMotion(run)
     if motion.orbit.kind == "escapes":
-        told = prose("the exact solution ", motion.orbit.summary)
-        return Judgement("escapes", told, motion.orbit)
+        return Judgement("escapes", prose("the exact solution ", motion.orbit.summary))
     precise = motion.precise
     if not motion.stays(precise):
         if motion.orbit.kind == "unknown":
             unknown = "the exact solution, to be held against, is not known: "
-            told = prose(unknown, motion.orbit.summary)
-            return Judgement("undecided", told, motion.orbit)
+            return Judgement("undecided", prose(unknown, motion.orbit.summary))
         return _scheme(motion)
     if not motion.together(motion.as_far, precise):
         return _not_the_scheme(motion)
@@ -75,11 +70,10 @@ def judge(run: Run) -> Judgement:
         told = prose(
             f"float64 leaves its bounds beyond the {precise.steps} steps of the run it is held to"
         )
-        return Judgement("undecided", told, motion.orbit)
+        return Judgement("undecided", told)
     lost = _vanished(motion)
     if lost:
-        worst = motion.worst(motion.float64)
-        return Judgement("underflow", lost, motion.orbit, energy_error=worst)
+        return Judgement("underflow", lost, energy_error=motion.worst(motion.float64))
     return _bounded(motion)
 
 
@@ -95,7 +89,7 @@ def _scheme(motion: RunMotion) -> Judgement:
     step = first_step(again, motion.beyond)
     if step is None:
         told = prose(f"{motion.digits} and {digits} digits differ in whether the orbit stays")
-        return Judgement("undecided", told, motion.orbit)
+        return Judgement("undecided", told)
     solved = get(motion.run.scheme).step_map(motion.run.hamiltonian).implicit
     unsolved = solved and not again.finished and step == again.done + 1
     does = "finds no solution of its equations" if unsolved else "leaves the bounds"
@@ -103,7 +97,7 @@ def _scheme(motion: RunMotion) -> Judgement:
     if not motion.float64.finished:
         ends = "goes no further" if solved else "is out of its range"
         told += f"; float64 {ends} from step {motion.float64.done + 1} on"
-    return Judgement("unstable: scheme", told, motion.orbit, step=step)
+    return Judgement("unstable: scheme", told, step=step)
 
 
 def _not_the_scheme(motion: RunMotion) -> Judgement:
@@ -111,19 +105,19 @@ def _not_the_scheme(motion: RunMotion) -> Judgement:
     here, confirmed = motion.as_far, _confirmed(motion)
     if confirmed is None:
         told = prose(f"up to {_MOST_DIGITS} digits no two precisions give the same orbit")
-        return Judgement("undecided", told, motion.orbit)
+        return Judgement("undecided", told)
     digits, precise = confirmed
     if not motion.stays(precise):  # fewer digits did, by rounding
         step = first_step(precise, motion.beyond)
         told = prose(f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits")
-        return Judgement("unstable: scheme", told, motion.orbit, step=step)
+        return Judgement("unstable: scheme", told, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
     step = first_apart(here, precise, motion.apart)
     at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
     told = prose(f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits")
     told += describe_rounded_start(motion.run)
-    return Judgement("unstable: arithmetic", told, motion.orbit, step=step or here.done + 1)
+    return Judgement("unstable: arithmetic", told, step=step or here.done + 1)
 
 
 def _confirmed(motion: RunMotion) -> tuple[int, Trail] | None:
@@ -156,12 +150,12 @@ def _range_alone(motion: RunMotion) -> bool:
 def _out_of_range(motion: RunMotion, here: Trail) -> Judgement:
     if here.finished:
         told = _vanished(motion) or prose("numbers vanish in float64 that wider exponents keep")
-        return Judgement("underflow", told, motion.orbit)
+        return Judgement("underflow", told)
     told = prose(
         "a number is beyond float64's range; with 53 bits and wider exponents the run stays within "
         "its bounds"
     )
-    return Judgement("overflow", told, motion.orbit, step=here.done + 1)
+    return Judgement("overflow", told, step=here.done + 1)
 
 
 def _vanished(motion: RunMotion) -> Prose:
@@ -196,4 +190,4 @@ def _bounded(motion: RunMotion) -> Judgement:
     if rate is None and too_short(motion):
         told += "; it goes round too few times to tell a drift of its energy from a swing"
     worst = motion.worst(precise)
-    return Judgement(kind, told, motion.orbit, rate=rate, energy_error=worst)
+    return Judgement(kind, told, rate=rate, energy_error=worst)

@@ -9,6 +9,7 @@ from verify.arithmetic.exact import rational
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability import verdict_on_run as blame
 from verify.studies.stability.rounded_start import nearest_equilibrium
+from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run, follow_precisely
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
@@ -27,7 +28,7 @@ def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str =
 
 
 def judged(*given: object) -> Judgement:
-    return judge(case(*given))  # type: ignore[arg-type]
+    return judge(RunMotion(case(*given)))  # type: ignore[arg-type]
 
 
 # -- the scheme -----------------------------------------------------------------------------------
@@ -54,11 +55,10 @@ def test_the_step_at_which_the_scheme_leaves_is_that_of_exact_arithmetic() -> No
     found = judged(HARMONIC, "lie1", "1", 200, "1")
     assert found.kind == "unstable: scheme"
     p, q, step = Fraction(0), Fraction(1), 0
-    r_p, r_q = found.orbit.reach
+    orbit = RunMotion(case(HARMONIC, "lie1", "1", 200, "1")).orbit
+    r_p, r_q = orbit.reach
     while (
-        abs(p) <= 10 * r_p
-        and abs(q) <= 10 * r_q
-        and (p * p + q * q - 1) / 2 <= 100 * found.orbit.scale
+        abs(p) <= 10 * r_p and abs(q) <= 10 * r_q and (p * p + q * q - 1) / 2 <= 100 * orbit.scale
     ):
         p, q, step = p - q, q + p, step + 1
     assert found.step == step
@@ -191,7 +191,7 @@ def test_high_precision_that_does_not_settle_is_undecided(monkeypatch: pytest.Mo
 
 def test_a_chaotic_run_that_parts_by_rounding_is_not_called_underflow() -> None:
     # 53 bits keep with 40 digits here to the end, by chance; no number is small.
-    found = judge(case(DUFFING, "symplectic-euler", "1.4", 4000, "0.5", "0.1"))
+    found = judged(DUFFING, "symplectic-euler", "1.4", 4000, "0.5", "0.1")
     assert found.kind == "unstable: arithmetic"
 
 
