@@ -201,9 +201,10 @@ class Probe:
         halves = self._panels([half for panel in panels for half in panel.halves])
         pairs = zip(halves[::2], halves[1::2], strict=True)
         found = []
-        for panel, both in zip(panels, pairs, strict=True):
-            unsure = _apart("before", panel, both)
-            found.append(Family(both, unsure + _apart("after", panel, both), unsure))
+        for panel, (one, other) in zip(panels, pairs, strict=True):
+            unsure = abs(panel.before - one.before - other.before)
+            apart = unsure + abs(panel.after - one.after - other.after)
+            found.append(Family((one, other), apart, unsure))
         return found
 
     # -- where to cut -------------------------------------------------------------------------
@@ -298,9 +299,3 @@ class Probe:
         """The rounding of the rule's numbers."""
         largest = max(int(abs(self.plane.whole(x)).max()) for p in panels for x in p.image)
         return len(panels) * NODES**2 * largest**2
-
-
-def _apart(area: str, whole: Panel, halves: tuple[Panel, Panel]) -> int:
-    """How much the area of the whole differs from that of its halves."""
-    own, first, second = (int(getattr(panel, area)) for panel in (whole, *halves))
-    return abs(own - first - second)

@@ -30,14 +30,13 @@ Y = sympy.Symbol("y", positive=True)
 class LinearStability:
     """`interval`: the Y of (0, Y), 0 where there is none, ∞ where there is no end.
 
-    `delta_j`: det M − 1 as a function of y; `trace`: of M. `root_of`: an irreducible polynomial of
-    which Y is a root, and the which of its positive ones, where Y is not written with square roots.
+    `delta_j`: det M − 1 as a function of y. `root_of`: an irreducible polynomial of which Y is a
+    root, and the which of its positive ones, where Y is not written with square roots.
     """
 
     scheme: str
     interval: sympy.Expr
     delta_j: sympy.Expr
-    trace: sympy.Expr
     root_of: tuple[sympy.Expr, int] | None = None
 
     @property
@@ -78,8 +77,8 @@ def of_map(name: str, step: StepMap) -> LinearStability:
     interval = min(_first_failure(f) for f in conditions)
     if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
         interval = sympy.S.Zero
-    told = sympy.factor(det - 1), trace, _root_of(interval, conditions)
-    return LinearStability(name, interval, *told)
+    root = _root_of(interval, conditions)
+    return LinearStability(name, interval, sympy.factor(det - 1), root)
 
 
 def _root_of(y: sympy.Expr, conditions: Sequence[sympy.Poly]) -> tuple[sympy.Expr, int] | None:
