@@ -50,15 +50,12 @@ def _meet(address: str, rpc: Callable[..., Any]) -> None:
     """InputError unless a scheduler answers in time: for a mute one a Client waits for ever."""
 
     async def ask() -> Any:
-        async with rpc(address, timeout=_PATIENCE) as scheduler:
+        async with asyncio.timeout(_PATIENCE), rpc(address, timeout=_PATIENCE) as scheduler:
             return await scheduler.identity()
-
-    async def in_time() -> Any:
-        return await asyncio.wait_for(ask(), _PATIENCE)
 
     try:
         with ThreadPoolExecutor(1) as thread:  # a notebook has a loop of its own in this one
-            kind = thread.submit(asyncio.run, in_time()).result()["type"]
+            kind = thread.submit(asyncio.run, ask()).result()["type"]
     except Exception as error:  # what does not speak Dask's language can raise anything
         raise InputError("cluster", address, _no_answer(error)) from None
     if kind != "Scheduler":

@@ -61,9 +61,7 @@ class Store:
             found = task.result.model_validate_json(content) if content else None
         except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
             return None
-        if found is None:
-            return None
-        self.taken += 1
+        self.taken += found is not None
         return found
 
     def put(self, name: str, result: Frozen) -> None:

@@ -6,7 +6,7 @@ systems against a still wider one. The exact flow comes with its own bound.
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from mpmath.ctx_mp import MPContext
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.float_context import FLOAT
-from verify.arithmetic.number_system import Arithmetic, bits_for
+from verify.arithmetic.number_system import bits_for
 from verify.arithmetic.systems import float64
 from verify.flows.points import exact_points
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -70,13 +70,9 @@ class FloatCarrier(_Floats):
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, smaller: int = 0
     ) -> None:
         self.grid += smaller
-        self._maps = [
-            PointMap(
-                hamiltonian, scheme, step_size=h, steps=steps,
-                arithmetic=number_systems.get(float64.NAME, 17), compensated=compensated,
-            )
-            for compensated in (False, True)
-        ]  # fmt: skip
+        arithmetic = number_systems.get(self.name, self.digits)
+        steps_of = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps)
+        self._maps = [steps_of(arithmetic=arithmetic, compensated=x) for x in (False, True)]
 
     def images(self, x: Any, y: Any) -> tuple[Any, Any]:
         return _image(self._maps[0], x, y)
@@ -118,22 +114,18 @@ class WideCarrier:
         digits: int, smaller: int = 0,
     ) -> None:  # fmt: skip
         """`digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
-        self._given = hamiltonian, scheme, h, steps, name
+        self._steps = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps)
         self.name, self.digits = name, digits
         self._places = digits + -(-smaller * 3 // 10)
         self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
         self.bits, self.grid = bits_for(digits), bits_for(self._places)
-        self._map, self.arithmetic = self._made(self._places)
-
-    def _made(self, digits: int) -> tuple[PointMap, Arithmetic]:
-        hamiltonian, scheme, h, steps, name = self._given
-        arithmetic = number_systems.get(name, digits)
-        made = PointMap(hamiltonian, scheme, step_size=h, steps=steps, arithmetic=arithmetic)
-        return made, arithmetic
+        self.arithmetic = number_systems.get(name, self._places)
+        self._map = self._steps(arithmetic=self.arithmetic)
 
     @cached_property
-    def _wider(self) -> tuple[PointMap, Arithmetic]:
-        return self._made(self._places + _WIDER)
+    def _wider(self) -> PointMap:
+        finer = number_systems.get(self.name, self._places + _WIDER)
+        return self._steps(arithmetic=finer)
 
     def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
         mp = MPContext()
@@ -156,10 +148,10 @@ class WideCarrier:
         return _objects(q), _objects(p)
 
     def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
-        wider, arithmetic = self._wider
-        exact, own = self.arithmetic.exact, self.arithmetic.number
-        q, p = _image(wider, *([arithmetic.number(exact(v)) for v in z] for z in (x, y)))
-        q, p = (_objects([own(arithmetic.exact(v)) for v in z]) for z in (q, p))
+        own, wider = self.arithmetic, self._wider.arithmetic
+        given = ([wider.number(own.exact(v)) for v in z] for z in (x, y))
+        found = _image(self._wider, *given)
+        q, p = (_objects([own.number(wider.exact(v)) for v in z]) for z in found)
         return q, p
 
 
