@@ -1,6 +1,6 @@
 """The format of our JSON files: its name and version under the key `format`, looked at first.
 
-    {"format": "areaproof certificate 1", …}
+    {"format": "areaproof certificate 2", …}
 
 A format's version is a whole number, which grows when a reader of the old one would misread the
 new. Each format is named where its files are made: `FORMAT` of `proof.certificates.file` and of
@@ -29,10 +29,10 @@ def read_json(path: Path, wanted: str) -> dict[str, Any]:
 def check_format(data: object, wanted: str, file: str) -> dict[str, Any]:
     """The data, if they are an object of the format `wanted`.
 
-    >>> check_format({"format": "areaproof certificate 2"}, "areaproof certificate 1", "lie2.json")
+    >>> check_format({"format": "areaproof certificate 3"}, "areaproof certificate 2", "lie2.json")
     Traceback (most recent call last):
-    verify.errors.InputError: file=lie2.json: has the format 'areaproof certificate 2', which is \
-newer; this version reads 'areaproof certificate 1'
+    verify.errors.InputError: file=lie2.json: has the format 'areaproof certificate 3', which is \
+newer; this version reads 'areaproof certificate 2'
 
     Raises InputError, one line, for an older or newer version, for another format and for none.
     """

@@ -62,7 +62,7 @@ def test_a_file_of_the_own_format_is_read(
 
 MISSING = object()
 OTHERS: dict[str, tuple[Callable[[str], Any], str]] = {
-    "newer": (lambda own: own[:-1] + "2", "which is newer"),
+    "newer": (lambda own: own[:-1] + str(int(own[-1]) + 1), "which is newer"),
     "much-newer": (lambda own: own[:-1] + "9" * 5000, "which is newer"),
     "older": (lambda own: own[:-1] + "0", "which is older"),
     "no-number": (lambda own: own[:-1] + "one", "one'; this"),

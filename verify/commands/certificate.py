@@ -1,11 +1,18 @@
-"""The command `verify certificate`: what a certificate says, checked by itself."""
+"""The command `verify certificate`: what a certificate establishes, checked by itself."""
 
+from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from verify.commands import output as show
 from verify.commands.tasks import json_option
+
+if TYPE_CHECKING:
+    from verify.proof.certificates.established import Established
+
+_LONGEST = 400  # characters of a formula on a terminal
 
 
 @click.group()
@@ -20,9 +27,31 @@ def check(file: Path, as_json: bool) -> None:
     """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
     from verify.proof.certificates.file import checked
 
-    accepted, said = checked(file)
+    found = checked(file)
+    if isinstance(found, str):
+        if as_json:
+            show.print_json({"accepted": False, "reason": found})
+        else:
+            click.echo(f"refused: {found}")
+        raise SystemExit(1)
     if as_json:
-        show.print_json({"accepted": accepted, "statement" if accepted else "reason": said})
+        show.print_json({"accepted": True, **asdict(found)})
     else:
-        click.echo(f"{'holds' if accepted else 'refused'}: {said}")
-    raise SystemExit(0 if accepted else 1)
+        _print(found)
+
+
+def _print(found: "Established") -> None:
+    click.echo(f"holds: {found.statement}")
+    lines = {
+        "H": found.hamiltonian,
+        "p'": found.p_next,
+        "q'": found.q_next,
+        "L": found.leading,
+        "G": found.potential,
+        "map": found.scheme,
+        "where": ", ".join(found.domain),
+    }
+    for name, text in lines.items():
+        if text:
+            cut = f"{text[:_LONGEST]} … ({len(text):,} characters; all of it with --json)"
+            click.echo(f"  {name:<5}  {text if len(text) <= _LONGEST else cut}")

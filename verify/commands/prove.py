@@ -119,7 +119,12 @@ def _write(data: dict[str, Any], path: Path) -> None:
     import json
 
     from verify.execution.keeping import write_atomically
+    from verify.proof.certificates.checker import check
 
+    try:
+        check(data)
+    except ValueError as reason:
+        raise InputError("certificate", str(path), f"would be refused: {reason}") from None
     write_atomically(path, json.dumps(data, ensure_ascii=False, indent=1) + "\n")
 
 

@@ -1,150 +1,240 @@
-"""Checks a certificate (see `verify.proof.certificates.every`) with dicts and fractions alone."""
+"""Checks a certificate with the standard library alone; it shares nothing with the prover.
 
-import re
+**Theorem** (what acceptance proves). Let X f = H_p f_q − H_q f_p for a function H of p and q.
+
+*Of one H*, a polynomial in p, q, parameters and functions. Where no denominator among them is 0,
+which is so at the witness: for every map p' = Σ p_n hⁿ + O(h^(m+1)), q' likewise, with the `p_next`
+and `q_next` of the certificate and a smooth remainder, m the larger of `order` r and
+`convergence_order` c,
+
+1. p_n = Xⁿp/n! and q_n = Xⁿq/n! for n ≤ c: the map agrees with the flow of H up to h^c;
+2. det J − 1 = L h^r + O(h^(r+1)) with L = `leading`, which is not 0 at the witness, and so, being
+   analytic, not the zero function on any open set;
+3. X·G = L for the `potential` G, where there is one.
+
+With `order` null, for the map p' = Σ p_n hⁿ, q' = Σ q_n hⁿ without a remainder: 1, and det J = 1.
+
+*Of every H* (`separable`: every H = T(p) + V(q)), the same for each smooth H at every point; L is
+a polynomial in p, q and the derivatives of H that is not 0, and so is not 0 for some H.
+
+*Of stages*, for every H: det J = 1 for each smooth map (p, q) ↦ (p', q') that solves
+p' = p − h k H_q, q' = q + h d H_p at (p + s (p' − p), q + t (q' − q)), wherever the derivatives of
+these equations by (p', q') have a determinant det A ≠ 0; and so for one stage after the other.
+
+**Proof.** Names are differentiated by the rules for what they stand for, and the relations are true
+of that (sin² + cos² = 1, u · 1/u = 1): an identity up to Σ cofactor · relation is one of functions.
+For every H its derivatives are free: an identity of polynomials in them holds for each H, and at a
+point they take any values. For the stages see `_preserves`.
+"""
+
+from collections.abc import Iterable
 from fractions import Fraction
 from math import factorial
-from typing import Any
 
-Poly = dict[tuple[str, ...], Fraction]  # sorted names → coefficient
-Ball = tuple[Fraction, Fraction]  # middle, radius
-NOUGHT, ONE = Fraction(0), Fraction(1)
-SIGNS = {"sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0), "exp": (1,)}  # of their Taylor series
+from verify.proof.certificates.balls import Ball, function, plus, times
+from verify.proof.certificates.entries import (
+    Expansion,
+    Monomial,
+    Poly,
+    Stages,
+    collected,
+    need,
+    read,
+)
 
-
-def need(holds: object, what: str) -> None:
-    if not holds:
-        raise ValueError(what)
-
-
-def single(*names: str) -> Poly:
-    return {names: ONE}
-
-
-def collected(terms: Any) -> Poly:
-    total: Poly = {}
-    for monomial, c in terms:
-        key = tuple(sorted(monomial))
-        total[key] = total.get(key, NOUGHT) + c
-    return {m: c for m, c in total.items() if c}
+ONE: Poly = {(): Fraction(1)}
+Term = tuple[Monomial, Fraction]
+_MOST_WORK = 1_000_000  # terms that are made, more for long ones: some seconds
 
 
-def poly(data: Any) -> Poly:
-    need(not any("h" in names for _, *names in data), "coefficients are free of h")
-    return collected((tuple(names), Fraction(c)) for c, *names in data)
+def check(data: object) -> Stages | Expansion:
+    """The certificate's entries, of which the theorem holds; ValueError names what fails."""
+    entries = read(data)
+    if isinstance(entries, Stages):
+        for row in entries.rows:
+            need(_preserves(*row, separable=entries.separable), "det A is not det B")
+    else:
+        Identities(entries).check()
+    return entries
 
 
-def add(x: Poly, y: Poly, scale: Fraction | int = 1) -> Poly:
-    return collected([*x.items(), *((m, scale * c) for m, c in y.items())])
+def see_witness(data: object) -> None:
+    """ValueError unless the witness shows what it has to, whatever else the certificate says."""
+    entries = read(data)
+    if isinstance(entries, Expansion):
+        Identities(entries).check_witness()
 
 
-def mul(x: Poly, y: Poly) -> Poly:
-    return collected((m + n, c * d) for m, c in x.items() for n, d in y.items())
+def single(name: str) -> Poly:
+    """The polynomial that is one name."""
+    return {(name,): Fraction(1)}
 
 
-class Algebra:
+def _preserves(k: Fraction, d: Fraction, s: Fraction, t: Fraction, *, separable: bool) -> bool:
+    """Whether det J = 1 of a stage for every H.
+
+    A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d t) +
+    h² k d s t (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and t − 1.
+    """
+    return (separable or k == d) and k * d * (1 - s - t) == 0
+
+
+class _Algebra:
     """∂/∂p and ∂/∂q of every name: the free derivatives of H, or functions of given arguments."""
 
-    def __init__(self, data: Any) -> None:
-        self.free, self.separable = data["hamiltonian"] == "every", data.get("separable")
-        self.images = {"p": {"p": single()}, "q": {"q": single()}}
+    def __init__(self, entries: Expansion) -> None:
+        self.given = entries
+        self.work = 0
+        self.images: dict[str, dict[str, Poly]] = {"p": {"p": ONE}, "q": {"q": ONE}}
         self.relations: dict[str, Poly] = {}
-        self.made: dict[str, tuple[str, Poly]] = {}
-        for name, kind, argument in data.get("functions", []):
-            need(name not in ("p", "q", "h", *self.made) and not self.free, f"{name} is a new name")
-            self.made[name] = kind, poly(argument)
-        for name, (kind, u) in self.made.items():
-            slope = self.slope(single(name), name, kind, u)
-            for by in "pq":
-                self.images[by][name] = mul(slope, self.diff(u, by))
-        h = single("H_") if self.free else poly(data["hamiltonian"])
-        self.h_p, self.h_q = self.diff(h, "p"), self.diff(h, "q")
+        for made in entries.functions:
+            slope = self.slope(made.name, made.kind, made.argument)
+            inner = {by: self.diff(made.argument, by) for by in "pq"}
+            self.images[made.name] = {by: self.mul(slope, inner[by]) for by in "pq"}
+        if entries.hamiltonian is None:
+            self.h_p, self.h_q = single("H_p"), single("H_q")
+        else:
+            self.h_p, self.h_q = (self.diff(entries.hamiltonian, by) for by in "pq")
 
-    def slope(self, own: Poly, name: str, kind: str, u: Poly) -> Poly:
+    def slope(self, name: str, kind: str, u: Poly) -> Poly:
+        """The derivative of the function by its argument; a relation that it obeys is noted."""
+        own = single(name)
         if kind == "exp":
             return own
         if kind == "inverse":
-            self.relations[name] = add(mul(own, u), single(), -1)
-            return add({}, mul(own, own), -1)
+            self.relations[name] = self.add(self.mul(own, u), ONE, -1)
+            return self.mul(own, own, -1)
         partner = {"sin": "cos", "cos": "sin"}[kind]
-        side = next(single(n) for n, g in self.made.items() if g == (partner, u))
-        self.relations[name] = add(add(mul(own, own), mul(side, side)), single(), -1)
-        return add({}, side, 1 if kind == "sin" else -1)
+        same = [f.name for f in self.given.functions if (f.kind, f.argument) == (partner, u)]
+        need(same, f"{name}: there is no {partner} of its argument")
+        side = single(same[0])
+        squares = self.add(self.mul(own, own), self.mul(side, side))
+        self.relations[name] = self.add(squares, ONE, -1)
+        return self.add({}, side, 1 if kind == "sin" else -1)
 
     def image(self, name: str, by: str) -> Poly:
-        if not (self.free and name.startswith("H_")):
-            return self.images[by][name] if name in self.made else self.images[by].get(name, {})
+        if name in self.images or not name.startswith("H_"):
+            return self.images.get(name, {}).get(by, {})  # a parameter has none
         i, j = name.count("p") + (by == "p"), name.count("q") + (by == "q")
-        return {} if self.separable and i and j else single("H_" + "p" * i + "q" * j)
+        return {} if self.given.separable and i and j else single("H_" + "p" * i + "q" * j)
+
+    def add(self, x: Poly, y: Poly, scale: Fraction | int = 1) -> Poly:
+        return self.sum_of([*x.items(), *((m, scale * c) for m, c in y.items())])
+
+    def mul(self, x: Poly, y: Poly, scale: int = 1) -> Poly:
+        return self.sum_of((m + n, scale * c * d) for m, c in x.items() for n, d in y.items())
 
     def diff(self, x: Poly, by: str) -> Poly:
-        return collected(
-            (monomial[:k] + monomial[k + 1 :] + m, c * d)
-            for monomial, c in x.items()
-            for k, name in enumerate(monomial)
+        return self.sum_of(
+            (names[:k] + names[k + 1 :] + m, c * d)
+            for names, c in x.items()
+            for k, name in enumerate(names)
             for m, d in self.image(name, by).items()
         )
 
-    def lie_derivatives(self, x: Poly) -> Poly:
-        return add(mul(self.h_p, self.diff(x, "q")), mul(self.h_q, self.diff(x, "p")), -1)
+    def lie_derivative(self, x: Poly) -> Poly:
+        return self.add(
+            self.mul(self.h_p, self.diff(x, "q")), self.mul(self.h_q, self.diff(x, "p")), -1
+        )
 
-    def zero(self, x: Poly, cofactors: Any, what: str) -> None:
-        for name, cofactor in cofactors.get(what, {}).items():
-            x = add(x, mul(poly(cofactor), self.relations[name]), -1)
+    def sum_of(self, terms: Iterable[Term]) -> Poly:
+        return collected(map(self.counted, terms))
+
+    def counted(self, term: Term) -> Term:
+        names, c = term
+        self.work += (
+            1 + (8 * len(names) + c.numerator.bit_length() + c.denominator.bit_length()) // 64
+        )
+        need(self.work <= _MOST_WORK, "is too large to be checked here")
+        return term
+
+
+class Identities(_Algebra):
+    """What the theorem says, identity by identity."""
+
+    def __init__(self, entries: Expansion) -> None:
+        super().__init__(entries)
+        self.cofactors = dict(entries.cofactors)
+        self.values: dict[str, Ball] = {n: (x, Fraction(0)) for n, x in entries.witness.items()}
+
+    def check(self) -> None:
+        """ValueError names the first of them that does not hold."""
+        given = self.given
+        need(
+            (given.order is None) == (not given.leading),
+            "order, leading: one says that det J is 1, and one that it is not",
+        )
+        length = max(map(len, (given.p_next, given.q_next)))
+        last = given.last
+        need(last is None or length <= last + 1, "p_next, q_next: are longer than is said of them")
+        self.check_flow()
+        self.check_determinant(given.order or 2 * length)
+        if given.potential is not None:
+            slope = self.lie_derivative(given.potential)
+            self.zero(self.add(slope, given.leading, -1), "potential")
+        unused = min(self.cofactors, default="")
+        need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
+        self.check_witness()
+
+    def check_flow(self) -> None:
+        for by, series in (("p", self.given.p_next), ("q", self.given.q_next)):
+            flow = single(by)
+            for n in range(self.given.convergence_order + 1):
+                if n:
+                    flow = self.lie_derivative(flow)
+                gap = self.add(_at(series, n), flow, Fraction(-1, factorial(n)))
+                self.zero(gap, f"{by} {n}")
+
+    def check_determinant(self, last: int) -> None:
+        """Up to h^last; that of h⁰ is 1, as the map there is (p, q)."""
+        given = self.given
+        slopes = [
+            [(self.diff(c, "p"), self.diff(c, "q")) for c in series[: last + 1]]
+            for series in (given.p_next, given.q_next)
+        ]
+        for n in range(1, last + 1):
+            det = self.add({}, given.leading if n == given.order else {}, -1)
+            for k, (p_p, p_q) in enumerate(slopes[0][: n + 1]):
+                if n - k < len(slopes[1]):
+                    q_p, q_q = slopes[1][n - k]
+                    det = self.add(self.add(det, self.mul(p_p, q_q)), self.mul(p_q, q_p), -1)
+            self.zero(det, f"det {n}")
+
+    def check_witness(self) -> None:
+        """That there is a point where all functions have a value, and L another than 0."""
+        inverses = [f.name for f in self.given.functions if f.kind == "inverse"]
+        if self.given.hamiltonian is None or not (inverses or self.given.leading):
+            need(not self.given.witness, "witness: there is nothing to see")
+            return
+        need(self.given.witness, "witness: is missing")
+        for name in inverses:
+            self.value_of(name)
+        if self.given.leading:
+            middle, radius = self.value(self.given.leading)
+            need(abs(middle) > radius, "the leading coefficient may be 0 at the witness")
+
+    def zero(self, x: Poly, what: str) -> None:
+        for name, cofactor in self.cofactors.pop(what, {}).items():
+            need(name in self.relations, f"cofactors of {what}: {name!a} has no relation")
+            x = self.add(x, self.mul(cofactor, self.relations[name]), -1)
         need(not x, f"{what} is not zero")
 
-    def value(self, x: Poly, at: dict[str, Ball]) -> Ball:
-        total = NOUGHT, NOUGHT
-        for monomial, c in x.items():
-            term = c, NOUGHT
-            for name in monomial:
-                if name not in at:
-                    at[name] = function(self.made[name][0], self.value(self.made[name][1], at))
-                term = times(term, at[name])
-            total = total[0] + term[0], total[1] + term[1]
+    def value(self, x: Poly) -> Ball:
+        """At the witness."""
+        total = Fraction(0), Fraction(0)
+        for names, c in x.items():
+            term = c, Fraction(0)
+            for name in names:
+                term = times(term, self.value_of(name))
+            total = plus(total, term)
         return total
 
-
-def times(x: Ball, y: Ball) -> Ball:
-    return x[0] * y[0], abs(x[0]) * y[1] + abs(y[0]) * x[1] + x[1] * y[1]
-
-
-def function(kind: str, x: Ball) -> Ball:
-    """By its Taylor series, with a bound of what is left out; 1/x with one of its slope."""
-    if kind == "inverse":
-        need(abs(x[0]) > x[1], "a denominator may be zero")
-        return 1 / x[0], x[1] / (abs(x[0]) * (abs(x[0]) - x[1]))
-    size, signs = abs(x[0]) + x[1] + 1, SIGNS[kind]
-    last = int(4 * size) + 40
-    terms = (signs[n % len(signs)] * x[0] ** n / factorial(n) for n in range(last))
-    return sum(terms, NOUGHT), x[1] * 3 ** int(size + 1) + 2 * size**last / factorial(last)
+    def value_of(self, name: str) -> Ball:
+        if name not in self.values:
+            made = next(f for f in self.given.functions if f.name == name)
+            self.values[name] = function(made.kind, self.value(made.argument))
+        return self.values[name]
 
 
-def check(data: Any) -> None:
-    """An exception unless every identity holds: a ValueError that names the one that does not."""
-    if "stages" in data:  # (k, d, s, t): p' = p − h k H_q, q' = q + h d H_p at the shares s, t
-        for k, d, s, t in (map(Fraction, row) for row in data["stages"]):
-            # A J = B; both are I + h E D of det 1 + h b (d D₂ − k D₁) + h² k d D₁ D₂ (a c − b²)
-            need((k == d or data["separable"]) and k * d * (1 - s - t) == 0, "det A is not det B")
-        return
-    a, order, leading = Algebra(data), data["order"], poly(data["leading"])
-    zeros = data.get("cofactors", {})
-    need(not leading if order is None else leading and order > 0, "the leading coefficient is zero")
-    names = {n for m in leading for n in m} if a.free else set()
-    need(all(re.fullmatch("[pq]|H_p*q*", n) for n in names), "a derivative has another name")
-    agreed, last = data["convergence_order"], order or 2 * len(data["p_next"] + data["q_next"])
-    series = {by: [poly(c) for c in data[f"{by}_next"] + [[]] * (last + agreed)] for by in "pq"}
-    for by, flow in (("p", single("p")), ("q", single("q"))):
-        for n in range(agreed + 1):
-            a.zero(add(series[by][n], flow, Fraction(-1, factorial(n))), zeros, f"{by} {n}")
-            flow = a.lie_derivatives(flow)
-    slopes = {by: [(a.diff(c, "p"), a.diff(c, "q")) for c in series[by][: last + 1]] for by in "pq"}
-    for n in range(1, last + 1):
-        det = add({}, leading if n == order else {}, -1)
-        for (p_p, p_q), (q_p, q_q) in zip(slopes["p"][: n + 1], slopes["q"][n::-1], strict=True):
-            det = add(add(det, mul(p_p, q_q)), mul(p_q, q_p), -1)
-        a.zero(det, zeros, f"det {n}")
-    if order and not a.free:
-        value = a.value(leading, {n: (Fraction(x), NOUGHT) for n, x in data["witness"].items()})
-        need(abs(value[0]) > value[1], "the leading coefficient may be zero at the witness")
-    if data.get("potential") is not None:
-        a.zero(add(a.lie_derivatives(poly(data["potential"])), leading, -1), zeros, "potential")
+def _at(series: tuple[Poly, ...], n: int) -> Poly:
+    return series[n] if n < len(series) else {}

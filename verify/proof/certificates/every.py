@@ -1,19 +1,23 @@
 """Certificates of proofs: the polynomials and the identities between them, as JSON.
 
-A polynomial is a list of terms `[coefficient, name, name, …]`, a name once for each power.
+A polynomial is a list of terms `[coefficient, name, name, …]`, a name once for each power, and a
+number is a text such as "-3/2".
 - `format`: what this is, with its version (see `verify.formats`).
 - `hamiltonian`: a polynomial, or "every": then the names are p, q and H_p, H_q, H_pp, … as free
   derivatives of H (`separable`: the mixed ones are 0).
-- `functions`: `[name, kind, argument]`, kind one of sin, cos, exp, inverse, inner ones first.
+- `parameters`: the names of H's parameters, for one H.
+- `functions`: `[name, kind, argument]`, kind one of sin, cos, exp, inverse, inner ones first, for
+  one H; a sin and the cos of the same argument stand together.
 - `p_next`, `q_next`: the coefficients of h⁰, h¹, … of the map, as far as they are needed.
 - `convergence_order` c: those of h⁰ … h^c are (Xⁿp)/n! and (Xⁿq)/n!, by X = H_p ∂_q − H_q ∂_p.
 - `order` r and `leading`: the coefficients of h … h^(r−1) in det J vanish, that of h^r is
-  `leading`, not zero (at the point `witness`, for one H). null: all vanish.
+  `leading`, not zero. null: all vanish, and `leading` has no term.
+- `witness`: for one H, a point at which `leading` and all denominators are other than 0.
 - `potential` G, where it is there: X·G = `leading`.
 - `cofactors`: what has to be zero is Σ cofactor·relation over the functions' relations.
-- `stages`, alone: rows (kick, drift, share of p', share of q') of a scheme that is
-  p' = p − h·kick·H_q, q' = q + h·drift·H_p, with H_p and H_q taken at those shares of the way from
-  (p, q) to (p', q'): det J = 1.
+- `stages`, alone with `hamiltonian` and `separable`: rows (kick, drift, share of p', share of q')
+  of a scheme that is p' = p − h·kick·H_q, q' = q + h·drift·H_p, with H_p and H_q taken at those
+  shares of the way from (p, q) to (p', q'): det J = 1.
 
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
@@ -23,7 +27,6 @@ from collections.abc import Mapping
 from verify.algebra.generator import terms_of
 from verify.algebra.jets import Jets, Series
 from verify.algebra.ring import Poly
-from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.every import EveryProof, telescoping_of
@@ -39,12 +42,11 @@ def of_every(proof: EveryProof) -> Certificate:
     every_h = scheme.every_h
     if proof.verdict is not Verdict.PROVED or every_h is None or proof.convergence_order is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
-    data: Certificate = {"format": FORMAT, "scheme": proof.scheme, "hamiltonian": "every"}
-    data["separable"] = proof.separable
+    data: Certificate = {"format": FORMAT, "hamiltonian": "every", "separable": proof.separable}
     stages = every_h.stages if isinstance(every_h, Splitting) else every_h
     if isinstance(stages, StageEquations) and proof.area_preserving:
         rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in stages.stages)
-        return data | {"stages": [[text(x) for x in row] for row in rows]}
+        return data | {"stages": [[str(x) for x in row] for row in rows]}
     if proof.order is None or not isinstance(every_h, BySeries):
         problem = "is proved by its coefficients; the checker knows rational ones, of stages"
         raise InputError("scheme", proof.scheme, problem)

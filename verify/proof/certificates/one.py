@@ -5,20 +5,22 @@ the same polynomial here and there.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 
 import sympy
 
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.exact import text
 from verify.errors import InputError
+from verify.proof.certificates.checker import see_witness
 from verify.proof.certificates.every import map_of, terms
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential
 from verify.verdict import Verdict
 
+_TRIED = 20  # points
 _KINDS = ("sin", "cos", "exp", "inverse")
 
 
@@ -32,6 +34,8 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
     hamiltonian = step_map.hamiltonian
     if proof.verdict is not Verdict.PROVED or proof.convergence_order is None:
         raise InputError("proof", proof.verdict.value, "there is nothing to certify")
+    if proof.convergence_order < 0:
+        raise InputError("map", str(step_map.p_next), "is not (p, q) at h = 0: no certificate")
     if step_map.flat.degree is None or (proof.order is None) != (proof.area_preserving is True):
         raise InputError("map", str(step_map.p_next), "is no polynomial in h: no certificate")
     asked = [
@@ -49,20 +53,37 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
     data = {
         "format": FORMAT,
         "hamiltonian": terms(h, plain.names),
+        "parameters": [name for name in field.ring.variables if name not in ("p", "q", "h")],
         "functions": plain.functions,
         **map_of(
             proof.order, proof.convergence_order, leading, (series[0], series[1]), plain.names
         ),
-        "witness": {name: text(value) for name, value in proof.witness.items()},
+        "cofactors": {},
     }
     if proof.order is not None and potential.potential is not None:
         data["potential"] = terms(potential_, plain.names)
+    data["witness"] = _witness(data, proof.witness)
     data["cofactors"] = {
         what: plain.cofactors(x)
         for what, x in _zeros(plain, data, h, series, leading, potential_)
         if not x.is_zero()  # what is zero as it stands has none
     }
     return data
+
+
+def _witness(data: Certificate, known: Mapping[str, Fraction]) -> dict[str, str]:
+    """A point at which the checker sees what is not 0: the proof's own, or one that is tried."""
+    names = ("p", "q", *data["parameters"])
+    for k in range(_TRIED):
+        tried = {name: Fraction(7 + 4 * k + i, 17 + 2 * i) for i, name in enumerate(names)}
+        at = {name: str(known.get(name, value)) for name, value in tried.items()}
+        for witness in ({}, at):
+            try:
+                see_witness(data | {"witness": witness})
+            except ValueError:
+                continue
+            return witness
+    raise InputError("proof", "", "no certificate: no point is found where no denominator is 0")
 
 
 def _coefficients(ring: Ring, x: Poly) -> list[Poly]:

@@ -1,86 +1,37 @@
-"""Certificates of drawn proofs are accepted; what a forger makes of them, only where it is true."""
+"""Certificates of drawn proofs are accepted; what is made of them, only where it is true."""
 
-import copy
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.campaigns.certificates import SLOWEST, campaign
 from tests.examples import drawn
 from tests.helpers.sampled.certificates import Data, certificates, true
 from verify.proof.certificates.checker import check
-
-# -- what a forger does ---------------------------------------------------------------------------
-
-Place = tuple[Any, Any]  # a list or an object, and an index or a key in it
-
-
-def places(data: Any) -> Iterator[Place]:
-    keys = list(data) if isinstance(data, dict) else range(len(data))
-    for key in keys:
-        if key not in ("format", "scheme"):
-            yield data, key
-            if isinstance(data[key], dict | list):
-                yield from places(data[key])
-
-
-def forged(draw: st.DrawFn, data: Data) -> Data:
-    changed = copy.deepcopy(data)
-    inside, key = draw(st.sampled_from(list(places(changed))))
-    old = inside[key]
-    match old:
-        case bool():
-            inside[key] = not old
-        case int() | None if inside is changed:
-            inside[key] = draw(st.sampled_from([1, 2, 3, 4, None, (old or 0) + 1, 0]))
-        case str() if old == "every":
-            inside[key] = [["1/2", "p", "p"]]
-        case str() if (isinstance(inside, list) and key == 0) or isinstance(inside, dict):
-            wrong = [lambda x: -x, lambda x: x + 1, lambda x: x * Fraction(8, 7), lambda x: x * 0]
-            with_number = draw(st.sampled_from(wrong))
-            try:
-                inside[key] = str(with_number(Fraction(old)))
-            except ValueError:
-                inside[key] = "p"
-        case str():
-            inside[key] = draw(st.sampled_from(["p", "q", "sin", "cos", "h", "#3", "H_p", "H_pq"]))
-        case list():
-            ways = ["drop", "p", "q"] if old else ["term"]
-            match draw(st.sampled_from(ways)):
-                case "drop" if isinstance(inside, list):
-                    inside.pop(key)
-                case "drop":
-                    inside[key] = old[:-1]
-                case "term":
-                    inside[key] = [["1", "p"]]
-                case name:
-                    inside[key] = [*old, name] if isinstance(old[0], str) else old[1:]
-        case dict():
-            inside[key] = {}
-    return changed
 
 
 def accepted(data: Data) -> bool:
     try:
         check(data)
-    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, StopIteration):
+    except ValueError:
         return False
     return True
 
 
 @drawn(9)
-@given(certificates, st.data())
-def test_a_certificate_is_accepted_and_a_forgery_only_where_it_says_the_truth(
-    data: Data, drawn: st.DataObject
-) -> None:
-    check(data)
+@given(certificates)
+def test_a_certificate_is_accepted_and_says_the_truth(data: Data) -> None:
     assert true(data)
-    for _ in range(10):
-        wrong = drawn.draw(st.composite(forged)(data))
-        if accepted(wrong) and wrong != data:
-            assert true(wrong), wrong
+
+
+def test_of_a_sample_of_the_campaigns_mutants_none_is_accepted_that_is_false() -> None:
+    answers, slowest, wrong = campaign(60, seed=20)
+    assert not wrong
+    assert slowest < SLOWEST
+    assert answers["true"] >= 3
+    assert answers["refused"] >= 30
 
 
 @drawn(12)
@@ -112,4 +63,20 @@ def test_stages_are_accepted_exactly_where_their_determinants_are_one_polynomial
     stages: list[list[str]], separable: bool
 ) -> None:
     data = {"hamiltonian": "every", "separable": separable, "stages": stages}
-    assert accepted(data) == true(data)
+    kept = [all(preserved(*map(Fraction, row), separable)) for row in stages]
+    assert accepted(data) == all(kept)
+    assert not accepted(data) or true(data)
+
+
+def preserved(
+    k: Fraction, d: Fraction, s: Fraction, t: Fraction, separable: bool
+) -> Iterator[bool]:
+    """Whether det A = det B of a stage, for some H_pp, H_pq, H_qq and h."""
+    h = Fraction(1, 7)
+    for a, b, c in ((2, 3, 5), (-3, 7, 2), (1, -4, 9)):
+        b *= not separable
+        one, two = (
+            (1 + h * k * b * x) * (1 - h * d * b * y) + h * h * k * d * a * c * x * y
+            for x, y in ((s, t), (s - 1, t - 1))
+        )
+        yield one == two

@@ -148,9 +148,9 @@ def a_lost_sign(sample: Sample, patch: Patch) -> Sample:
 
 def believes_all(sample: Sample, patch: Patch) -> Sample:
     """A checker for which every polynomial is zero."""
-    from verify.proof.certificates.checker import Algebra
+    from verify.proof.certificates.checker import Identities
 
-    patch.setattr(Algebra, "zero", lambda *_: None)
+    patch.setattr(Identities, "zero", lambda *_: None)
     return sample
 
 

@@ -1,0 +1,161 @@
+"""What a checked certificate establishes, in formulas that stand for themselves.
+
+Everything here is derived from the entries that the checker has looked at; a name is nowhere
+believed. Formulas are written as `verify` reads them, with each function in the place of its name.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.proof.certificates.entries import Expansion, Monomial, Poly, Stages, need
+
+_LONGEST = 1_000_000  # characters of a formula with its functions written out
+_ONE_H, _EVERY, _SEPARABLE = "this H", "every smooth H", "every smooth H = T(p) + V(q)"
+
+
+@dataclass(frozen=True)
+class Established:
+    """What holds: for which H, of which map, and where.
+
+    `hamiltonian`: the one H, or which. `order`: of ΔJ = det J − 1, whose coefficient is `leading`;
+    None, with `area_preserving`: det J = 1. `agrees`: the map does so with the flow up to this
+    power of h; None where nothing is said. `scheme`: where the entries are those of one.
+    """
+
+    statement: str
+    scheme: str | None
+    hamiltonian: str
+    p_next: str
+    q_next: str
+    area_preserving: bool
+    order: int | None
+    leading: str | None
+    potential: str | None
+    convergence_order: int | None
+    domain: tuple[str, ...]
+
+
+def established(entries: Stages | Expansion) -> Established:
+    """What the theorem of `verify.proof.certificates.checker` says of these entries.
+
+    Raises ValueError where a formula is too long to be written out.
+    """
+    return _of_stages(entries) if isinstance(entries, Stages) else _of_expansion(entries)
+
+
+def _of_stages(entries: Stages) -> Established:
+    which = _SEPARABLE if entries.separable else _EVERY
+    p, q, p_next, q_next, implicit = "p", "q", [], [], False
+    for n, (kick, drift, at_p, at_q) in enumerate(entries.rows, 1):
+        p_new, q_new = f"p{n}", f"q{n}"
+        at = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)})"
+        p_next.append(f"{p_new} = {p}" + (f" - h*({kick})*H_q{at}" if kick else ""))
+        q_next.append(f"{q_new} = {q}" + (f" + h*({drift})*H_p{at}" if drift else ""))
+        mixed = 0 if entries.separable else kick * at_p - drift * at_q
+        implicit |= bool(mixed or kick * drift * at_p * at_q)  # else det A is 1
+        p, q = p_new, q_new
+    return Established(
+        statement=f"det J = 1 for {which} and the scheme of these stages",
+        scheme=f"(p, q) ↦ ({p}, {q})",
+        hamiltonian=which,
+        p_next="; ".join(p_next),
+        q_next="; ".join(q_next),
+        area_preserving=True,
+        order=None,
+        leading=None,
+        potential=None,
+        convergence_order=None,
+        domain=("the stages have a solution that depends smoothly on (p, q)",) * implicit,
+    )
+
+
+def _between(start: str, end: str, share: Fraction) -> str:
+    if share in (0, 1):
+        return end if share else start
+    return f"{start} + ({share})*({end} - {start})"
+
+
+def _of_expansion(entries: Expansion) -> Established:
+    written = _Writer(entries)
+    which = _ONE_H if entries.hamiltonian is not None else _EVERY
+    which = _SEPARABLE if entries.separable else which
+    agreed, order = entries.convergence_order, entries.order
+    area = "det J = 1"
+    if order is not None:
+        where = "" if entries.hamiltonian is not None else " for some H"
+        area = f"det J − 1 = L h^{order} + O(h^{order + 1}), L not zero{where}"
+    telescopes = "" if entries.potential is None else ", and L = X·G"
+    flow = f"which agrees with the flow up to h^{agreed}{telescopes}"
+    return Established(
+        statement=f"{area}, for {which} and this map, {flow}",
+        scheme=_taylor_series(entries),
+        hamiltonian=which if entries.hamiltonian is None else written.poly(entries.hamiltonian),
+        p_next=written.series(entries.p_next, entries.last),
+        q_next=written.series(entries.q_next, entries.last),
+        area_preserving=order is None,
+        order=order,
+        leading=None if order is None else written.poly(entries.leading),
+        potential=None if entries.potential is None else written.poly(entries.potential),
+        convergence_order=agreed,
+        domain=tuple(
+            f"{written.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"
+        ),
+    )
+
+
+def _taylor_series(entries: Expansion) -> str | None:
+    """The flow's own series, where that is all there is of the map."""
+    agreed = entries.convergence_order
+    beyond = [c for series in (entries.p_next, entries.q_next) for c in series[agreed + 1 :] if c]
+    if beyond or (entries.last is not None and entries.last <= agreed):
+        return None
+    up_to = "" if entries.last is None else f", up to O(h^{entries.last + 1})"
+    return f"the Taylor series of the flow, cut off after h^{agreed}{up_to}"
+
+
+class _Writer:
+    """Polynomials in names as formulas; a function stands written out in the place of its name."""
+
+    def __init__(self, entries: Expansion) -> None:
+        self.functions: dict[str, str] = {}
+        self.below: dict[str, str] = {}  # what 1/u divides by
+        for made in entries.functions:
+            inner = self.poly(made.argument)
+            self.functions[made.name] = f"{made.kind}({inner})"
+            if made.kind == "inverse":
+                self.below[made.name] = f"({inner})"
+
+    def poly(self, x: Poly) -> str:
+        """The polynomial as a formula."""
+        terms, length = [], 0
+        for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
+            terms.append(f"{'-' if c < 0 else '+'} {self._term(names, abs(c))}")
+            length += len(terms[-1])
+            need(length <= _LONGEST, "a formula is too long to be written out")
+        text = " ".join(terms) or "0"
+        return text.removeprefix("+ ") if text[0] != "-" else f"-{text[2:]}"
+
+    def _term(self, names: Monomial, c: Fraction) -> str:
+        above: list[str] = []
+        below: list[str] = []
+        for name in sorted(set(names), key=lambda name: (name in self.functions, name)):
+            n = names.count(name)
+            base = self.below.get(name) or self.functions.get(name, name)
+            (below if name in self.below else above).append(base if n == 1 else f"{base}**{n}")
+        if c.numerator != 1 or not above:
+            above.insert(0, str(c.numerator))
+        if c.denominator != 1:
+            below.insert(0, str(c.denominator))
+        return "/".join(["*".join(above), *below])
+
+    def series(self, coefficients: Sequence[Poly], last: int | None) -> str:
+        """Σ c_n hⁿ, with what is not known where there is a last power."""
+        parts = []
+        for n, c in enumerate(coefficients):
+            power = "h*" if n == 1 else f"h**{n}*"
+            if c:
+                parts.append(f"{power}({self.poly(c)})" if n else self.poly(c))
+        if last is not None:
+            parts.append(f"O(h**{last + 1})")
+        return " + ".join(parts) or "0"
