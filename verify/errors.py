@@ -11,7 +11,7 @@ class InputError(ValueError):
         self.name = name
         self.value = value
         self.problem = problem
-        super().__init__(f"{name}={_short(value)}: {problem}")
+        super().__init__(without_controls(f"{name}={_short(value)}: {problem}"))
 
     def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
         """As a worker process sends it: by its three parts, not by its message."""

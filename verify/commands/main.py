@@ -1,16 +1,19 @@
 """The command `verify`. Heavy libraries are imported inside the command that needs them."""
 
 import contextlib
+import errno
 import os
 import signal
 import sys
 
 import click
+from click.utils import PacifyFlushWrapper
 
 from verify.commands import commands
+from verify.commands.streams import printable_streams
 from verify.errors import InputError, PlaceError
 
-INTERRUPTED, TERMINATED = 130, 143
+INTERRUPTED, UNREAD, TERMINATED = 130, 141, 143
 BAD_INPUT = 2
 
 
@@ -46,23 +49,47 @@ for command in commands():
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit.
 
-    0 done, 1 a check failed, 2 bad input or workers lost, 130 interrupted, 143 terminated.
+    0 done, 1 a check failed, 2 bad input, workers lost, or output that cannot be written,
+    130 interrupted, 141 nobody reads, 143 terminated.
     """
     with contextlib.suppress(ValueError):  # not in the main thread, which alone is signalled
         signal.signal(signal.SIGTERM, _terminated)
-    try:
-        cli.main(args=arguments, prog_name="verify", standalone_mode=False)
-        sys.stdout.flush()
-    except (InputError, PlaceError) as error:
-        _fail(str(error))
-    except click.ClickException as error:
-        _fail(error.format_message())
-    except (KeyboardInterrupt, click.Abort):
-        sys.exit(INTERRUPTED)
-    except BrokenPipeError:  # the reader, such as head, has seen enough
+    with printable_streams():
+        try:
+            if sys.stdout is None:
+                raise OSError(errno.EBADF, "is closed")
+            cli.main(args=arguments, prog_name="verify", standalone_mode=False)
+            sys.stdout.flush()
+        except (InputError, PlaceError) as error:
+            _fail(str(error))
+        except click.ClickException as error:
+            _fail(error.format_message())
+        except (KeyboardInterrupt, click.Abort):
+            sys.exit(INTERRUPTED)
+        except BrokenPipeError:
+            _unread()
+        except SystemExit:
+            if isinstance(sys.stdout, PacifyFlushWrapper):  # click has seen it first
+                _unread()
+            raise
+        except MemoryError:
+            _fail("there is not enough memory for this")
+        except OSError as error:
+            if error.filename is None:
+                _write_nowhere()
+            _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
+
+
+def _unread() -> None:
+    """The reader, such as head, has seen enough."""
+    _write_nowhere()
+    sys.exit(UNREAD)
+
+
+def _write_nowhere() -> None:
+    """What is still to be written would fail again as the process ends."""
+    with contextlib.suppress(OSError, AttributeError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except OSError as error:
-        _fail(f"{error.filename or 'file'}: {error.strerror or error}")
 
 
 def _terminated(*_: object) -> None:

@@ -1,6 +1,7 @@
 """What the command line prints: JSON objects with decimal strings, and short texts for people."""
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +42,8 @@ _PARTS = {
 
 
 def print_json(data: dict[str, Any]) -> None:
-    click.echo(json.dumps(data, ensure_ascii=False))
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    click.echo(json.dumps(data, ensure_ascii=encoding.lower().replace("-", "") != "utf8"))
 
 
 def cut(formula: str) -> str:

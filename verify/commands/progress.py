@@ -31,10 +31,11 @@ def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advanc
         def render(self, task: Any) -> Text:
             return Text(f"{task.speed:,.0f} {unit}/s" if task.speed and task.speed > 0 else "")
 
+    stream = getattr(sys.stderr, "stream", sys.stderr)  # which takes what moves its cursor
     columns: list[ProgressColumn | str] = ["{task.description}", BarColumn(), TaskProgressColumn()]
     columns += [Speed()] if unit else []
     columns.append(TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with Progress(*columns, console=Console(file=stream), transient=True) as bar:
         task = bar.add_task(label, total=total)
         yield lambda units: bar.advance(task, units)
 

@@ -1,0 +1,59 @@
+"""Standard output and error as the command uses them: text that any terminal may be given."""
+
+import io
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+_KEPT = "\n\t"
+
+
+class Printable(io.TextIOBase):
+    """A text stream without control characters, and without what its encoding does not have.
+
+    Each is written as its escape (`\\u001b`), which in JSON's strings means the same.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream = stream
+        self._encoding = getattr(stream, "encoding", None) or "utf-8"
+
+    def write(self, text: str) -> int:
+        if not text.isprintable():
+            text = "".join(map(_shown, text))
+        raw = text.encode(self._encoding, "backslashreplace")
+        self.stream.write(raw.decode(self._encoding))
+        return len(text)
+
+    def flush(self) -> None:
+        self.stream.flush()
+
+    def isatty(self) -> bool:
+        return self.stream.isatty()
+
+    def fileno(self) -> int:
+        return self.stream.fileno()
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        return self._encoding
+
+
+def _shown(c: str) -> str:
+    """The character, or its escape where a terminal would act on it instead of showing it."""
+    control = ord(c) < 32 or 127 <= ord(c) < 160 or 0x202A <= ord(c) <= 0x202E
+    hidden = control or 0x2066 <= ord(c) <= 0x2069 or 0xD800 <= ord(c) <= 0xDFFF
+    return f"\\u{ord(c):04x}" if hidden and c not in _KEPT else c
+
+
+@contextmanager
+def printable_streams() -> Iterator[None]:
+    """Both streams so, while the command runs; one that is closed stays None."""
+    before = sys.stdout, sys.stderr
+    out, err = (stream and Printable(stream) for stream in before)
+    sys.stdout, sys.stderr = out, err
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
