@@ -61,12 +61,14 @@ def hamiltonian_of(
 
     if (system is None) == (hamiltonian is None):
         raise InputError("--system, --hamiltonian", system or "", "give one of the two")
-    values: dict[str, str | None] = {}
+    values: dict[str, str] = {}
     for text in params:
         name, given, value = text.partition("=")
+        if not given:
+            raise InputError("--param", text, "has no value; write NAME=VALUE, or leave it out")
         if name in values:
             raise InputError("--param", text, f"{name} is given twice")
-        values[name] = value if given else None
+        values[name] = value
     if system is not None:
         return systems.get(system).hamiltonian(values)
     return Hamiltonian.parse(hamiltonian or "", values)

@@ -7,10 +7,9 @@ import signal
 import sys
 
 import click
-from click.utils import PacifyFlushWrapper
 
 from verify.commands import commands
-from verify.commands.streams import printable_streams
+from verify.commands.streams import Printable, printable_streams
 from verify.errors import InputError, PlaceError
 
 INTERRUPTED, UNREAD, TERMINATED = 130, 141, 143
@@ -69,7 +68,7 @@ def main(arguments: list[str] | None = None) -> None:
         except BrokenPipeError:
             _unread()
         except SystemExit:
-            if isinstance(sys.stdout, PacifyFlushWrapper):  # click has seen it first
+            if not isinstance(sys.stdout, Printable):  # click has seen it, and put its own there
                 _unread()
             raise
         except MemoryError:

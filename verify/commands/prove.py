@@ -80,6 +80,7 @@ def prove(
         show.print_json(_every_json(proof, seconds))
     else:
         _print_every(proof)
+    _end_with(proof.verdict)
 
 
 def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Path | None) -> None:
@@ -98,6 +99,13 @@ def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Pa
         show.print_json(show.proof_json(exact, chosen.name, proof, potential, seconds))
     else:
         show.print_proof(exact, chosen.name, proof, potential)
+    _end_with(proof.verdict)
+
+
+def _end_with(verdict: str) -> None:
+    """Exit status 1 where what the scheme claims is refuted."""
+    if verdict == "REFUTED":
+        raise SystemExit(1)
 
 
 def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> dict[str, Any]:

@@ -80,3 +80,5 @@ def run(
         show.print_json(show.run_json(result))
     else:
         show.print_run(result)
+    if result.status != "finished":
+        raise SystemExit(1)

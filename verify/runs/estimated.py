@@ -83,11 +83,12 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
             n: (second.values[n], abs(x - second.values[n]) + unit * _rounded(n, x))
             for n, x in first.values.items()
         }
-        missing = max(
+        lacking = (
             missing_of(name, *value, digits)
             for name, value in found.items()
             if not (name in _STATE and abs(value[0]) <= value[1] <= noise)  # 0, as far as is known
         )
+        missing = max(lacking, default=0)
         if missing <= 0:
             return Bounds(found, method)
         own = number_systems.get(own.name, digits_of(own) + missing + 5)
