@@ -1,5 +1,10 @@
 """The errors that a user is told in one line: of input, and of where the work is done."""
 
+import re
+
+# What a terminal acts on, or turns the order of, instead of showing it; tabs and ends of lines not.
+CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+
 
 class InputError(ValueError):
     """Bad input: one line that names the input, its value and what is allowed.

@@ -13,14 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from verify.errors import InputError
+from verify.files import read_bytes
 
 
 def read_json(path: Path, wanted: str) -> dict[str, Any]:
     """The object of that format in a file. InputError for what is not there, or no such JSON."""
     try:
-        data = json.loads(path.read_bytes())
-    except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+        data = json.loads(read_bytes(path))
+    except InputError:
+        raise
     except (ValueError, RecursionError):
         raise InputError("file", str(path), "is not JSON") from None
     return check_format(data, wanted, str(path))

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.campaigns.kept_results import kept_results
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.keeping import KEPT, NOTHING, Keeper, sealed, unsealed
@@ -112,10 +113,10 @@ def test_a_report_of_this_format_that_is_none_is_one_line(tmp_path: Path) -> Non
 # -- what is kept: another version is not believed, and not worth a line ---------------------------
 
 CHANGES: dict[str, Callable[[str], str]] = {
-    "newer": lambda text: text.replace("kept result 1", "kept result 2"),
-    "older": lambda text: text.replace("kept result 1", "kept result 0"),
+    "newer": lambda text: text.replace("kept result 2", "kept result 3"),
+    "older": lambda text: text.replace("kept result 2", "kept result 1"),
     "another": lambda text: text.replace("kept result", "checkpoint"),
-    "no-format": lambda text: text.replace('"format": "areaproof kept result 1", ', ""),
+    "no-format": lambda text: text.replace('"format": "areaproof kept result 2", ', ""),
     "bare": lambda text: text.partition("\n")[2].removesuffix("}\n"),
     "one-digit": lambda text: text.replace('"order": 3', '"order": 4'),
     "no-digest": lambda text: text.replace('"sha256"', '"sha"'),
@@ -142,7 +143,7 @@ def test_a_kept_result_of_another_version_or_content_is_none(
 
 @pytest.mark.parametrize(
     ("old", "new"),
-    [("checkpoint 1", "checkpoint 2"), ("checkpoint 1", "kept result 1"), (": 5", ": 6")],
+    [("checkpoint 2", "checkpoint 3"), ("checkpoint 2", "kept result 2"), (": 5", ": 6")],
 )
 def test_a_checkpoint_of_another_version_or_content_is_none(
     tmp_path: Path, old: str, new: str
@@ -157,6 +158,11 @@ def test_a_checkpoint_of_another_version_or_content_is_none(
 
 
 def test_what_was_sealed_is_told_by_its_format() -> None:
-    assert unsealed(KEPT, sealed(KEPT, "{}")) == "{}"
-    assert unsealed("areaproof poem 1", sealed(KEPT, "{}")) is None
-    assert unsealed(KEPT, "") is None
+    assert unsealed(KEPT, "7f", sealed(KEPT, "7f", "{}")) == "{}"
+    assert unsealed("areaproof poem 1", "7f", sealed(KEPT, "7f", "{}")) is None
+    assert unsealed(KEPT, "8a", sealed(KEPT, "7f", "{}")) is None
+    assert unsealed(KEPT, "7f", "") is None
+
+
+def test_of_a_sample_of_the_campaigns_damages_all_are_noticed() -> None:
+    assert kept_results(60, seed=3) == []

@@ -27,7 +27,8 @@ ROOF = ("verify", "__main__", "from_type", "testing")
 ROOMS = ("commands", "pages", "reference", "exploration", "strategies", "claims", "studies",
          "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof", "schemes",
          "hamiltonians", "algebra", "arithmetic")  # fmt: skip
-GROUND = ("content", "discovery", "drawable", "errors", "formats", "notebook", "prose", "verdict")
+GROUND = ("content", "discovery", "drawable", "errors", "files", "formats", "notebook", "prose",
+          "verdict")  # fmt: skip
 
 
 def floor(name: str) -> int:

@@ -34,6 +34,7 @@ from verify.claims.quantified import QuantifiedClaim
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
 from verify.claims.toml_lines import Lines, lines_of
 from verify.errors import InputError
+from verify.files import read_text
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_from
 
@@ -79,7 +80,7 @@ class ClaimsFile:
 def load_claims(path: Path) -> ClaimsFile:
     """The claims in a TOML file; InputError names the file, the line, the claim and the problem."""
     data = read_toml(path)
-    found = ClaimsFile(path.name, "", lines=lines_of(path.read_bytes().decode()))
+    found = ClaimsFile(path.name, "", lines=lines_of(read_text(path)))
     tables = data.get("claim")
     if not isinstance(tables, list) or not tables:
         raise InputError("file", path.name, "must hold [[claim]] tables")

@@ -85,7 +85,7 @@ def _task(scene: "Scene") -> "WorkPrecisionTask":
 
 
 def _draw(result: "WorkPrecisionResult", path: Path) -> None:
-    from verify.execution.keeping import write_atomically
+    from verify.files import write_atomically
     from verify.pages.figures.work_precision_plots import standalone
 
     try:

@@ -71,7 +71,7 @@ def _command(asked: "Hunt") -> str:
 
 def _keep_scenes(shown: "Gallery", output: Path) -> None:
     """Writes worst-1.toml and so on; those of an earlier hunt that had more do not stay."""
-    from verify.execution.keeping import write_atomically
+    from verify.files import write_atomically
 
     for place, each in enumerate(shown.scenes, start=1):
         write_atomically(output / f"worst-{place}.toml", each.scene)

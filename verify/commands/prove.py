@@ -126,7 +126,7 @@ def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> di
 def _write(data: dict[str, Any], path: Path) -> None:
     import json
 
-    from verify.execution.keeping import write_atomically
+    from verify.files import write_atomically
     from verify.proof.certificates.checker import check
 
     try:

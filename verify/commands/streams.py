@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
-_KEPT = "\n\t"
+from verify.errors import CONTROL
 
 
 class Printable(io.TextIOBase):
@@ -20,9 +20,8 @@ class Printable(io.TextIOBase):
         self._encoding = getattr(stream, "encoding", None) or "utf-8"
 
     def write(self, text: str) -> int:
-        if not text.isprintable():
-            text = "".join(map(_shown, text))
-        raw = text.encode(self._encoding, "backslashreplace")
+        shown = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+        raw = shown.encode(self._encoding, "backslashreplace")
         self.stream.write(raw.decode(self._encoding))
         return len(text)
 
@@ -38,13 +37,6 @@ class Printable(io.TextIOBase):
     @property
     def encoding(self) -> str:  # type: ignore[override]
         return self._encoding
-
-
-def _shown(c: str) -> str:
-    """The character, or its escape where a terminal would act on it instead of showing it."""
-    control = ord(c) < 32 or 127 <= ord(c) < 160 or 0x202A <= ord(c) <= 0x202E
-    hidden = control or 0x2066 <= ord(c) <= 0x2069 or 0xD800 <= ord(c) <= 0xDFFF
-    return f"\\u{ord(c):04x}" if hidden and c not in _KEPT else c
 
 
 @contextmanager

@@ -20,17 +20,10 @@ from verify.execution.executors import (
     open_place,
     results_of,
 )
-from verify.execution.keeping import (
-    KEPT,
-    NOTHING,
-    Keeper,
-    fingerprint,
-    sealed,
-    unsealed,
-    write_atomically,
-)
+from verify.execution.keeping import KEPT, NOTHING, Keeper, fingerprint, kept_text, sealed
 from verify.execution.plan import Plan
 from verify.execution.task import Task
+from verify.files import write_atomically
 from verify.scenes.frozen import Frozen
 
 OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
@@ -56,10 +49,10 @@ class Store:
         path = self.path(name)
         if path is None or not path.exists():
             return None
+        content = kept_text(KEPT, path)
         try:
-            content = unsealed(KEPT, path.read_text())
             found = task.result.model_validate_json(content) if content else None
-        except (ValidationError, UnicodeDecodeError):  # damaged from outside: do it again
+        except ValidationError:  # sealed, and yet none: do it again
             return None
         self.taken += found is not None
         return found
@@ -68,7 +61,7 @@ class Store:
         """Keeps the result; the checkpoints of its runs are done with."""
         path = self.path(name)
         if path is not None:
-            write_atomically(path, sealed(KEPT, result.model_dump_json(indent=1)))
+            write_atomically(path, sealed(KEPT, path.stem, result.model_dump_json(indent=1)))
             self.keeper(name).clear()
 
     def keeper(self, name: str) -> Keeper:

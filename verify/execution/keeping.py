@@ -6,7 +6,6 @@ import json
 import os
 import platform
 import sys
-import tempfile
 import time
 from collections.abc import Mapping
 from fractions import Fraction
@@ -16,30 +15,13 @@ from pathlib import Path
 from typing import Any
 
 from verify.content import shipped_files
+from verify.errors import InputError
+from verify.files import read_text, write_atomically
 
 _VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
 _DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
-KEPT, CHECKPOINT = "areaproof kept result 1", "areaproof checkpoint 1"  # formats
+KEPT, CHECKPOINT = "areaproof kept result 2", "areaproof checkpoint 2"  # formats
 _SECONDS = 5.0  # between two checkpoints of a run
-
-
-def write_atomically(path: Path, content: str | bytes) -> None:
-    """The whole content or the old one, never a part: written beside it, then renamed."""
-    raw = content.encode() if isinstance(content, str) else content
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(raw)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except BaseException as error:
-        Path(temporary).unlink(missing_ok=True)
-        if isinstance(error, OSError):  # a full disk names no file
-            error.filename = str(path)
-        raise
 
 
 def versions() -> dict[str, str]:
@@ -85,21 +67,30 @@ def fraction_of(x: str) -> Fraction:
     return Fraction(numerator, denominator)
 
 
-def sealed(form: str, content: str) -> str:
-    """An object with the JSON `content` in it, beside its format and digest."""
-    digest = hashlib.sha256(content.encode()).hexdigest()
-    return f'{{"format": "{form}", "sha256": "{digest}", "data":\n{content}\n}}\n'
+def sealed(form: str, name: str, content: str) -> str:
+    """An object with the JSON `content` in it, beside its format, its name and a digest of both."""
+    digest = hashlib.sha256(f"{name}\n{content}".encode()).hexdigest()
+    return f'{{"format": "{form}", "name": "{name}", "sha256": "{digest}", "data":\n{content}\n}}\n'
 
 
-def unsealed(form: str, text: str) -> str | None:
-    """The content that was sealed in that format; None for any other text.
+def unsealed(form: str, name: str, text: str) -> str | None:
+    """The content that was sealed in that format and under that name; None for any other text.
 
-    >>> unsealed(KEPT, sealed(KEPT, "[1, 2]"))
+    >>> unsealed(KEPT, "7f", sealed(KEPT, "7f", "[1, 2]"))
     '[1, 2]'
-    >>> unsealed(KEPT, sealed(KEPT, "[1, 2]").replace("1, 2", "1, 3"))
+    >>> unsealed(KEPT, "7f", sealed(KEPT, "7f", "[1, 2]").replace("1, 2", "1, 3"))
+    >>> unsealed(KEPT, "8a", sealed(KEPT, "7f", "[1, 2]"))
     """
     content = text.partition("\n")[2].removesuffix("\n}\n")
-    return content if sealed(form, content) == text else None
+    return content if sealed(form, name, content) == text else None
+
+
+def kept_text(form: str, path: Path) -> str | None:
+    """What was sealed under the file's own name; None for what is damaged or that of another."""
+    try:
+        return unsealed(form, path.stem, read_text(path, most=None))
+    except InputError:
+        return None
 
 
 class Keeper:
@@ -124,10 +115,7 @@ class Keeper:
         path = self._path(label)
         if path is None:
             return None
-        try:
-            content = unsealed(CHECKPOINT, path.read_text())
-        except (OSError, ValueError):
-            return None
+        content = kept_text(CHECKPOINT, path)
         found = json.loads(content) if content else {}
         return found["data"] if found.get("label") == label else None
 
@@ -141,7 +129,7 @@ class Keeper:
         path = self._path(label)
         if path is not None:
             content = json.dumps({"label": label, "data": data})
-            write_atomically(path, sealed(CHECKPOINT, content))
+            write_atomically(path, sealed(CHECKPOINT, path.stem, content))
             self._written[label] = time.monotonic()
 
     def clear(self) -> None:

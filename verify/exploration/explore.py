@@ -16,7 +16,7 @@ from verify.claims.scenes import slug
 from verify.errors import InputError
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
-from verify.execution.keeping import name_of, write_atomically
+from verify.execution.keeping import name_of
 from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
 from verify.exploration.property import Property
@@ -25,6 +25,7 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import scenes_of
 from verify.exploration.tasks import ExploreTask, ShrinkTask
+from verify.files import write_atomically
 from verify.scenes.results.exploration import (
     EarlierFailure,
     ExploreReport,

@@ -8,7 +8,7 @@ from pathlib import Path
 from jinja2 import Environment
 from markupsafe import Markup
 
-from verify.execution.keeping import write_atomically
+from verify.files import write_atomically
 from verify.pages.environment import TEMPLATES, environment
 from verify.pages.page_view import page_view
 from verify.scenes.results.report import Report

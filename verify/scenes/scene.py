@@ -57,7 +57,8 @@ from pydantic import Field, ValidationError, model_validator
 from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import text
 from verify.drawable import drawn_by
-from verify.errors import InputError
+from verify.errors import CONTROL, InputError, without_controls
+from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
@@ -265,18 +266,14 @@ def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> 
         scene = Scene.model_validate(dict(data))
     except ValidationError as error:
         raise one_line(error, source) from None
-    return scene if scene.name else scene.model_copy(update={"name": default_name})
+    return (
+        scene if scene.name else scene.model_copy(update={"name": without_controls(default_name)})
+    )
 
 
 def read_toml(path: Path) -> dict[str, Any]:
     """The file's content with its decimals kept as text, so that they stay exact."""
-    try:
-        content = path.read_bytes().decode()
-    except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
-    except UnicodeDecodeError:
-        raise InputError("file", str(path), "is not UTF-8 text") from None
-    return _from_toml(content, str(path))
+    return _from_toml(read_text(path), str(path))
 
 
 def _from_toml(content: str, source: str) -> dict[str, Any]:
@@ -286,7 +283,23 @@ def _from_toml(content: str, source: str) -> dict[str, Any]:
         raise InputError("file", source, f"is not TOML: {error}") from None
     if not _shallow(data):
         raise InputError("file", source, f"is nested deeper than {_MAX_DEPTH}")
+    _check_texts(data, source)
     return data
+
+
+def _check_texts(data: Any, source: str, where: str = "") -> None:
+    """InputError where a key or a text holds a character that a terminal would act on."""
+    if isinstance(data, str):
+        if found := CONTROL.search(data):
+            problem = f"holds U+{ord(found[0]):04X}, a control character"
+            raise InputError(f"{source}: {where}", data, problem)
+    elif isinstance(data, dict):
+        for key, value in data.items():
+            _check_texts(key, source, "a key")
+            _check_texts(value, source, f"{where}.{key}" if where else key)
+    elif isinstance(data, list):
+        for value in data:
+            _check_texts(value, source, where)
 
 
 def _shallow(data: Any) -> bool:

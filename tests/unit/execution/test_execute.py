@@ -21,8 +21,9 @@ from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS, Placement
-from verify.execution.keeping import fingerprint, write_atomically
+from verify.execution.keeping import fingerprint
 from verify.execution.plan import Plan
+from verify.files import write_atomically
 from verify.scenes.frozen import Frozen
 from verify.studies.plan import plan_scenes
 from verify.studies.proofs.one import ProofTask

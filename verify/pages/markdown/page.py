@@ -9,7 +9,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from verify.execution.keeping import write_atomically
+from verify.files import write_atomically
 from verify.pages.environment import environment
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.markdown.blocks import document

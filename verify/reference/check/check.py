@@ -25,12 +25,13 @@ from verify.execution.executors import (
     results_of,
 )
 from verify.execution.keeping import versions
+from verify.files import MOST_BYTES, read_bytes, text_of
 from verify.formats import check_format
 from verify.reference.check import consistency
 from verify.reference.check.difference import Findings, Place
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
-from verify.reference.make.reading import MOST_BYTES, content_of, json_of, rows_of, text_of
+from verify.reference.make.reading import json_of, rows_of
 from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
     MANIFEST,
@@ -131,12 +132,12 @@ def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -
 def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[Data, str]]:
     if not folder.is_dir():
         raise InputError("DIR", str(folder), "is no folder")
-    manifest = _model(Manifest, MANIFEST_FORMAT, content_of(folder / MANIFEST), MANIFEST, found)
+    manifest = _model(Manifest, MANIFEST_FORMAT, read_bytes(folder / MANIFEST), MANIFEST, found)
     if manifest is None:
         return
     contents: dict[str, bytes] = {}
     for name in _listed(folder, manifest, found):
-        contents[name] = content_of(folder / name)
+        contents[name] = read_bytes(folder / name)
         if sum(map(len, contents.values())) > _MOST_BYTES_OF_ALL:
             raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
     read = {}

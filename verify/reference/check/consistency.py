@@ -15,10 +15,11 @@ from typing import Any
 from verify.algebra.formula import parse
 from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
+from verify.files import text_of
 from verify.reference.check.difference import Place
 from verify.reference.make.correct_rounding import correctly_rounded
 from verify.reference.make.models import Data, Flow, Proof, Run, values_of
-from verify.reference.make.reading import rows_of, text_of
+from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import Row, csv_text
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded

@@ -12,12 +12,13 @@ from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
 from verify.errors import InputError
+from verify.files import read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.tangent_map import nearest_double
 from verify.reference.make.models import DATA_FORMAT, Data, Run, values_of
-from verify.reference.make.reading import content_of, json_of
+from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitPoint
 
@@ -117,7 +118,7 @@ def load(folder: Path, scene: str | None) -> Published:
 
 
 def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
-    raw = check_format(json_of(content_of(folder / name), name), DATA_FORMAT, name)
+    raw = check_format(json_of(read_bytes(folder / name), name), DATA_FORMAT, name)
     try:
         data = Data.model_validate(raw)
     except ValidationError as error:

@@ -6,13 +6,14 @@ line is held.
 """
 
 import csv
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+from verify import files
 from verify.errors import InputError
-from verify.reference.make.reading import readable
 
 _LONGEST_LINE = 2**16
 _MOST_COLUMNS = 500
@@ -21,8 +22,8 @@ _MOST_COLUMNS = 500
 @contextmanager
 def opened(path: Path) -> Iterator["Table"]:
     """The table in a file. InputError where it is no file, or cannot be read."""
-    with readable(path), path.open(encoding="utf-8-sig", newline="") as file:
-        yield Table(file, path.name)
+    with files.opened(path) as file:
+        yield Table(io.TextIOWrapper(file, encoding="utf-8-sig", newline=""), path.name)
 
 
 class Table:

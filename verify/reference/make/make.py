@@ -9,7 +9,8 @@ from typing import Any
 
 from verify.content import content
 from verify.errors import InputError
-from verify.execution.keeping import versions, write_atomically
+from verify.execution.keeping import versions
+from verify.files import MOST_BYTES, read_text, write_atomically
 from verify.reference.make.models import (
     DATA_FORMAT,
     MANIFEST_FORMAT,
@@ -20,7 +21,6 @@ from verify.reference.make.models import (
     Run,
     SceneFile,
 )
-from verify.reference.make.reading import MOST_BYTES
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,
@@ -51,7 +51,7 @@ class SceneText:
 def load(paths: Sequence[Path]) -> list[SceneText]:
     """The scenes in TOML files. InputError for one that asks for no reference data, a name that no
     file can have, or two of one name, of which one would overwrite the other."""
-    found = [SceneText(load_scene(path), path.read_bytes().decode()) for path in paths]
+    found = [SceneText(load_scene(path), read_text(path)) for path in paths]
     for path, asked in zip(paths, found, strict=True):
         if not asked.scene.reference:
             raise InputError("SCENE", str(path), "asks for no [[reference]]")

@@ -4,7 +4,8 @@ import io
 from importlib.util import find_spec
 
 from verify.errors import InputError
-from verify.reference.make.reading import MOST_BYTES, MOST_CELLS
+from verify.files import MOST_BYTES
+from verify.reference.make.reading import MOST_CELLS
 from verify.reference.make.writing import Row
 
 

@@ -7,45 +7,14 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from verify.errors import InputError
+from verify.files import text_of
 
-MOST_BYTES = 64 * 2**20
 MOST_CELLS = 8 * 2**20  # or commas and brackets, each about an object of Python's
 _MOST_OPEN = 2**21
 _HALF = re.compile(r"(?<!\\)(?:\\\\)*\\u[dD][89a-fA-F]")  # a surrogate, which no UTF-8 text has
-
-
-@contextmanager
-def readable(path: Path) -> Iterator[None]:
-    """While a regular file is read: InputError names the file and the problem."""
-    try:
-        if not path.is_file():
-            raise InputError("file", str(path), "is not there, or is no file")
-        yield
-    except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
-
-
-def content_of(path: Path) -> bytes:
-    """A regular file's content. InputError names the file and the problem."""
-    with readable(path), path.open("rb") as file:
-        size = path.stat().st_size
-        if size > MOST_BYTES:
-            raise InputError("file", str(path), f"has {size} bytes; allowed: {MOST_BYTES}")
-        return file.read(MOST_BYTES)
-
-
-def text_of(content: bytes, name: str) -> str:
-    """The content as text. InputError where it is not UTF-8."""
-    try:
-        return content.decode()
-    except UnicodeDecodeError as error:
-        raise InputError("file", name, f"is not UTF-8 text, at byte {error.start}") from None
 
 
 def json_of(content: bytes, name: str) -> Any:

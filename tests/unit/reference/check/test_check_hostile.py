@@ -11,7 +11,7 @@ import pytest
 
 from tests.helpers.constructed.reference import changed, made, put, repaired
 from verify.errors import InputError
-from verify.execution.keeping import write_atomically
+from verify.files import write_atomically
 from verify.reference.check.check import Checked, check
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.make import alone, load

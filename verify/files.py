@@ -1,0 +1,94 @@
+"""Files as they are read and written: whole ones, regular ones, and never a part of one.
+
+What is read may be anybody's: a device, a pipe and a file beyond a limit are refused before they
+are read. What is written replaces a regular file or nothing.
+"""
+
+import os
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from verify.errors import InputError
+
+MOST_BYTES = 64 * 2**20
+MOST_TEXT = 4 * 2**20  # of what people write by hand
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[BinaryIO]:
+    """A regular file, to be read while this is open.
+
+    Raises InputError, which names it, for what is not there, is no regular file or cannot be read.
+    """
+    try:
+        # A pipe that nobody writes to would be waited for.
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+        with os.fdopen(handle, "rb") as file:
+            if not stat.S_ISREG(os.fstat(handle).st_mode):
+                raise InputError("file", str(path), "is no regular file")
+            yield file
+    except OSError as error:
+        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+
+
+def read_bytes(path: Path, most: int | None = MOST_BYTES) -> bytes:
+    """A regular file's content; `most`: how many bytes are allowed. InputError as `opened`."""
+    with opened(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        if most is not None and size > most:
+            raise InputError("file", str(path), f"has {size} bytes; allowed: {most}")
+        return file.read() if most is None else file.read(most)
+
+
+def read_text(path: Path, most: int | None = MOST_TEXT) -> str:
+    """As `read_bytes`, in UTF-8. Raises InputError where it is not."""
+    return text_of(read_bytes(path, most), str(path))
+
+
+def text_of(content: bytes, name: str) -> str:
+    """The content as text. Raises InputError where it is not UTF-8."""
+    try:
+        return content.decode()
+    except UnicodeDecodeError as error:
+        raise InputError("file", name, f"is not UTF-8 text, at byte {error.start}") from None
+
+
+def check_replaceable(path: Path) -> None:
+    """InputError where something stands there that is not ours to replace, which stays as it is."""
+    try:
+        mode = path.lstat().st_mode
+    except OSError:
+        return
+    what = "is a folder" if stat.S_ISDIR(mode) else "is no regular file, and is left as it is"
+    if not stat.S_ISREG(mode):
+        raise InputError("file", str(path), "is a link" if stat.S_ISLNK(mode) else what)
+    if not mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
+        raise InputError("file", str(path), "is read-only")
+
+
+def write_atomically(path: Path, content: str | bytes) -> None:
+    """The whole content or the old one, never a part: written beside it, then renamed.
+
+    Raises InputError where a link, a device, a pipe or a read-only file stands there, and OSError,
+    which names the file, where it cannot be written.
+    """
+    check_replaceable(path)
+    raw = content.encode() if isinstance(content, str) else content
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(raw)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException as error:
+        Path(temporary).unlink(missing_ok=True)
+        if isinstance(error, OSError):  # a full disk names no file
+            error.filename = str(path)
+        raise
