@@ -21,7 +21,7 @@ def kinds() -> list[type[Task]]:
         if module.name.rpartition(".")[2] in ("task", "tasks") or ".proofs." in module.name:
             import_module(module.name)
     return sorted(
-        (kind for kind in subclasses(Task) if not inspect.isabstract(kind)),
+        {kind for kind in subclasses(Task) if not inspect.isabstract(kind)},
         key=lambda k: k.__name__,
     )
 
