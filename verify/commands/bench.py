@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.answer import Answer, answering
 from verify.commands.input import target
-from verify.commands.output import plain_json, print_json
-from verify.commands.tasks import cluster_option, json_option
+from verify.commands.output import plain_json
+from verify.commands.tasks import cluster_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     "-o", "--output", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw it there."
 )
 @cluster_option
-@json_option
-def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -> None:
+@answering
+def bench(scene: str, output: Path | None, cluster: str | None) -> Answer:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 
     \b
@@ -40,14 +41,11 @@ def bench(scene: str, output: Path | None, cluster: str | None, as_json: bool) -
     if not asked:
         raise InputError("scene", scene, "has no [work_precision]")
     found = list(_measured(asked) if cluster is None else _measured_on_cluster(asked, cluster))
-    for name, result in found:
-        if output is not None:
+    if output is not None:
+        for name, result in found:
             several = len(found) > 1
             _draw(result, output.with_stem(f"{output.stem}-{name}") if several else output)
-        if not as_json:
-            _print_bench(name, result)
-    if as_json:
-        print_json(_bench_json(found))
+    return Answer(lambda: _bench_json(found), lambda: _print(found))
 
 
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
@@ -132,6 +130,11 @@ def _rest(result: "WorkPrecisionResult") -> dict[str, Any]:
     data = plain_json(result)
     lines = [{k: v for k, v in line.items() if k != "points"} for line in data.pop("lines")]
     return {**data, "lines": lines}
+
+
+def _print(found: "Sequence[tuple[str, WorkPrecisionResult]]") -> None:
+    for name, result in found:
+        _print_bench(name, result)
 
 
 def _print_bench(name: str, result: "WorkPrecisionResult") -> None:

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands import output as show
-from verify.commands.tasks import json_option
+from verify.commands.answer import Answer, answering
 
 if TYPE_CHECKING:
     from verify.proof.certificates.established import Established
@@ -22,22 +21,16 @@ def certificate() -> None:
 
 @certificate.command()
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
-@json_option
-def check(file: Path, as_json: bool) -> None:
+@answering
+def check(file: Path) -> Answer:
     """Check FILE with nothing but integers; exit status 1 where it proves nothing."""
     from verify.proof.certificates.file import checked
 
     found = checked(file)
     if isinstance(found, str):
-        if as_json:
-            show.print_json({"accepted": False, "reason": found})
-        else:
-            click.echo(f"refused: {found}")
-        raise SystemExit(1)
-    if as_json:
-        show.print_json({"accepted": True, **asdict(found)})
-    else:
-        _print(found)
+        refused = {"accepted": False, "reason": found}
+        return Answer(lambda: refused, lambda: click.echo(f"refused: {found}"), failed=True)
+    return Answer(lambda: {"accepted": True, **asdict(found)}, lambda: _print(found))
 
 
 def _print(found: "Established") -> None:

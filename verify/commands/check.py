@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands import output as show
-from verify.commands.input import keepable, paper_folder
-from verify.commands.tasks import progress_of, with_tasks
+from verify.commands.answer import Answer, picked
+from verify.commands.input import paper_folder
+from verify.commands.tasks import kept_tasks, with_tasks
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.results.claim import ClaimResult
 
-REFUTED = 1  # exit status
 _KEYS = ("id", "kind", "source", "statement", "verdict", "evidence")
 
 
@@ -24,9 +23,7 @@ _KEYS = ("id", "kind", "source", "statement", "verdict", "evidence")
     "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
 )
 @with_tasks
-def check(
-    claims: str, only: tuple[str, ...], keep: Path | None, where: "Placement", as_json: bool
-) -> None:
+def check(claims: str, only: tuple[str, ...], keep: Path | None, where: "Placement") -> Answer:
     """Check the claims in CLAIMS (a TOML file, or `paper`); exit status 1 where one is refuted.
 
     \b
@@ -61,20 +58,16 @@ def check(
     """
     from verify.claims.check import prepare
     from verify.claims.file import load_claims
-    from verify.execution.execute import Store
 
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)
-    if keep is not None:
-        keepable(keep)
-    with progress_of(prepared.plan.tasks, keep) as done:
-        found = prepared.run(Store(keep), where=where, done=done)
-    if as_json:
-        show.print_json({"claims": [{key: getattr(c, key) for key in _KEYS} for c in found]})
-    else:
-        _print(found)
-    if any(claim.verdict == "REFUTED" for claim in found):
-        raise SystemExit(REFUTED)
+    with kept_tasks(prepared.plan.tasks, keep) as (store, done):
+        found = prepared.run(store, where=where, done=done)
+    return Answer(
+        lambda: {"claims": [picked(claim, *_KEYS) for claim in found]},
+        lambda: _print(found),
+        failed=any(claim.verdict == "REFUTED" for claim in found),
+    )
 
 
 def _print(found: "list[ClaimResult]") -> None:

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
+from verify.commands.answer import Answer, answering, picked
 from verify.commands.input import with_hamiltonian
-from verify.commands.tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
 
-REFUTED = 1  # exit status
 _CLAIMED = click.IntRange(1, 12)
 
 
@@ -40,7 +39,7 @@ _CLAIMED = click.IntRange(1, 12)
     metavar="SECONDS",
     help="For all calls of the function.",
 )
-@json_option
+@answering
 def check_integrator(
     target: str,
     exact: "Hamiltonian",
@@ -51,8 +50,7 @@ def check_integrator(
     area_preserving: bool,
     area_order: int | None,
     time_limit: float,
-    as_json: bool,
-) -> None:
+) -> Answer:
     """Check a Python function step(p, q, h) → (p', q') of your own: its order and that of ΔJ.
 
     THIS RUNS YOUR CODE, which no other command does: MODULE is imported, from the current folder
@@ -80,13 +78,12 @@ def check_integrator(
     claims = Claims(order, area_order, area_preserving)
     found = check(step, exact, claims, start).noting(*notes)
     seconds = f"{time.perf_counter() - begun:.6f}"
-    if as_json:
-        show.print_json(_json(exact, target, found, seconds))
-    else:
-        _print(exact, target, found)
     claimed = claims != Claims()
-    if found.verdict.value == "REFUTED" or (claimed and not found.verdict.holds):
-        raise SystemExit(REFUTED)
+    return Answer(
+        lambda: _json(exact, target, found, seconds),
+        lambda: _print(exact, target, found),
+        failed=found.verdict.value == "REFUTED" or (claimed and not found.verdict.holds),
+    )
 
 
 def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> dict[str, Any]:
@@ -97,15 +94,10 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
     witness = found.proof.witness if found.proof else {}
     example = found.counterexample
     return {
-        "verdict": found.verdict.value,
-        "reason": found.reason,
+        **picked(found, "verdict", "reason"),
         **exact.texts,
         "integrator": target,
-        "how": found.how,
-        "order": found.order,
-        "leading": found.leading,
-        "delta_j": found.delta_j,
-        "area_preserving": found.area_preserving,
+        **picked(found, "how", "order", "leading", "delta_j", "area_preserving"),
         "convergence_order": found.convergence_order,
         "convergence_order_known": found.order_decided,
         "witness": {name: text(value) for name, value in witness.items()},
@@ -114,15 +106,10 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
         "delta_j_max": None if found.largest is None else f"{found.largest:.6e}",
         "probe_error": None if found.probe_error is None else f"{found.probe_error:.1e}",
         "counterexample": example and {
-            "p": text(example.p),
-            "q": text(example.q),
-            "h": text(example.h),
-            "quantity": example.quantity,
-            "found": example.found,
-            "expected": example.expected,
+            **{name: text(value) for name, value in picked(example, "p", "q", "h").items()},
+            **picked(example, "quantity", "found", "expected"),
         },
-        "faults": list(found.faults),
-        "notes": list(found.notes),
+        **picked(found, "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 

@@ -6,17 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output as show
+from verify.commands.answer import Answer
 from verify.commands.hunt import STEPS, hunt
-from verify.commands.input import keepable, writable_later
-from verify.commands.tasks import progress_of, with_tasks
+from verify.commands.input import writable_later
+from verify.commands.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.results.exploration import ExploreReport
 
-FAILED = 1  # exit status
 _SEEDS = 2**32
 
 
@@ -68,8 +67,7 @@ def explore(
     output: Path,
     keep: Path | None,
     where: "Placement",
-    as_json: bool,
-) -> None:
+) -> Answer:
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
 
     A scene is a Hamiltonian, a scheme, a step size, an initial value and some steps. Scene K of
@@ -90,7 +88,6 @@ def explore(
     """
     import random
 
-    from verify.execution.execute import Store
     from verify.exploration.explore import Exploration, explore, load_failures, save_failures
     from verify.exploration.sample_space import SampleSpace
 
@@ -101,30 +98,25 @@ def explore(
         if claims or names:
             raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
         steps = STEPS if steps is None else steps
-        hunt(maximise, seed, examples, steps, drawn, output, keep, where, as_json)
-        return
+        return hunt(maximise, seed, examples, steps, drawn, output, keep, where)
     if steps is not None:
         raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
     asked = Exploration(seed=seed, examples=examples, **looks, drawn=drawn)
     writable_later(output)
-    if keep is not None:
-        keepable(keep)
     earlier = load_failures(output) if output.is_dir() else []
-    with progress_of(asked.plan.tasks, keep) as done:
-        report = explore(asked, Store(keep), where=where, done=done, earlier=earlier)
+    with kept_tasks(asked.plan.tasks, keep) as (store, done):
+        report = explore(asked, store, where=where, done=done, earlier=earlier)
     unwritten, written = None, [""] * len(report.failures)
     try:
         written = [str(path) for path in save_failures(report, output)]
     except OSError as error:  # what was found is told all the same
         unwritten = InputError("--output", str(output), error.strerror or "cannot be written to")
-    if as_json:
-        show.print_json(_as_json(report, written, left_out))
-    else:
-        _print(report, written, left_out)
-    if unwritten is not None:
-        raise unwritten
-    if report.failures or any(each.message for each in report.again):
-        raise SystemExit(FAILED)
+    return Answer(
+        lambda: _as_json(report, written, left_out),
+        lambda: _print(report, written, left_out),
+        failed=bool(report.failures) or any(each.message for each in report.again),
+        problem=unwritten,
+    )
 
 
 def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[str]]]:

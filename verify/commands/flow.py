@@ -1,5 +1,6 @@
 """The command `verify flow`: regions carried by maps, and their areas."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -7,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.arithmetic.exact import short
-from verify.commands import output as show
+from verify.commands.answer import Answer
 from verify.commands.input import target
 from verify.commands.tasks import perform, with_tasks
 from verify.errors import InputError
@@ -16,13 +17,11 @@ if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.results.regions import FlowImage, FlowResult
 
-NO_RESULT = 1  # exit status
-
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
 @with_tasks
-def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> None:
+def flow(scene: str, keep: Path | None, where: "Placement") -> Answer:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
     SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
@@ -46,16 +45,19 @@ def flow(scene: str, keep: Path | None, where: "Placement", as_json: bool) -> No
         raise InputError("SCENE", scene, "asks for no [[flow]]")
     results = perform(plan, keep, where)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
-    if as_json:
-        show.print_json(flow_json(found))
-    else:
-        for name, result in found:
-            _print(name, result)
-    if any(image.problem for _, flow in found for image in flow.images):
-        raise SystemExit(NO_RESULT)
+    return Answer(
+        lambda: flow_json(found),
+        lambda: _print(found),
+        failed=any(image.problem for _, flow in found for image in flow.images),
+    )
 
 
-def _print(name: str, result: "FlowResult") -> None:
+def _print(found: "Sequence[tuple[str, FlowResult]]") -> None:
+    for name, result in found:
+        _print_flow(name, result)
+
+
+def _print_flow(name: str, result: "FlowResult") -> None:
     q, p = result.centre
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
     where = f"{result.shape} at (q, p) = ({q}, {p}), scale {short(Fraction(result.scale))}"

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands import output as show
-from verify.commands.input import keepable, writable
-from verify.commands.tasks import progress_of
+from verify.commands.answer import Answer
+from verify.commands.input import writable
+from verify.commands.tasks import kept_tasks
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
@@ -31,31 +32,26 @@ def hunt(
     output: Path,
     keep: Path | None,
     where: "Placement",
-    as_json: bool,
-) -> None:
-    """Hunts, writes the worst scenes and the page that shows them, and tells what was found."""
+) -> Answer:
+    """Hunts, writes the worst scenes and the page that shows them, and answers what was found."""
     from verify.claims.report import gallery_report
-    from verify.execution.execute import Store
     from verify.exploration.gallery import gallery
     from verify.exploration.hunting import Hunt, hunt
     from verify.pages.page import write
 
     asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
     writable(output)
-    if keep is not None:
-        keepable(keep)
-    store, begun, tasks = Store(keep), time.perf_counter(), asked.plan.tasks
-    with progress_of(tasks, keep) as done:
+    begun, tasks = time.perf_counter(), asked.plan.tasks
+    with kept_tasks(tasks, keep) as (store, done):
         found = hunt(asked, store, where=where, done=done)
     shown = gallery(asked, found, store, where=where)
     _keep_scenes(shown, output)
     report = gallery_report(shown, _command(asked), begun, store.taken, len(tasks), where)
     page = write(report, output)
-    if as_json:
-        show.print_json({"examples": shown.examples, "failures": [], "seed": seed}
-                        | {"gallery": show.plain_json(shown)})  # fmt: skip
-    else:
-        _print(shown, output, page)
+    told = {"examples": shown.examples, "failures": [], "seed": seed}
+    return Answer(
+        lambda: told | {"gallery": show.plain_json(shown)}, lambda: _print(shown, output, page)
+    )
 
 
 def _command(asked: "Hunt") -> str:

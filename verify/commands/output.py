@@ -1,11 +1,11 @@
-"""What the command line prints: JSON objects with decimal strings, and short texts for people."""
+"""Results as commands tell them: JSON objects with decimal strings, short texts for people."""
 
-import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+
+from verify.commands.answer import picked
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -41,11 +41,6 @@ _PARTS = {
 }
 
 
-def print_json(data: dict[str, Any]) -> None:
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-    click.echo(json.dumps(data, ensure_ascii=encoding.lower().replace("-", "") != "utf8"))
-
-
 def cut(formula: str) -> str:
     """A formula as it is, or its beginning where it is long: the JSON has all of it."""
     if len(formula) <= _LONGEST:
@@ -60,15 +55,13 @@ def proof_json(
     from verify.arithmetic.exact import text
 
     return {
-        "verdict": proof.verdict.value,
-        "reason": proof.reason,
+        **picked(proof, "verdict", "reason"),
         **exact.texts,
         "scheme": scheme,
         "order": proof.order,
         "leading": proof.first.text,
         "delta_j": proof.step_map.delta_j_text,
-        "area_preserving": proof.area_preserving,
-        "convergence_order": proof.convergence_order,
+        **picked(proof, "area_preserving", "convergence_order"),
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": potential.holds,
         "potential": potential.text,
@@ -107,16 +100,10 @@ def run_json(result: "RunResult") -> dict[str, Any]:
     values = {name: result.values.get(name) for name in _LABELS}
     return {
         **{name: value.value if value else None for name, value in values.items()},
-        "steps": result.steps,
-        "digits": result.digits,
-        "arithmetic": result.arithmetic,
-        "fallback": result.fallback,
+        **picked(result, "steps", "digits", "arithmetic", "fallback"),
         "error_bound": {name: value.bound for name, value in values.items() if value},
-        "error_kind": result.error_kind,
-        "error_method": result.error_method,
-        "exact": list(result.exact),  # what a proof gave, and no run
-        "status": result.status,
-        "failed_step": result.failed_step,
+        # `exact`: what a proof gave, and no run.
+        **picked(result, "error_kind", "error_method", "exact", "status", "failed_step"),
         "seconds": f"{result.seconds:.6f}",
     }
 
@@ -164,15 +151,9 @@ def _separated(point: "SeparationResult") -> dict[str, Any]:
     return {
         **_evaluated(point.plain),
         "closed_form": _evaluated(point.closed_form),
-        "step_size": point.step_size,
-        "steps": point.steps,
-        "digits": point.digits,
+        **picked(point, "step_size", "steps", "digits"),
         "working_arithmetic": "float64",
-        "arithmetic": point.arithmetic,
-        "error_method": point.error_method,
-        "status": point.status,
-        "failed_step": point.failed_step,
-        "reason": point.reason,
+        **picked(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
         "seconds": f"{point.seconds:.6f}",
     }
 

@@ -5,17 +5,16 @@ from typing import Any
 
 import click
 
-from verify.commands import output as show
+from verify.commands.answer import Answer, answering
 from verify.commands.input import target
-from verify.commands.tasks import json_option
 
 Task = Mapping[str, Any]  # as JSON has it
 
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
-@json_option
-def plan(scene: str, as_json: bool) -> None:
+@answering
+def plan(scene: str) -> Answer:
     """Show what SCENE needs computed, what is left out, and why.
 
     SCENE is a TOML file, `paper`, `stiff` or `extreme`.
@@ -24,10 +23,7 @@ def plan(scene: str, as_json: bool) -> None:
 
     _, scenes, _ = target(scene)
     planned = plan_scenes(scenes).as_json()
-    if as_json:
-        show.print_json(planned)
-    else:
-        _print(planned)
+    return Answer(lambda: planned, lambda: _print(planned))
 
 
 def _print(planned: dict[str, Any]) -> None:

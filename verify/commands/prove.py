@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
+from verify.commands.answer import Answer, answering, picked
 from verify.commands.input import hamiltonian_of, hamiltonian_options, scheme_option
 from verify.commands.output import cut
-from verify.commands.tasks import json_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _WIDTH = 88
 @click.command()
 @hamiltonian_options
 @scheme_option
-@json_option
+@answering
 @click.option(
     "--every-hamiltonian",
     is_flag=True,
@@ -47,11 +47,10 @@ def prove(
     hamiltonian: str | None,
     params: tuple[str, ...],
     scheme: str,
-    as_json: bool,
     every_hamiltonian: bool,
     separable: bool,
     certificate: Path | None,
-) -> None:
+) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
     A parameter without a value stays a symbol, and the proof holds for all its values.
@@ -63,8 +62,7 @@ def prove(
     if not every_hamiltonian:
         if separable:
             raise InputError("--separable", "", "goes with --every-hamiltonian")
-        _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, as_json, certificate)
-        return
+        return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
     if system is not None or hamiltonian is not None or params:
         raise InputError("--every-hamiltonian", "", "goes without --system, --hamiltonian, --param")
     from verify.proof.every import prove_every
@@ -76,14 +74,14 @@ def prove(
         from verify.proof.certificates.every import of_every
 
         _write(of_every(proof), certificate)
-    if as_json:
-        show.print_json(_every_json(proof, seconds))
-    else:
-        _print_every(proof)
-    _end_with(proof.verdict)
+    return Answer(
+        lambda: _every_json(proof, seconds),
+        lambda: _print_every(proof),
+        failed=proof.verdict == "REFUTED",
+    )
 
 
-def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Path | None) -> None:
+def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
     from verify.proof.order import prove as prove_order
     from verify.proof.potential import potential_of
     from verify.schemes import get
@@ -95,17 +93,11 @@ def _prove_one(exact: "Hamiltonian", scheme: str, as_json: bool, certificate: Pa
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
         _write(_certificate(proof, potential, chosen), certificate)
-    if as_json:
-        show.print_json(show.proof_json(exact, chosen.name, proof, potential, seconds))
-    else:
-        show.print_proof(exact, chosen.name, proof, potential)
-    _end_with(proof.verdict)
-
-
-def _end_with(verdict: str) -> None:
-    """Exit status 1 where what the scheme claims is refuted."""
-    if verdict == "REFUTED":
-        raise SystemExit(1)
+    return Answer(
+        lambda: show.proof_json(exact, chosen.name, proof, potential, seconds),
+        lambda: show.print_proof(exact, chosen.name, proof, potential),
+        failed=proof.verdict == "REFUTED",
+    )
 
 
 def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> dict[str, Any]:
@@ -141,20 +133,13 @@ def _write(data: dict[str, Any], path: Path) -> None:
 
 def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
     return {
-        "verdict": proof.verdict.value,
-        "reason": proof.reason,
+        **picked(proof, "verdict", "reason"),
         "hamiltonian": proof.quantifier,
-        "scheme": proof.scheme,
-        "order": proof.order,
-        "leading": proof.leading,
+        **picked(proof, "scheme", "order", "leading"),
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
-        "area_preserving": proof.area_preserving,
-        "convergence_order": proof.convergence_order,
-        "telescopes": proof.telescopes,
-        "potential": proof.potential,
-        "why": proof.why,
-        "checked": list(proof.checked),
+        **picked(proof, "area_preserving", "convergence_order", "telescopes", "potential"),
+        **picked(proof, "why", "checked"),
         "conditions": [asdict(condition) for condition in proof.conditions],
         "seconds": seconds,
     }

@@ -6,17 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output as show
+from verify.commands.answer import Answer, answering, picked
 from verify.commands.input import writable
 from verify.commands.reference_compare import compare
-from verify.commands.tasks import json_option, perform, with_placement, with_tasks
+from verify.commands.tasks import perform, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.reference.check.check import Checked
 
-DIFFERENT = 1  # exit status
 _SHARE = 0.05
 _MOST_STEPS = 10**6  # a minute or two
 
@@ -40,8 +39,7 @@ def make(
     parquet: bool,
     keep: Path | None,
     where: "Placement",
-    as_json: bool,
-) -> None:
+) -> Answer:
     """Make the reference data that SCENE asks for, in DIR; without SCENE, the committed set.
 
     SCENE is a TOML file with [[reference]] sections. The same scene gives the same bytes, however
@@ -72,11 +70,11 @@ def make(
     making.write(folder, files, manifest)
     rows = sum(each.count for each in data)
     size = sum(map(len, files.values()))
-    if as_json:
-        found: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}
-        show.print_json(found | {"files": [x.model_dump(mode="json") for x in manifest.files]})
-    else:
-        click.echo(f"{rows:,} rows in {len(files)} files, {size:,} bytes → {folder}")
+    told: dict[str, Any] = {"directory": str(folder), "rows": rows, "bytes": size}
+    return Answer(
+        lambda: told | {"files": [x.model_dump(mode="json") for x in manifest.files]},
+        lambda: click.echo(f"{rows:,} rows in {len(files)} files, {size:,} bytes → {folder}"),
+    )
 
 
 @reference.command()
@@ -91,7 +89,7 @@ def make(
 )
 @click.option("--seed", type=click.IntRange(0), help="Of the random sample; without it, any.")
 @with_placement
-@json_option
+@answering
 def check(
     folder: Path | None,
     share: float,
@@ -99,8 +97,7 @@ def check(
     most_steps: int | None,
     seed: int | None,
     where: "Placement",
-    as_json: bool,
-) -> None:
+) -> Answer:
     """Check the reference data in DIR; without it, the committed set.
 
     Hashes, sizes, schemas, each form against the other, how every number is printed, and a random
@@ -138,24 +135,15 @@ def check(
             where=where,
             done=done,
         )
-    if as_json:
-        show.print_json(_as_json(found))
-    else:
-        _print(found)
-    if found.differences:
-        raise SystemExit(DIFFERENT)
+    return Answer(lambda: _as_json(found), lambda: _print(found), failed=bool(found.differences))
 
 
 def _as_json(found: "Checked") -> dict[str, Any]:
     return {
         "agrees": not found.differences,
-        "files": found.files,
-        "rows": found.rows,
-        "recomputed": found.recomputed,
-        "seed": found.seed,
+        **picked(found, "files", "rows", "recomputed", "seed"),
         "differences": [x.as_json() for x in found.differences],
-        "not_recomputed": found.not_recomputed,
-        "not_compared": found.not_compared,
+        **picked(found, "not_recomputed", "not_compared"),
     }
 
 

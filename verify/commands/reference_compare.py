@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output as show
-from verify.commands.tasks import json_option
+from verify.commands.answer import Answer, answering, picked
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from verify.reference.compare.compare import Column, Compared, Explained, Separated
     from verify.reference.compare.submitted import Theirs
 
-DIFFERENT = 1  # exit status
 _MOST_SHOWN = 5
 _MOST_NAMED = 4  # mistakes of which one fits
 _SHOWN = {"lambda": "Λ", "delta_j": "ΔJ", "mse": "MSE"}
@@ -50,15 +48,14 @@ _KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 @click.option("--p", "p0", metavar="X", help="Their initial p.")
 @click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
               help="What the table calls a column, such as q=position; repeatable.")  # fmt: skip
-@json_option
+@answering
 def compare(
     theirs: Path,
     data: Path | None,
     scene: str | None,
     columns: tuple[str, ...],
-    as_json: bool,
     **given: str | None,
-) -> None:
+) -> Answer:
     """Compare the numbers in THEIRS.csv, somebody's own, with the reference data.
 
     THEIRS.csv has a header line; columns step (or time), some of p, q, delta_j, mse and lambda, and
@@ -81,12 +78,9 @@ def compare(
     table = read(theirs, ours, said, _names(columns))
     with progress_bar("compared", len(table.runs), unit="run") as advance:
         found = compared(ours, table, lambda *_: advance(1))
-    if as_json:
-        show.print_json(_as_json(table, found))
-    else:
-        _print(table, found)
-    if not found.agrees:
-        raise SystemExit(DIFFERENT)
+    return Answer(
+        lambda: _as_json(table, found), lambda: _print(table, found), failed=not found.agrees
+    )
 
 
 def _names(columns: tuple[str, ...]) -> dict[str, str]:
@@ -106,12 +100,9 @@ def _names(columns: tuple[str, ...]) -> dict[str, str]:
 
 def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
     return {
-        "agrees": found.agrees,
-        "rows": found.rows,
-        "runs": found.runs,
+        **picked(found, "agrees", "rows", "runs"),
         "rows_read": table.rows,
-        "other_steps": table.other_steps,
-        "outside": table.outside,
+        **picked(table, "other_steps", "outside"),
         "first_outside": table.first_outside or None,
         "ignored_columns": list(table.ignored),
         "columns": [
@@ -120,8 +111,7 @@ def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
                 "verdict": _KEYS[x.verdict],
                 "rows": x.rows,
                 "digits": None if math.isinf(x.digits) else f"{x.digits:.1f}",
-                "run": x.run,
-                "step": x.step,
+                **picked(x, "run", "step"),
                 "parts_in": x.parts_run,
                 "parts_at": x.parts_at,
             }
@@ -135,9 +125,7 @@ def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
             }
             for x in found.diagnoses
         ],
-        "unexplained": found.unexplained,
-        "lost": found.lost,
-        "overflows": found.overflows,
+        **picked(found, "unexplained", "lost", "overflows"),
         "separation": found.separated and _separation_json(found.separated),
     }
 

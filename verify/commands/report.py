@@ -1,14 +1,16 @@
 """The command `verify report`: a page, and the same results as JSON beside it."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from verify.commands import output as show
+from verify.commands.answer import Answer, answering
 from verify.commands.input import keepable, target, writable
-from verify.commands.tasks import json_option, progress_of, with_placement
+from verify.commands.tasks import kept_tasks, with_placement
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,10 +33,8 @@ _INTEGRATORS = "integrators"
     "repository; given twice, both.",
 )
 @with_placement
-@json_option
-def report(
-    scene: str, output: Path | None, formats: tuple[str, ...], where: "Placement", as_json: bool
-) -> None:
+@answering
+def report(scene: str, output: Path | None, formats: tuple[str, ...], where: "Placement") -> Answer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
     SCENE is a TOML file, `paper`, `stiff`, `extreme` or `integrators`.
@@ -48,10 +48,7 @@ def report(
     asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
     folder, made = (_integrators if scene == _INTEGRATORS else _scene)(scene, output, asked, where)
     written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
-    if as_json:
-        show.print_json(made.model_dump(mode="json"))
-    else:
-        show.print_report(made, *written)
+    return Answer(lambda: made.model_dump(mode="json"), lambda: show.print_report(made, *written))
 
 
 def _scene(
@@ -59,7 +56,6 @@ def _scene(
 ) -> "tuple[Path, Report]":
     from verify.claims.plan import add_claims
     from verify.claims.report import make_report
-    from verify.execution.execute import Store
     from verify.studies.plan import plan_scenes
 
     title, scenes, file = target(scene)
@@ -68,12 +64,12 @@ def _scene(
     keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
-    with progress_of(planned.tasks, folder / "kept") as done:
+    with kept_tasks(planned.tasks, folder / "kept", "--output") as (store, done):
         made = make_report(
             title,
             scenes,
             claims,
-            Store(folder / "kept"),
+            store,
             command=f"verify report {scene} -o {folder.name}{asked}",
             claim_scenes=claim_scenes,
             figures=file.figures if file else (),
@@ -104,12 +100,10 @@ def _tell(name: str) -> None:
         click.echo(f"{name} …", err=True)
 
 
-def _writer(name: str) -> Any:
+def _writer(name: str) -> "Callable[[Report, Path], Path]":
     """What writes a report in that format; only what is asked for is imported."""
     if name == "md":
-        from verify.pages.markdown.page import write as write_markdown
-
-        return write_markdown
-    from verify.pages.page import write as write_page
-
-    return write_page
+        from verify.pages.markdown.page import write
+    else:
+        from verify.pages.page import write
+    return write

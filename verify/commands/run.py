@@ -7,8 +7,8 @@ import click
 
 from verify import arithmetic as number_systems
 from verify.commands import output as show
+from verify.commands.answer import Answer, answering
 from verify.commands.input import keepable, scheme_option, with_hamiltonian
-from verify.commands.tasks import json_option
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @click.command()
 @with_hamiltonian
 @scheme_option
-@json_option
+@answering
 @click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
 @click.option("--steps", required=True, type=int, metavar="N", help="At least 1.")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 def run(
     exact: "Hamiltonian",
     scheme: str,
-    as_json: bool,
     step_size: str,
     steps: int,
     q: str,
@@ -45,7 +44,7 @@ def run(
     digits: int | None,
     arithmetic: str | None,
     keep: Path | None,
-) -> None:
+) -> Answer:
     """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
 
     With --keep, an interruption costs at most some seconds of work.
@@ -76,9 +75,8 @@ def run(
             keeper=keeper,
         )
     keeper.clear()
-    if as_json:
-        show.print_json(show.run_json(result))
-    else:
-        show.print_run(result)
-    if result.status != "finished":
-        raise SystemExit(1)
+    return Answer(
+        lambda: show.run_json(result),
+        lambda: show.print_run(result),
+        failed=result.status != "finished",
+    )

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands import output as show
+from verify.commands.answer import Answer, answering
 from verify.commands.input import scheme_option, with_hamiltonian
-from verify.commands.tasks import json_option
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 @click.command()
 @with_hamiltonian
 @scheme_option
-@json_option
+@answering
 @click.option(
     "--step-size",
     "step_sizes",
@@ -33,12 +33,8 @@ if TYPE_CHECKING:
     "--arithmetic", default="auto", help="What stands for exact: auto, or a number system of run."
 )
 def separate(
-    exact: "Hamiltonian",
-    scheme: str,
-    as_json: bool,
-    step_sizes: tuple[str, ...],
-    **options: Any,
-) -> None:
+    exact: "Hamiltonian", scheme: str, step_sizes: tuple[str, ...], **options: Any
+) -> Answer:
     """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
 
     With several step sizes also the one below which rounding is the larger part.
@@ -49,7 +45,4 @@ def separate(
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)
-    if as_json:
-        show.print_json(show.separation_json(result))
-    else:
-        show.print_separation(result)
+    return Answer(lambda: show.separation_json(result), lambda: show.print_separation(result))

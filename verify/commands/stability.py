@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands import output as show
+from verify.commands.answer import Answer
 from verify.commands.input import target
 from verify.commands.tasks import perform, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.scenes.scene import Scene
     from verify.studies.stability.findings import StabilityFindings
+    from verify.studies.stability.linear import LinearStability
 
 _PLAIN = ("stable", "drifts")  # verdicts that say all there is
 _WIDTH, _IN = 100, " " * 6
@@ -31,8 +31,7 @@ def stability(
     scheme: str | None,
     keep: Path | None,
     where: "Placement",
-    as_json: bool,
-) -> None:
+) -> Answer:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
 
     stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow.
@@ -47,32 +46,26 @@ def stability(
             raise InputError("SCENE", scene, "does not go with --linear")
         if scheme is None:
             raise InputError("--scheme", "", "is missing")
-        _linear(scheme, as_json)
-        return
+        return _linear(scheme)
     if scene is None:
         raise InputError("SCENE", "", "is missing; or give --linear --scheme NAME")
     if scheme is not None:
         raise InputError("--scheme", scheme, "goes with --linear; a scene names its own schemes")
-    _of_scenes(scene, target(scene)[1], keep, where, as_json)
+    return _of_scenes(scene, keep, where)
 
 
-def _of_scenes(
-    given: str, scenes: "list[Scene]", keep: Path | None, where: "Placement", as_json: bool
-) -> None:
+def _of_scenes(scene: str, keep: Path | None, where: "Placement") -> Answer:
     from verify.execution.study import plan_of
     from verify.studies.stability.findings import findings_of
     from verify.studies.stability.plan import need_stability
 
+    scenes = target(scene)[1]
     plan = plan_of(scenes, need_stability)
     if not plan.tasks:
         problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
-        raise InputError("SCENE", given, problem)
-    results = perform(plan, keep, where)
-    found = findings_of(scenes, results)
-    if as_json:
-        show.print_json(found.as_json())
-    else:
-        _print(found)
+        raise InputError("SCENE", scene, problem)
+    found = findings_of(scenes, perform(plan, keep, where))
+    return Answer(found.as_json, lambda: _print(found))
 
 
 def _print(found: "StabilityFindings") -> None:
@@ -91,25 +84,25 @@ def _print(found: "StabilityFindings") -> None:
         click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
 
 
-def _linear(scheme: str, as_json: bool) -> None:
+def _linear(scheme: str) -> Answer:
     from verify.algebra.formula import to_text
     from verify.studies.stability.linear import linear_stability
 
     found = linear_stability(scheme)
-    if as_json:
-        show.print_json(
-            {
-                "scheme": found.scheme,
-                "interval": found.decimal(),
-                "interval_exact": found.exact,
-                "delta_j": to_text(found.delta_j),
-            }
-        )
-        return
+    data = {
+        "scheme": found.scheme,
+        "interval": found.decimal(),
+        "interval_exact": found.exact,
+        "delta_j": to_text(found.delta_j),
+    }
+    return Answer(lambda: data, lambda: _print_linear(found, data["delta_j"]))
+
+
+def _print_linear(found: "LinearStability", delta_j: str) -> None:
     shown = f"for 0 < hω < {found.decimal(12)}"
     if found.interval.is_infinite or found.interval == 0:
         shown = "for every hω > 0" if found.interval else "for no hω > 0"
     click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
     if found.interval.is_finite and not found.interval.is_rational:
         click.echo(f"  exactly  {found.exact}")
-    click.echo(f"  ΔJ       {to_text(found.delta_j)}, y = hω")
+    click.echo(f"  ΔJ       {delta_j}, y = hω")

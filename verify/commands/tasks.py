@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.answer import answering
 from verify.commands.input import keepable
 
 if TYPE_CHECKING:
-    from verify.execution.execute import OnResult
+    from verify.execution.execute import OnResult, Store
     from verify.execution.executors import Placement
     from verify.execution.plan import Plan
     from verify.execution.task import Task
@@ -31,9 +32,6 @@ cluster_option = click.option(
     metavar="ADDRESS",
     help="Run them on the Dask cluster whose scheduler is there, tcp://HOST:PORT.",
 )
-json_option = click.option(
-    "--json", "as_json", is_flag=True, help="One JSON object on standard output."
-)
 
 
 def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -50,25 +48,31 @@ def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
     """The command with --keep, --workers, --cluster and --json."""
-    return keep_option(with_placement(json_option(command)))
+    return keep_option(with_placement(answering(command)))
 
 
 def perform(plan: "Plan", keep: Path | None, where: "Placement") -> "dict[str, Frozen]":
     """Does the plan's tasks, with their progress shown, and gives their results by key."""
-    from verify.execution.execute import Store, execute
+    from verify.execution.execute import execute
 
-    if keep is not None:
-        keepable(keep)
-    with progress_of(plan.tasks, keep) as done:
-        return execute(plan, Store(keep), where=where, done=done)
+    with kept_tasks(plan.tasks, keep) as (store, done):
+        return execute(plan, store, where=where, done=done)
 
 
 @contextmanager
-def progress_of(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[OnResult]":
-    """Yields what is called with each finished task; an interruption says what is kept where."""
+def kept_tasks(
+    tasks: "Mapping[str, Task]", keep: Path | None, option: str = "--keep"
+) -> "Iterator[tuple[Store, OnResult]]":
+    """Yields where results are kept and what is called with each of the tasks that is finished.
+
+    Their progress is shown; an interruption says what is kept where.
+    """
     from verify.commands.progress import progress_bar
     from verify.execution.execute import Store
 
+    if keep is not None:
+        keepable(keep, option)
+    store = Store(keep)
     with progress_bar(
         f"{len(tasks)} tasks", sum(task.cost for task in tasks.values()), unit=""
     ) as advance:
@@ -77,11 +81,11 @@ def progress_of(tasks: "Mapping[str, Task]", kept: Path | None) -> "Iterator[OnR
             advance(tasks[name].cost)
 
         try:
-            yield done
+            yield store, done
         except KeyboardInterrupt:
-            if kept is not None:
-                paths = map(Store(kept).path, tasks)  # one may be written and not yet told
+            if keep is not None:
+                paths = map(store.path, tasks)  # one may be written and not yet told
                 finished = sum(path is not None and path.exists() for path in paths)
-                text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {kept}"
+                text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {keep}"
                 click.echo(f"{text}; the same command goes on from there", err=True)
             raise
