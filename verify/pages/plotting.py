@@ -106,7 +106,7 @@ def plot_work_precision(found: WorkPrecisionResult) -> Figure:
 
 def plot_stability(over: StabilityMapResult) -> Figure:
     """Verdicts in the plane of step size and stiffness."""
-    return _figure(lambda: stability_figure.draw_plane(stability_figure.plane_of(over)))
+    return _figure(lambda: stability_figure.draw_plane(over))
 
 
 def plot_flow(flow: FlowResult) -> Figure:

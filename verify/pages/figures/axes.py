@@ -14,6 +14,9 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ((), (5, 2), (1.5, 1.5), (6, 2, 1.5, 2), (9, 2), (3, 2), (5, 1.5, 1, 1.5, 1, 1.5), (2, 3))
 MOST_STYLES = len(SERIES)
 
+Mark = tuple[float, str]
+"""An x, and what stands beside the line there."""
+
 _LABEL_GAP, _LETTER = 0.03, 0.025  # of the axis: room between tick labels, and for a letter
 _LINE = 0.075  # of the axes: the height of one line of text
 _FAINT = {"color": INK, "alpha": 0.15, "linewidth": 0.6}
@@ -119,7 +122,7 @@ def offset_ticks(axis: Any, low: float, high: float, *, around_one: bool = False
     axis.set_major_formatter(FuncFormatter(shown))
 
 
-def mark_places(axes: Any, places: Sequence[tuple[float, str]], room: float) -> None:
+def mark_places(axes: Any, places: Sequence[Mark], room: float) -> None:
     """A dashed vertical line at each x, its label on a line of its own above all points.
 
     `places`: from left to right, so that no line runs through another's label. `room`: what a label

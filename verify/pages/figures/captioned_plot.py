@@ -1,13 +1,17 @@
 """A picture with its caption, and what captions say in the same words."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
 from verify.pages.text.typography import is_decimal, number, whole
 from verify.scenes.results.run import RunResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MOST_SHOWN = 4  # significant digits of a number in a caption
 
@@ -23,6 +27,25 @@ class Plot:
     lead: str
     caption: str
     wide: bool = False
+
+
+def plotted(
+    draw: "Callable[[], Figure]",
+    *,
+    name: str,
+    lead: str,
+    caption: str,
+    label: str = "",
+    wide: bool = False,
+) -> Plot:
+    """What `draw` draws, under the lead as a sentence; `label`: its text alternative if another.
+
+    `name` prefixes every id in the SVG, so it must be unique on the page.
+    """
+    from verify.pages.figures.svg import drawing
+
+    svg = drawing(draw, name=name, label=label or f"{lead}.")
+    return Plot(svg, f"{lead}.", caption, wide)
 
 
 def computed(runs: Sequence[RunResult]) -> str:

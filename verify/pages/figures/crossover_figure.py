@@ -1,30 +1,20 @@
 """Truncation and rounding in Λ against the step size, with the crossovers marked, as inline SVG."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import isfinite
 
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from verify.pages.figures.axes import decades, grid_lines, line_style, mark_places
-from verify.pages.figures.figures import Line, canvas, plot_line
+from verify.pages.figures.axes import Mark, decades, grid_lines, line_style, mark_places
+from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
+from verify.pages.figures.notebook_figure import canvas
 from verify.pages.figures.separation_caption import WAYS, short, ways_of
-from verify.pages.figures.svg import drawing
 from verify.pages.text.typography import NBSP
 from verify.scenes.results.separation import SeparationGrid
 
 _HEIGHT = 350
 _ROOM = 0.45  # of the axes: what a mark's label takes
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A crossover: its step size and the text beside its line."""
-
-    step_size: str
-    label: str
 
 
 def line(label: str, points: Sequence[tuple[str, str]]) -> Line:
@@ -37,26 +27,20 @@ def contents(grid: SeparationGrid) -> tuple[list[Line], list[Mark]]:
     """The lines of two points and more, and the crossovers that were found."""
     lines = [line(label, points) for label, points in ways_of(grid)]
     marks = [
-        Mark(found.step_size, f"h* ≈{NBSP}{short(found.step_size)}, {of}")
+        (lg(found.step_size), f"h* ≈{NBSP}{short(found.step_size)}, {of}")
         for way, of in WAYS.items()
         if (found := getattr(grid, way)).step_size is not None
     ]
     return [each for each in lines if len(each.points) > 1], marks
 
 
-def truncation_against_rounding(
-    plotted: Sequence[Line], marks: Sequence[Mark], *, name: str, label: str
-) -> Markup:
-    """The lines on logarithmic axes; a dashed vertical line, labelled above them, for each mark."""
-    return drawing(lambda: draw_truncation_against_rounding(plotted, marks), name=name, label=label)
-
-
 def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Mark]) -> Figure:
+    """The lines on logarithmic axes; a dashed vertical line, labelled above them, for each mark."""
     figure, axes = canvas(_HEIGHT)
     for index, each in enumerate(plotted):
         plot_line(axes, each, line_style(index, len(plotted)))
     axes.margins(x=0.05, y=0.06)
-    mark_places(axes, sorted((lg(mark.step_size), mark.label) for mark in marks), _ROOM)
+    mark_places(axes, sorted(marks), _ROOM)
     grid_lines(axes)
     decades(axes.xaxis, most=7)
     decades(axes.yaxis)

@@ -10,7 +10,6 @@ from fractions import Fraction
 from math import isfinite
 from typing import Any
 
-from markupsafe import Markup
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
@@ -25,14 +24,12 @@ from verify.pages.figures.axes import (
     whole_numbers,
 )
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawing
+from verify.pages.figures.notebook_figure import canvas, sheet
+from verify.pages.figures.svg import INK, SERIES
 from verify.pages.text.typography import start, superscript
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult, SeriesPoint
 
-_POINT = 1 / 72  # inch; a figure's size is given in points, which are its SVG's user units
-_WIDTH = 370
 _MOST_BUCKETS = 600
 _LABEL_WIDTH, _LABEL_HEIGHT = 0.1, 0.08  # of the axes: the room for a guide's label
 _GUIDE_GAP = 0.35  # decades between a slope guide and the line that it is nearest to
@@ -69,16 +66,8 @@ def _lg(found: Value | None) -> float:
 # -- against the step size ------------------------------------------------------------------------
 
 
-def against_step_size(
-    plotted: Sequence[Line], *, quantity: str, guides: Sequence[int], name: str, label: str
-) -> Markup:
-    """The lines on logarithmic axes, with a grey guide for each slope in `guides`."""
-    return drawing(
-        lambda: draw_against_step_size(plotted, quantity, guides), name=name, label=label
-    )
-
-
 def draw_against_step_size(plotted: Sequence[Line], quantity: str, guides: Sequence[int]) -> Figure:
+    """The lines on logarithmic axes, with a grey guide for each slope in `guides`."""
     figure, axes = canvas(330 if len(plotted) <= MOST_STYLES else 280)
     for index, line in enumerate(plotted):
         plot_line(axes, line, line_style(index, len(plotted)))
@@ -89,14 +78,8 @@ def draw_against_step_size(plotted: Sequence[Line], quantity: str, guides: Seque
     return figure
 
 
-def printed_against_computed(
-    computed: Sequence[Line], printed: Line, *, name: str, label: str
-) -> Markup:
-    """lg MSE as it is printed and as it is computed."""
-    return drawing(lambda: draw_printed_against_computed(computed, printed), name=name, label=label)
-
-
 def draw_printed_against_computed(computed: Sequence[Line], printed: Line) -> Figure:
+    """lg MSE as it is printed and as it is computed."""
     figure, axes = canvas(350)
     plot_line(axes, printed, {"color": INK, "linewidth": 3})
     for index, line in enumerate(computed):
@@ -105,11 +88,6 @@ def draw_printed_against_computed(computed: Sequence[Line], printed: Line) -> Fi
     whole_numbers(axes.yaxis)
     axes.set_title("lg MSE")
     return figure
-
-
-def canvas(height: float) -> tuple[Figure, Any]:
-    figure = Drawing(figsize=(_WIDTH * _POINT, height * _POINT), layout="constrained")
-    return figure, figure.add_subplot()
 
 
 def plot_line(axes: Any, line: Line, style: dict[str, Any]) -> None:
@@ -156,19 +134,15 @@ def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
 # -- over time ------------------------------------------------------------------------------------
 
 
-def over_time(run: RunResult, *, name: str, label: str) -> Markup:
-    """det J, ΔJ and Λ over t, each as the band between its least and greatest in a bucket."""
-    return drawing(lambda: draw_over_time(run), name=name, label=label)
-
-
 def draw_over_time(run: RunResult) -> Figure:
+    """det J, ΔJ and Λ over t, each as the band between its least and greatest in a bucket."""
     points = merged(run.series)
     h = float(Fraction(run.step_size))
     edges = [(points[0].first - 1) * h, *(point.last * h for point in points)]
     delta_j = [_band(p.delta_j) for p in points]
     lam = [_band(p.lam) for p in points]
     panels = [("det J", delta_j, True), ("ΔJ", delta_j, False), ("Λ", lam, False)]
-    figure = Drawing(figsize=(_WIDTH * _POINT, 400 * _POINT), layout="constrained")
+    figure = sheet(400)
     all_axes = figure.subplots(len(panels), 1, sharex=True)
     for index, (axes, (title, band, around_one)) in enumerate(zip(all_axes, panels, strict=True)):
         _panel(axes, edges, band, SERIES[2 if title == "Λ" else 0], around_one)

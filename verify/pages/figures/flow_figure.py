@@ -9,22 +9,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import grid_lines
-from verify.pages.figures.label_place import Box, dots, place_of
-from verify.pages.figures.notebook_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawing
+from verify.pages.figures.label_place import dots, place_of
+from verify.pages.figures.notebook_figure import sheet
+from verify.pages.figures.svg import INK, SERIES
 from verify.pages.text.typography import number, whole
 from verify.scenes.results.regions import CarriedOutline, DrawnOutline, FlowImage, FlowResult
 from verify.studies.regions.polyline import parsed, thinned
 
-_POINT = 1 / 72
 _WIDTH, _NARROW = 600, 370  # of several columns, of one
 _LEFT, _LETTER, _ROW_LABEL, _RIGHT, _TOP, _BOTTOM, _GAP = 26, 7.5, 22, 8, 26, 40, 12
 _ROW_PLACE = 10
@@ -69,10 +68,6 @@ class Grid:
         return points.min(axis=0), points.max(axis=0)
 
 
-def flow_panels(grid: Grid, *, name: str, label: str) -> Markup:
-    return drawing(lambda: draw_flow(grid), name=name, label=label)
-
-
 # -- what stands where ----------------------------------------------------------------------------
 
 
@@ -102,10 +97,8 @@ def _row(steps: int, time: str) -> str:
 
 
 def _some(counts: Sequence[int]) -> list[int]:
-    if len(counts) <= _MOST_ROWS:
-        return list(counts)
-    last = len(counts) - 1
-    return [counts[round(i * last / (_MOST_ROWS - 1))] for i in range(_MOST_ROWS)]
+    places = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_ROWS))
+    return [counts[round(place)] for place in places]
 
 
 def _panel(images: Sequence[FlowImage]) -> Panel:
@@ -153,7 +146,7 @@ def draw_flow(grid: Grid) -> Figure:
     layout = _layout(grid)
     rows = len(grid.panels)
     high = _TOP + rows * layout.height + (rows - 1) * _GAP + _BOTTOM
-    figure = Drawing(figsize=(layout.total * _POINT, high * _POINT))
+    figure = sheet(high, layout.total, layout=None)
     for i, row in enumerate(grid.panels):
         for j, panel in enumerate(row):
             x = layout.left + j * (layout.width + _GAP)
@@ -273,14 +266,14 @@ def _name_all(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
     low, scale = layout.low, layout.scale
     images = [(n, dots(curves, low, scale)) for n, curves in panel.images]
     everything = np.concatenate([dots(grid.before, low, scale), *(own for _, own in images)])
-    room = (0.0, 0.0, layout.width, layout.height)
-    taken: list[Box] = []
+    room = Bbox.from_bounds(0, 0, layout.width, layout.height)
+    taken: list[Bbox] = []
     for steps, own in images:
         text = f"N = {whole(steps)}"
         size = len(text) * _LABEL * _LETTER_OF_LABEL, _LABEL + 2.0
         taken.append(place_of(size, own, everything, taken, room))
-        left, lower, right, _ = taken[-1]
-        at = layout.low + np.array([(left + right) / 2, lower + 1]) / layout.scale
+        box = taken[-1]
+        at = layout.low + np.array([(box.x0 + box.x1) / 2, box.y0 + 1]) / layout.scale
         axes.text(*at, text, ha="center", va="bottom", fontsize=_LABEL)
 
 

@@ -1,17 +1,15 @@
 """A scene of the gallery: its orbit in the (q, p) plane, and Λ's parts over steps, as SVG."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import isfinite, log10, nan
 
-from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from verify.pages.figures.axes import decades, grid_lines, line_style, mark_places
-from verify.pages.figures.figures import canvas
+from verify.pages.figures.axes import Mark, decades, grid_lines, line_style, mark_places
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.svg import INK, SERIES, drawing
+from verify.pages.figures.notebook_figure import canvas
+from verify.pages.figures.svg import INK, SERIES
 from verify.pages.text.typography import NBSP, whole
 from verify.scenes.results.exploration import GalleryScene
 
@@ -26,12 +24,8 @@ _ASIDE = 0.5  # of the axes: what a mark's label takes
 # -- the orbit ------------------------------------------------------------------------------------
 
 
-def orbit(points: Sequence[tuple[str, str]], steps: int, *, name: str, label: str) -> Markup:
-    """The points (q, p) in turn, q to the right and p upwards; its two ends are marked."""
-    return drawing(lambda: draw_orbit(points, steps), name=name, label=label)
-
-
 def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
+    """The points (q, p) in turn, q to the right and p upwards; its two ends are marked."""
     figure, axes = canvas(_HEIGHT)
     q, p = [float(q) for q, _ in points], [float(p) for _, p in points]
     style = {"color": SERIES[0], "linewidth": 0.9, "marker": ".", "markersize": 3.5}
@@ -77,20 +71,8 @@ def _span(values: Sequence[float]) -> float:
 # -- truncation and rounding ----------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A number of steps at which one part becomes the greater for a while, or for good."""
-
-    steps: int
-    label: str
-
-
-def parts(each: GalleryScene, *, name: str, label: str) -> Markup:
-    """|truncation| and |rounding| on logarithmic axes; a dashed line where one overtakes."""
-    return drawing(lambda: draw_parts(each), name=name, label=label)
-
-
 def draw_parts(each: GalleryScene) -> Figure:
+    """|truncation| and |rounding| on logarithmic axes; a dashed line where one overtakes."""
     series = each.separation.plain.series if each.separation.plain else ()
     figure, axes = canvas(_HEIGHT)
     x = [log10(at.steps) for at in series]
@@ -100,7 +82,7 @@ def draw_parts(each: GalleryScene) -> Figure:
         if any(map(isfinite, y)):
             axes.plot(x, y, label=label, **line_style(index, len(kinds)))
     axes.margins(x=0.05, y=0.06)
-    if found := [(log10(mark.steps), mark.label) for mark in marks(each)]:
+    if found := list(marks(each)):
         mark_places(axes, found, _ASIDE)
     grid_lines(axes)
     decades(axes.xaxis, most=6)
@@ -125,6 +107,6 @@ def marks(each: GalleryScene) -> Iterator[Mark]:
     series = each.separation.plain.series if each.separation.plain else ()
     after, over = each.meaningless_after, each.meaningful_from
     if series and after is not None and after > series[0].steps:
-        yield Mark(after, f"rounding overtakes, N{NBSP}={NBSP}{whole(after)}")
+        yield log10(after), f"rounding overtakes, N{NBSP}={NBSP}{whole(after)}"
     if over is not None:
-        yield Mark(over, f"truncation overtakes, N{NBSP}={NBSP}{whole(over)}")
+        yield log10(over), f"truncation overtakes, N{NBSP}={NBSP}{whole(over)}"

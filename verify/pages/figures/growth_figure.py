@@ -4,17 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import MOST_STYLES, decades, grid_lines, line_style, step_sizes
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import Drawing
-from verify.pages.figures.svg import INK, drawing
+from verify.pages.figures.notebook_figure import sheet
+from verify.pages.figures.svg import INK
 
-_POINT = 1 / 72
-_WIDTH, _HEIGHT = 370, 520
+_HEIGHT = 520
 _GUIDE_GAP = 0.4  # decades between the guide and the points below it
 _LEGEND = 2  # columns
 
@@ -28,13 +26,9 @@ class Orbit:
     difference: Line
 
 
-def predicted_against_measured(orbits: Sequence[Orbit], *, name: str, label: str) -> Markup:
-    """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
-    return drawing(lambda: draw_predicted_against_measured(orbits), name=name, label=label)
-
-
 def draw_predicted_against_measured(orbits: Sequence[Orbit]) -> Figure:
-    figure = Drawing(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
+    """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
+    figure = sheet(_HEIGHT)
     above, below = figure.subplots(2, 1, sharex=True)
     for index, orbit in enumerate(orbits):
         style = line_style(index, len(orbits))

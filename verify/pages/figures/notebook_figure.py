@@ -1,10 +1,14 @@
-"""The figures' own class: matplotlib's, which a notebook shows by itself."""
+"""The figures' own class: matplotlib's, which a notebook shows by itself, sized in points."""
 
 import io
+from typing import Any, Literal
 
 from matplotlib.figure import Figure
 
+_POINT = 1 / 72  # inch; a point is the user unit of the SVG
+_WIDTH = 370
 _DOTS = 144  # an inch; twice a point, so that it is sharp on a fine screen too
+Layout = Literal["constrained"] | None
 
 
 class Drawing(Figure):
@@ -14,3 +18,14 @@ class Drawing(Figure):
         stream = io.BytesIO()
         self.savefig(stream, format="png", dpi=_DOTS)
         return stream.getvalue()
+
+
+def sheet(height: float, width: float = _WIDTH, layout: Layout = "constrained") -> Drawing:
+    """An empty figure of that size in points."""
+    return Drawing(figsize=(width * _POINT, height * _POINT), layout=layout)
+
+
+def canvas(height: float) -> tuple[Drawing, Any]:
+    """A figure with one plot in it."""
+    figure = sheet(height)
+    return figure, figure.add_subplot()

@@ -1,20 +1,17 @@
 """Verdicts in the plane of step size and stiffness, one scheme a picture, as inline SVG."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import decades, grid_lines
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawing
+from verify.pages.figures.notebook_figure import canvas
+from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import Kind, StabilityMapResult
 
-_POINT = 1 / 72
-_WIDTH, _HEIGHT = 370, 380
+_HEIGHT = 380
 _LEGEND = 2  # columns
 _ROOM = 0.04  # of an axis, beyond its first and last point
 
@@ -31,45 +28,24 @@ _MARKS: dict[Kind, dict[str, Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class Plane:
-    """Kinds at [value of the parameter][step size], and where linear theory ends."""
-
-    parameter: str
-    values: Sequence[str]
-    step_sizes: Sequence[str]
-    kinds: Sequence[Sequence[Kind]]
-    linear: Sequence[str | None]
-
-
-def plane_of(over: StabilityMapResult) -> Plane:
-    kinds = [[cell.kind for cell in row] for row in over.cells]
-    return Plane(over.parameter, over.values, over.step_sizes, kinds, over.linear)
-
-
-def stability_plane(plane: Plane, *, name: str, label: str) -> Markup:
+def draw_plane(over: StabilityMapResult) -> Figure:
     """Each cell by its verdict's mark; the line is linear theory's step size."""
-    return drawing(lambda: draw_plane(plane), name=name, label=label)
-
-
-def draw_plane(plane: Plane) -> Figure:
-    figure = Drawing(figsize=(_WIDTH * _POINT, _HEIGHT * _POINT), layout="constrained")
-    axes = figure.subplots()
-    xs, ys = [lg(h) for h in plane.step_sizes], [lg(v) for v in plane.values]
+    figure, axes = canvas(_HEIGHT)
+    xs, ys = [lg(h) for h in over.step_sizes], [lg(v) for v in over.values]
     for kind, mark in _MARKS.items():
         cells = [
             (xs[j], ys[i])
-            for i, row in enumerate(plane.kinds)
-            for j, found in enumerate(row)
-            if found == kind
+            for i, row in enumerate(over.cells)
+            for j, cell in enumerate(row)
+            if cell.kind == kind
         ]
         if cells:
             axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **mark)
-    limits = [(lg(h), y) for h, y in zip(plane.linear, ys, strict=True) if h and float(h) > 0]
+    limits = [(lg(h), y) for h, y in zip(over.linear, ys, strict=True) if h and float(h) > 0]
     if limits:
         ends = zip(*limits, strict=True)
         axes.plot(*ends, color=INK, linewidth=1.4, label="limit of linear theory")
-    _frame(axes, xs, ys, plane.parameter)
+    _frame(axes, xs, ys, over.parameter)
     figure.legend(loc="outside lower center", ncols=_LEGEND, handlelength=1.6)
     return figure
 

@@ -11,7 +11,6 @@ from itertools import pairwise
 from math import isfinite
 from typing import Any
 
-from markupsafe import Markup
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -19,10 +18,10 @@ from matplotlib.markers import CARETUPBASE, MarkerStyle
 from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
-from verify.pages.figures.notebook_figure import Drawing
-from verify.pages.figures.svg import INK, SERIES, drawing
+from verify.pages.figures.label_place import within
+from verify.pages.figures.notebook_figure import sheet
+from verify.pages.figures.svg import INK, SERIES
 
-_POINT = 1 / 72
 _WIDTH = 400
 _PANEL, _LEGEND_ROW = 300, 17
 _SIZE = 5.5
@@ -75,16 +74,15 @@ class Panel:
         return self.logarithmic and mark.y is not None and mark.y > _TOP
 
 
-def panels(shown: Sequence[Panel], *, name: str, label: str) -> Markup:
-    """The panels below one another, with one legend for all: the labels of the first."""
-    return drawing(lambda: draw_panels(shown), name=name, label=label)
-
-
 def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
-    """`quantity`: what stands at all vertical axes, where the titles do not suffice."""
-    count = len(shown[0].lines) + _keys(shown)
+    """The panels below one another, with one legend for all: the labels of the first.
+
+    `quantity`: what stands at all vertical axes, where the titles do not suffice.
+    """
+    count = len(shown[0].lines) + len(_explained(shown))
     height = _PANEL * len(shown) + _LEGEND_ROW * (count + 1) // 2 + 12
-    figure = Drawing(figsize=(_WIDTH * _POINT, height * _POINT), dpi=72, layout="constrained")
+    figure = sheet(height, _WIDTH)
+    figure.set_dpi(72)
     FigureCanvasAgg(figure)
     engine: Any = figure.get_layout_engine()
     engine.set(hspace=0.04)
@@ -178,35 +176,21 @@ def _at_the_edge(axes: Any, panel: Panel) -> None:
 # -- legend ---------------------------------------------------------------------------------------
 
 
-def _keys(shown: Sequence[Panel]) -> int:
-    return len(_explained(shown))
-
-
 def _explained(shown: Sequence[Panel]) -> list[Line2D]:
     """What the marks mean, as far as they occur."""
     marks = [m for panel in shown for line in panel.lines for m in line.marks]
+    hollow = any(not m.full and m.y is not None for m in marks)
+    failed = any(m.y is None for m in marks)
+    beyond = any(panel.beyond(m) for panel in shown for line in panel.lines for m in line.marks)
+    floor = any(panel.floor for panel in shown)
+    known: tuple[tuple[bool, str, dict[str, Any]], ...] = (
+        (hollow, "hollow: limited by rounding", {"marker": "o", "markerfacecolor": "none"}),
+        (failed, "× at the edge: failed", {"marker": "x"}),
+        (beyond, "beyond the edge", {"marker": MarkerStyle(CARETUPBASE)}),
+        (floor, "floor: rounding part", {"marker": ".", "alpha": 0.4}),
+    )
     grey: dict[str, Any] = {"color": INK, "linestyle": "none", "markersize": _SIZE}
-    found = []
-    if any(not m.full and m.y is not None for m in marks):
-        found.append(
-            Line2D(
-                [],
-                [],
-                marker="o",
-                markerfacecolor="none",
-                label="hollow: limited by rounding",
-                **grey,
-            )
-        )
-    if any(m.y is None for m in marks):
-        found.append(Line2D([], [], marker="x", label="× at the edge: failed", **grey))
-    if any(panel.beyond(m) for panel in shown for line in panel.lines for m in line.marks):
-        found.append(
-            Line2D([], [], marker=MarkerStyle(CARETUPBASE), label="beyond the edge", **grey)
-        )
-    if any(panel.floor for panel in shown):
-        found.append(Line2D([], [], marker=".", alpha=0.4, label="floor: rounding part", **grey))
-    return found
+    return [Line2D([], [], label=label, **grey, **look) for seen, label, look in known if seen]
 
 
 def _legend(figure: Figure, shown: Sequence[Panel]) -> None:
@@ -223,7 +207,7 @@ def _legend(figure: Figure, shown: Sequence[Panel]) -> None:
 def _place_labels(axes: Any, panel: Panel) -> None:
     """Each label at the first of a few places near its mark where it covers nothing."""
     renderer = axes.figure.canvas.get_renderer()
-    taken = [_box(x, y, 3) for x, y in _covered(axes, panel)]
+    taken = [Bbox.from_extents(x - 3, y - 3, x + 3, y + 3) for x, y in _covered(axes, panel)]
     inside = axes.get_window_extent(renderer)
     for line in panel.lines:
         for mark in line.marks:
@@ -251,22 +235,12 @@ def _covered(axes: Any, panel: Panel) -> Iterator[tuple[float, float]]:
                 yield x0 + (x1 - x0) * k / count, y0 + (y1 - y0) * k / count
 
 
-def _settle(text: Any, taken: list[Any], inside: Any, renderer: Any) -> None:
+def _settle(text: Any, taken: list[Bbox], inside: Bbox, renderer: Any) -> None:
     for x, y in _OFFSETS:
         text.set_ha("left" if x > 0 else "right" if x < 0 else "center")
         text.set_position((x, y))
         box = text.get_window_extent(renderer)
-        within = inside.x0 <= box.x0 and box.x1 <= inside.x1 and inside.y0 <= box.y0
-        if within and box.y1 <= inside.y1 and not any(_meet(box, other) for other in taken):
+        if within(box, inside) and not any(map(box.overlaps, taken)):
             taken.append(box)
             return
     text.remove()
-
-
-def _box(x: float, y: float, half: float) -> Any:
-    return Bbox.from_extents(x - half, y - half, x + half, y + half)
-
-
-def _meet(one: Any, other: Any) -> bool:
-    apart = one.x1 < other.x0 or other.x1 < one.x0 or one.y1 < other.y0 or other.y1 < one.y0
-    return not apart

@@ -9,11 +9,11 @@ from math import isfinite, log10
 from statistics import median
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.captioned_plot import Plot
+from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.figures.logarithm import lg
 from verify.pages.text.typography import listed, superscript
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
+from verify.scenes.results.work_precision import LimitedBy, WorkLine, WorkPoint, WorkPrecisionResult
 
 if TYPE_CHECKING:
     from verify.pages.figures.work_precision_figure import Mark, Panel
@@ -32,9 +32,12 @@ def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
 def _errors(found: WorkPrecisionResult, name: str) -> Plot:
     from verify.pages.figures import work_precision_figure as figure
 
-    lead = f"Solution error at T = {found.time} against run time, and against the step size h"
-    svg = figure.panels(error_panels(found), name=f"work-of-{name}", label=f"{lead}.")
-    return Plot(svg, f"{lead}.", _caption([x for x in found.lines if _timed(x) and not x.peer]))
+    return plotted(
+        lambda: figure.draw_panels(error_panels(found)),
+        name=f"work-of-{name}",
+        lead=f"Solution error at T = {found.time} against run time, and against the step size h",
+        caption=_caption([x for x in found.lines if _timed(x) and not x.peer]),
+    )
 
 
 def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
@@ -47,9 +50,7 @@ def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
         "(a) error against run time",
         f"run time over [0, {found.time}] in seconds",
         tuple(
-            figure.DrawnLine(
-                _labelled(line), tuple(_marks(line, "error")), _place(found, line), line.peer
-            )
+            figure.DrawnLine(_labelled(line), tuple(_by_time(line)), _place(found, line), line.peer)
             for line in lines
         ),
         tuple(_floor(own)),
@@ -69,7 +70,6 @@ def _areas(found: WorkPrecisionResult, name: str) -> Plot:
     from verify.pages.figures import work_precision_figure as figure
 
     lines = [line for line in found.lines if _area(line)]
-    lead = f"|Λ| over [0, {found.time}] against run time"
     panel = figure.Panel(
         "(c) |Λ| against run time",
         f"run time over [0, {found.time}] in seconds",
@@ -78,7 +78,6 @@ def _areas(found: WorkPrecisionResult, name: str) -> Plot:
             for line in lines
         ),
     )
-    svg = figure.panels([panel], name=f"area-of-{name}", label=f"{lead}.")
     caption = "Λ in float64 by the closed form of ΔJ."
     keeping = [line for line in found.lines if line.area_preserving]
     if keeping:
@@ -88,7 +87,10 @@ def _areas(found: WorkPrecisionResult, name: str) -> Plot:
         )
     if none := [line.name for line in keeping if line not in lines]:
         caption += f" That of {listed(none)} is exactly 1 and has no place here."
-    return Plot(svg, f"{lead}.", caption)
+    lead = f"|Λ| over [0, {found.time}] against run time"
+    return plotted(
+        lambda: figure.draw_panels([panel]), name=f"area-of-{name}", lead=lead, caption=caption
+    )
 
 
 def _digits(found: WorkPrecisionResult, name: str) -> Plot:
@@ -109,12 +111,13 @@ def _digits(found: WorkPrecisionResult, name: str) -> Plot:
     )
     lead = f"Certified digits of the end state against run time, {_systems_of(found)}"
     panel = figure.Panel("(d) certified digits", "run time in seconds", lines, logarithmic=False)
-    svg = figure.panels([panel], name=f"digits-of-{name}", label=f"{lead}.")
     said = (
         "Run time is the stepping with all that certifies it, on the clock; that of float64 is its "
         "compiled loop’s."
     )
-    return Plot(svg, f"{lead}.", said)
+    return plotted(
+        lambda: figure.draw_panels([panel]), name=f"digits-of-{name}", lead=lead, caption=said
+    )
 
 
 def _systems_of(found: WorkPrecisionResult) -> str:
@@ -146,22 +149,42 @@ def _timed(line: WorkLine) -> list[WorkPoint]:
     return [p for p in line.points if p.seconds_median and p.error]
 
 
-def _marks(line: WorkLine, quantity: str) -> Iterator["Mark"]:
-    """Against run time; the first and the last of a line with a label."""
-    from verify.pages.figures.work_precision_figure import Mark
-
+def _by_time(line: WorkLine) -> Iterator["Mark"]:
+    """Error against run time; the first and the last of a line with a label."""
     timed = _timed(line)
     for point in line.points:
-        x = _run_time(point, timed)
-        if x is None:
-            continue
-        value: Value | None = getattr(point, quantity)
-        if point.limited_by == "failed":
-            yield Mark(x, None)
-        elif value and isfinite(lg(value.value)):
-            end = point in (timed[0], timed[-1])
-            full = point.limited_by != "rounding"
-            yield Mark(x, lg(value.value), full, _named(point) if end else "")
+        label = _end_label(point, timed)
+        yield from _mark(_run_time(point, timed), point.error, point.limited_by, label)
+
+
+def _by_step(line: WorkLine) -> Iterator["Mark"]:
+    """Error against the step size."""
+    for point in line.points:
+        x = lg(point.step_size) if point.step_size else None
+        yield from _mark(x, point.error, point.limited_by)
+
+
+def _area(line: WorkLine) -> list["Mark"]:
+    """|Λ| against run time; the plain product's where Λ is exactly 0."""
+    found: list[Mark] = []
+    timed = _timed(line)
+    for point in timed:
+        value = point.lam_plain if line.area_preserving else point.lam
+        label = _end_label(point, timed)
+        found += _mark(_run_time(point, timed), value, point.lambda_limited_by, label)
+    return found
+
+
+def _mark(
+    x: float | None, value: Value | None, limited_by: LimitedBy | None, label: str = ""
+) -> Iterator["Mark"]:
+    """None where there is no place for it: no abscissa, or no known digit of the value."""
+    from verify.pages.figures.work_precision_figure import Mark
+
+    if x is not None and limited_by == "failed":
+        yield Mark(x, None)
+    elif x is not None and value and isfinite(lg(value.value)):
+        yield Mark(x, lg(value.value), limited_by != "rounding", label)
 
 
 def _run_time(point: WorkPoint, timed: Sequence[WorkPoint]) -> float | None:
@@ -172,34 +195,6 @@ def _run_time(point: WorkPoint, timed: Sequence[WorkPoint]) -> float | None:
     return log10(median(rates) * point.steps) if rates and point.steps else None
 
 
-def _by_step(line: WorkLine) -> Iterator["Mark"]:
-    from verify.pages.figures.work_precision_figure import Mark
-
-    for point in line.points:
-        if not point.step_size:
-            continue
-        x = lg(point.step_size)
-        if point.limited_by == "failed":
-            yield Mark(x, None)
-        elif point.error and isfinite(lg(point.error.value)):
-            yield Mark(x, lg(point.error.value), point.limited_by != "rounding")
-
-
-def _area(line: WorkLine) -> list["Mark"]:
-    """|Λ| against run time; the plain product's where Λ is exactly 0."""
-    from verify.pages.figures.work_precision_figure import Mark
-
-    found, timed = [], _timed(line)
-    for point in timed:
-        value = point.lam_plain if line.area_preserving else point.lam
-        x = _run_time(point, timed)
-        if value and x is not None and isfinite(lg(value.value)):
-            end = point in (timed[0], timed[-1])
-            full = point.lambda_limited_by != "rounding"
-            found.append(Mark(x, lg(value.value), full, _named(point) if end else ""))
-    return found
-
-
 def _floor(own: Sequence[WorkLine], *, by_step: bool = False) -> Iterator[tuple[float, float]]:
     for line in own:
         for point in line.points:
@@ -208,7 +203,10 @@ def _floor(own: Sequence[WorkLine], *, by_step: bool = False) -> Iterator[tuple[
                 yield x, lg(point.rounding.value)
 
 
-def _named(point: WorkPoint) -> str:
+def _end_label(point: WorkPoint, timed: Sequence[WorkPoint]) -> str:
+    """Of the first and of the last of these points."""
+    if point not in (*timed[:1], *timed[-1:]):
+        return ""
     if point.step_size:
         return f"h = {_short(point.step_size)}"
     return f"tol {_short(point.tolerance or '')}"

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.captioned_plot import Plot, computed, few
+from verify.pages.figures.captioned_plot import Plot, computed, few, plotted
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.text.typography import is_decimal, start, superscript, whole
 from verify.scenes.results.proof import ProofResult
@@ -33,24 +33,20 @@ def against_step_size(
     lam = figures.lines(runs, "lambda")
     if lam:
         guides = (order - 1, order) if order is not None and order > 1 else ()
-        lead = f"Cumulative total error |Λ| {span} against the step size h"
-        yield Plot(
-            figures.against_step_size(
-                lam, quantity="|Λ|", guides=guides, name=f"lambda-of-{name}", label=f"{lead}."
-            ),
-            f"{lead}.",
-            " ".join([_trend(lam), _bound(runs, guides), _guides(guides), computed(runs)]),
+        yield plotted(
+            lambda: figures.draw_against_step_size(lam, "|Λ|", guides),
+            name=f"lambda-of-{name}",
+            lead=f"Cumulative total error |Λ| {span} against the step size h",
+            caption=" ".join([_trend(lam), _bound(runs, guides), _guides(guides), computed(runs)]),
         )
     ratio = figures.lines(runs, "mse", "lambda")
     if ratio:
         guides = (order, order + 1) if order is not None else ()
-        lead = f"Ratio MSE/|Λ| {span} against the step size h"
-        yield Plot(
-            figures.against_step_size(
-                ratio, quantity="MSE/|Λ|", guides=guides, name=f"ratio-of-{name}", label=f"{lead}."
-            ),
-            f"{lead}.",
-            " ".join([_trend(ratio), _guides(guides), computed(runs)]),
+        yield plotted(
+            lambda: figures.draw_against_step_size(ratio, "MSE/|Λ|", guides),
+            name=f"ratio-of-{name}",
+            lead=f"Ratio MSE/|Λ| {span} against the step size h",
+            caption=" ".join([_trend(ratio), _guides(guides), computed(runs)]),
         )
 
 
@@ -114,20 +110,22 @@ def over_time(run: RunResult, *, name: str) -> Plot:
             f"Each band reaches from the least to the greatest value within {whole(bucket)} steps."
         )
     caption = f"{band}{seen} {computed([run])}"
-    return Plot(figures.over_time(run, name=name, label=f"{lead}."), f"{lead}.", caption)
+    return plotted(lambda: figures.draw_over_time(run), name=name, lead=lead, caption=caption)
 
 
 def table(claim: ClaimView, *, name: str) -> Plot | None:
     """lg MSE as printed and as computed; None where fewer than two step sizes can be drawn."""
     from verify.pages.figures import figures
 
-    source = claim.result.source
     printed, lines = rows_of(claim)
     if len(printed.points) < 2 or not lines:
         return None
-    lead = f"{source}: lg MSE against the step size h, printed and computed"
-    svg = figures.printed_against_computed(lines, printed, name=name, label=f"{lead}.")
-    return Plot(svg, f"{lead}.", _gap(printed, lines))
+    return plotted(
+        lambda: figures.draw_printed_against_computed(lines, printed),
+        name=name,
+        lead=f"{claim.result.source}: lg MSE against the step size h, printed and computed",
+        caption=_gap(printed, lines),
+    )
 
 
 def rows_of(claim: ClaimView) -> "tuple[Line, list[Line]]":

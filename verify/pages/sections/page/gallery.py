@@ -1,11 +1,11 @@
 """The worst scenes of a hunt as the page shows them: what was hunted, and a card for each scene."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot
+from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.sections.gallery_finding import findings, in_short, lambda_of, run_beyond
 from verify.pages.sections.given import Given
 from verify.pages.sections.section import Entry, Picture, Place, Section, Tile
@@ -53,17 +53,19 @@ def _speaks(report: Report) -> tuple[str, Sequence[Tile]] | None:
     """The worst scene in a sentence, and a few of them as tiles."""
     if report.gallery is None:
         return None
-    return _finding(report.gallery), [*map(_tile(report.gallery), report.gallery.scenes[:_TILES])]
+    return _finding(report.gallery), _tiles(report.gallery)
 
 
-def _tile(gallery: Gallery) -> Callable[[GalleryScene], Tile]:
-    def tile(each: GalleryScene) -> Tile:
-        figure, unit = in_short(gallery.measure, each.value)
-        of, verdict = each.separation, Verdict.MEASURED
-        meaning = f"{of.scheme}, h = {of.step_size}"
-        return Tile(verdict, SIGNS[verdict][0], figure, unit, meaning)
-
-    return tile
+def _tiles(gallery: Gallery) -> list[Tile]:
+    return [
+        Tile(
+            Verdict.MEASURED,
+            SIGNS[Verdict.MEASURED][0],
+            *in_short(gallery.measure, each.value),
+            meaning=f"{each.separation.scheme}, h = {each.separation.step_size}",
+        )
+        for each in gallery.scenes[:_TILES]
+    ]
 
 
 # -- sentences ------------------------------------------------------------------------------------
@@ -139,17 +141,23 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
     if len(drawable) > 1:
         from verify.pages.figures import gallery_figure
 
-        lead = f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps"
-        svg = gallery_figure.parts(each, name=f"parts-of-{anchor}", label=f"{lead}.")
         # That of the worst scene stands on the first screen, far from its card.
         formula = [_formula(of.hamiltonian)] if place == 1 else []
-        yield Plot(svg, f"{lead}.", Markup(" ").join([*formula, _parts_sentence(each)]))
+        yield plotted(
+            lambda: gallery_figure.draw_parts(each),
+            name=f"parts-of-{anchor}",
+            lead=f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps",
+            caption=Markup(" ").join([*formula, _parts_sentence(each)]),
+        )
     if len(each.orbit) > 1:
         from verify.pages.figures import gallery_figure
 
-        lead = f"Scene {place}: the orbit in the (q, p) plane, {whole(steps)} steps"
-        svg = gallery_figure.orbit(each.orbit, steps, name=f"orbit-of-{anchor}", label=f"{lead}.")
-        yield Plot(svg, f"{lead}.", _orbit_sentence(each, steps))
+        yield plotted(
+            lambda: gallery_figure.draw_orbit(each.orbit, steps),
+            name=f"orbit-of-{anchor}",
+            lead=f"Scene {place}: the orbit in the (q, p) plane, {whole(steps)} steps",
+            caption=_orbit_sentence(each, steps),
+        )
 
 
 def _formula(text: str) -> Markup:

@@ -5,32 +5,13 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot
+from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.sections.flow_finding import IS, finding, findings, region_of
+from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Place, Section
 from verify.pages.text.typography import listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.scenes.results.report import SceneResult
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A number with its error; `value` alone where it has none, or where it is a word."""
-
-    value: str
-    error: str = ""
-
-
-@dataclass(frozen=True)
-class ImageRow:
-    map: str
-    steps: str
-    time: str
-    change: Cell
-    mean: Cell
-    distance: Cell
-    arithmetic: str
-    problem: str
 
 
 @dataclass(frozen=True)
@@ -41,7 +22,7 @@ class RegionView:
     anchor: str
     title: str
     finding: str
-    rows: tuple[ImageRow, ...]
+    rows: tuple[Row, ...]
     plot: Plot | None
 
 
@@ -88,26 +69,25 @@ def _the(flow: FlowResult) -> str:
 # -- numbers --------------------------------------------------------------------------------------
 
 
-def _cell(value: str | None, error: str | None, *, missing: str = "–") -> Cell:
-    if value is None:
-        return Cell(missing)
-    if error is None:
-        return Cell(number(value))
-    return Cell(number(value), number(error))
+def _cell(value: str | None, error: str | None, *, missing: str = "–") -> str | Markup:
+    """A number with its error, where it has one."""
+    if value is None or error is None:
+        return missing if value is None else number(value)
+    return Markup('{} <span class="bound">± {}</span>').format(number(value), number(error))
 
 
-def _row(image: FlowImage) -> ImageRow:
-    proved = image.area_preserving is True
-    return ImageRow(
-        map=image.map,
-        steps=whole(image.steps),
-        time=number(image.time),
-        change=_cell(image.area_change, image.probe_error, missing="not known"),
-        mean=_cell(image.mean_lambda, image.mean_lambda_error, missing="0" if proved else "–"),
-        distance=_cell(image.distance, image.distance_error),
-        arithmetic=_arithmetic(image),
-        problem=image.problem or ("the two measures disagree" if image.agree is False else ""),
+def _row(image: FlowImage) -> Row:
+    no_mean = "0" if image.area_preserving else "–"
+    cells = (
+        whole(image.steps),
+        number(image.time),
+        _cell(image.area_change, image.probe_error, missing="not known"),
+        _cell(image.mean_lambda, image.mean_lambda_error, missing=no_mean),
+        _cell(image.distance, image.distance_error),
+        _arithmetic(image),
     )
+    disagreement = "the two measures disagree" if image.agree is False else ""
+    return Row(image.map, cells, image.problem or disagreement)
 
 
 def _arithmetic(image: FlowImage) -> str:
@@ -123,16 +103,21 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
     """The drawing, and with it matplotlib, is imported only where there is an image."""
     if not flow.before or not any(image.outlines for image in flow.images):
         return None
-    from verify.pages.figures.flow_figure import flow_panels, grid_of
+    from verify.pages.figures.flow_figure import draw_flow, grid_of
     from verify.pages.sections.flow_pictures import picture_sentences
 
     grid, what = grid_of(flow), _the(flow)
     maps = listed(f"the {name}" if name == EXACT_FLOW else name for name in grid.columns)
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
     found = " ".join(picture_sentences(flow, grid))
-    svg = flow_panels(grid, name=f"panels-of-{anchor}", label=f"{lead}. {found}".strip())
-    caption = f"{_caption(flow, len(grid.rows))} {found}".strip()
-    return Plot(svg, f"{lead}.", caption, wide=len(grid.columns) > 1)
+    return plotted(
+        lambda: draw_flow(grid),
+        name=f"panels-of-{anchor}",
+        lead=lead,
+        label=f"{lead}. {found}".strip(),
+        caption=f"{_caption(flow, len(grid.rows))} {found}".strip(),
+        wide=len(grid.columns) > 1,
+    )
 
 
 def _caption(flow: FlowResult, rows: int) -> str:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from markupsafe import Markup
 
 from verify.arithmetic.exact import plain, short
-from verify.pages.figures.captioned_plot import Plot
+from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text.prose import prose
@@ -36,22 +36,15 @@ MEANINGS: dict[Kind, str] = {
 
 
 @dataclass(frozen=True)
-class RunRow:
-    name: str
-    scheme: str
-    step_size: str
-    steps: str
-    verdict: str
-    detail: str
-
-
-@dataclass(frozen=True)
 class StabilityView:
-    """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded."""
+    """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded.
+
+    `runs`: each with its name and its step size.
+    """
 
     finding: tuple[str, ...]
     kinds: tuple[Kind, ...]
-    runs: tuple[RunRow, ...]
+    runs: tuple[tuple[str, str, StabilityResult], ...]
     largest: tuple[Row, ...]
     bound: str
     plots: tuple[tuple[StabilityMapResult, Plot], ...]
@@ -65,10 +58,10 @@ def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
     return StabilityView(
         finding=tuple(_finding(runs, steps)),
         kinds=tuple(kind for kind in KINDS if kind in seen),
-        runs=tuple(map(_run_row, runs)),
+        runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in runs),
         largest=tuple(map(_largest, steps)),
         bound=_bound(steps),
-        plots=tuple(zip(maps, _plots(maps, anchor), strict=True)),
+        plots=tuple((over, _plot(over, f"{i}-of-{anchor}")) for i, over in enumerate(maps)),
     )
 
 
@@ -101,17 +94,6 @@ def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]
         )
 
 
-def _run_row(run: StabilityResult) -> RunRow:
-    return RunRow(
-        name=_name(run),
-        scheme=run.scheme,
-        step_size=step(short(Fraction(run.step_size))),
-        steps=whole(run.steps),
-        verdict=run.verdict,
-        detail=run.detail,
-    )
-
-
 def _name(run: StabilityResult) -> str:
     """What its id says beside the scene, the scheme and the step size: section, initial value."""
     _, *parts = run.id.split("/")
@@ -138,18 +120,16 @@ def _bound(steps: Sequence[LargestStepResult]) -> str:
     return f"until t = {listed(list(times))}" if times else ""
 
 
-def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[Plot]:
+def _plot(over: StabilityMapResult, name: str) -> Plot:
     """The drawing, and with it matplotlib, is imported only where there is a map."""
-    if not maps:
-        return
-    from verify.pages.figures.stability_figure import plane_of, stability_plane
+    from verify.pages.figures.stability_figure import draw_plane
 
-    for index, over in enumerate(maps):
-        lead = f"Stability of {over.scheme} over the step size h and {over.parameter}"
-        svg = stability_plane(
-            plane_of(over), name=f"stability-{index}-of-{anchor}", label=f"{lead}."
-        )
-        yield Plot(svg, f"{lead}.", _caption(over))
+    return plotted(
+        lambda: draw_plane(over),
+        name=f"stability-{name}",
+        lead=f"Stability of {over.scheme} over the step size h and {over.parameter}",
+        caption=_caption(over),
+    )
 
 
 def _caption(over: StabilityMapResult) -> str:

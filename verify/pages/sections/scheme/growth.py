@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.figures.captioned_plot import Plot, few, plotted
 from verify.pages.figures.logarithm import lg
 from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Section
@@ -155,21 +155,24 @@ def _percent(value: Fraction) -> str:
 
 def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     """|Λ| predicted and measured, where there are step sizes to compare."""
-    drawable = [each for each in laws if len(_orbit_figure(each)) > 1]
+    drawable = [each for each in laws if len(_known(each)) > 1]
     if not drawable:
         return
     from verify.pages.figures import growth_figure
 
     lead = "Λ as the growth law predicts it and as measured, against the step size h"
-    svg = growth_figure.predicted_against_measured(
-        orbits(laws), name=f"growth-of-{name}", label=lead
+    yield plotted(
+        lambda: growth_figure.draw_predicted_against_measured(orbits(laws)),
+        name=f"growth-of-{name}",
+        lead=lead,
+        label=lead,
+        caption=_caption(drawable[0].law),
     )
-    yield Plot(svg, f"{lead}.", _caption(drawable[0].law))
 
 
 def orbits(laws: Sequence[GrowthLawResult]) -> "list[Orbit]":
     """Those along which two step sizes and more can be drawn."""
-    return [_orbit(each) for each in laws if len(_orbit_figure(each)) > 1]
+    return [_orbit(each) for each in laws if len(_known(each)) > 1]
 
 
 def _caption(law: AverageResult) -> str:
@@ -186,7 +189,7 @@ def _caption(law: AverageResult) -> str:
     )
 
 
-def _orbit_figure(each: GrowthLawResult) -> list[PredictionResult]:
+def _known(each: GrowthLawResult) -> list[PredictionResult]:
     """Those of whose Λ and difference a digit is known."""
     return [
         p
@@ -204,7 +207,7 @@ def _orbit(each: GrowthLawResult) -> "Orbit":
         placed = ((h, lg(value.value)) for h, value in values if value)
         return Line(start(each.law), tuple(placed))
 
-    points = _orbit_figure(each)
+    points = _known(each)
     return growth_figure.Orbit(
         predicted=line((p.step_size, p.predicted) for p in points),
         measured=line((p.step_size, p.measured) for p in points),

@@ -4,10 +4,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.figures.captioned_plot import Plot, few, plotted
 from verify.pages.figures.separation_caption import WAYS, caption, end_of
 from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
@@ -76,20 +77,19 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
 
 def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
     """A figure for each grid over which truncation and rounding can be drawn."""
-    if not grids:
-        return
-    from verify.pages.figures import crossover_figure
-
     for index, grid in enumerate(grids):
-        lines, marks = crossover_figure.contents(grid)
+        from verify.pages.figures import crossover_figure as figure
+
+        lines, marks = figure.contents(grid)
         if len(lines) < 2:
             continue
-        first = grid.points[0]
-        lead = f"Truncation and rounding in Λ against h, from {start(first)}{end_of(grid.points)}"
-        svg = crossover_figure.truncation_against_rounding(
-            lines, marks, name=f"crossover-{index}-of-{name}", label=f"{lead}."
+        place = f"{start(grid.points[0])}{end_of(grid.points)}"
+        yield plotted(
+            partial(figure.draw_truncation_against_rounding, lines, marks),
+            name=f"crossover-{index}-of-{name}",
+            lead=f"Truncation and rounding in Λ against h, from {place}",
+            caption=caption(grid, computed(grid.points)),
         )
-        yield Plot(svg, f"{lead}.", caption(grid, computed(grid.points)))
 
 
 # -- tables ---------------------------------------------------------------------------------------
