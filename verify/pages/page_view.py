@@ -21,13 +21,10 @@ from verify.scenes.results.report import Report, SceneResult
 
 
 @dataclass(frozen=True)
-class PageView:
+class PageView(Given):
     """The first screen, and after it the sections of the page with the terms that they need."""
 
-    report: Report
     first: FirstScreen
-    claims: tuple[ClaimView, ...]
-    groups: tuple[ClaimGroup, ...]
     sections: tuple[Shown, ...]
     terms: Mapping[str, Markup]
 
@@ -49,10 +46,8 @@ def page_view(report: Report) -> PageView:
     own = _given(report)
     sections = shown(of_page.FILES, Place("", ""), own)
     return PageView(
-        report=report,
+        **vars(own),
         first=first_screen(report, own.claims, sections),
-        claims=own.claims,
-        groups=own.groups,
         sections=sections,
         terms=words.ALWAYS | terms(sections),
     )

@@ -1,8 +1,7 @@
 """Λ as the growth law predicts it and as it was measured, against the step size, as inline SVG."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from matplotlib.figure import Figure
 
@@ -11,35 +10,28 @@ from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.notebook_figure import sheet
 from verify.pages.figures.svg import INK
+from verify.pages.text.typography import start
+from verify.scenes.results.growth import GrowthLawResult
 
 _HEIGHT = 520
 _GUIDE_GAP = 0.4  # decades between the guide and the points below it
 _LEGEND = 2  # columns
 
 
-@dataclass(frozen=True)
-class Orbit:
-    """One initial value: |Λ| predicted and measured, and their relative difference."""
-
-    predicted: Line
-    measured: Line
-    difference: Line
-
-
-def draw_predicted_against_measured(orbits: Sequence[Orbit]) -> Figure:
+def draw_predicted_against_measured(orbits: Sequence[GrowthLawResult]) -> Figure:
     """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
     figure = sheet(_HEIGHT)
     above, below = figure.subplots(2, 1, sharex=True)
     for index, orbit in enumerate(orbits):
         style = line_style(index, len(orbits))
         _prediction(above, orbit, style)
-        plot_line(below, orbit.difference, style)
-    _guide(below, [orbit.difference for orbit in orbits])
+        plot_line(below, _line(orbit, "difference"), style)
+    _guide(below, [_line(orbit, "difference") for orbit in orbits])
     for axes in (above, below):
         grid_lines(axes)
         axes.margins(y=0.08)
         decades(axes.yaxis, most=6)
-    step_sizes(below, [h for orbit in orbits for h, _ in orbit.measured.points])
+    step_sizes(below, [p.step_size for orbit in orbits for p in orbit.predictions])
     above.set_title("(a) |Λ|: points measured, lines predicted")
     below.set_title("(b) |predicted − measured| / |measured|")
     if len(orbits) <= MOST_STYLES:
@@ -48,16 +40,22 @@ def draw_predicted_against_measured(orbits: Sequence[Orbit]) -> Figure:
     return figure
 
 
-def _prediction(axes: Any, orbit: Orbit, style: dict[str, Any]) -> None:
+def _line(orbit: GrowthLawResult, quantity: Literal["predicted", "measured", "difference"]) -> Line:
+    """The quantity, of which a digit is known at each step size."""
+    points = ((p.step_size, lg(getattr(p, quantity).value)) for p in orbit.predictions)
+    return Line(start(orbit.law), tuple(points))
+
+
+def _prediction(axes: Any, orbit: GrowthLawResult, style: dict[str, Any]) -> None:
     """The predicted line without marks, and the measured marks without a line."""
-    plot_line(axes, orbit.predicted, {**style, "marker": None})
+    plot_line(axes, _line(orbit, "predicted"), {**style, "marker": None})
     points = {"color": style["color"], "marker": style.get("marker", "o"), "markersize": 5}
-    plot_line(axes, orbit.measured, {**points, "linestyle": "none"})
+    plot_line(axes, _line(orbit, "measured"), {**points, "linestyle": "none"})
     # One entry an orbit: the mark on its line.
     line, marks = axes.lines[-2:]
     line.set_label("_")
     marks.set_label("_")
-    axes.plot([], [], label=orbit.measured.label, **style)
+    axes.plot([], [], label=start(orbit.law), **style)
 
 
 def _guide(axes: Any, lines: Sequence[Line]) -> None:

@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from verify.pages.by_key import by_key
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.section import Counts
 from verify.scenes.results.claim import ClaimResult
@@ -90,9 +91,7 @@ class Anchors:
 
 def groups(claims: Sequence[ClaimView], anchors: Anchors) -> list[ClaimGroup]:
     """The claims by section, sections in the order of their numbers, those without one last."""
-    by_section: dict[str, list[ClaimView]] = {}
-    for claim in claims:
-        by_section.setdefault(claim.result.section, []).append(claim)
+    by_section = by_key(claims, lambda claim: claim.result.section)
     found = []
     for section in sorted(by_section, key=_place):
         own = by_section[section]

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from decimal import ROUND_CEILING, Decimal
 from fractions import Fraction
 
+from verify.pages.by_key import by_key
 from verify.pages.text.typography import NBSP, listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 
@@ -109,11 +110,8 @@ def _capital(text: str) -> str:
 
 def _distances(images: Sequence[FlowFinding]) -> Iterator[str]:
     """For each scheme, how far its outlines are from the exact ones at most."""
-    by_map: dict[str, list[FlowFinding]] = {}
-    for each in images:
-        by_map.setdefault(each[1].map, []).append(each)
     parts = []
-    for name, own in by_map.items():
+    for name, own in by_key(images, lambda each: each[1].map).items():
         flow, image = max(own, key=lambda each: _size(each[1].distance))
         parts.append(f"{name} {_away(image)} ({_at(flow, image)})")
     if parts:
@@ -128,18 +126,12 @@ def finding(flow: FlowResult) -> Iterator[str]:
 
     Where the last image failed, the last that is known is told too.
     """
-    last: dict[str, list[FlowImage]] = {}
-    for image in sorted(flow.images, key=lambda image: image.steps):
-        own = last.setdefault(image.map, [])
-        known = [each for each in own if each.area_change is not None]
-        own[:] = [*known[-1:], image]
-    for name, images in last.items():
-        if name == EXACT_FLOW:
-            continue
-        *earlier, image = images
-        if image.area_change is None:
-            yield from (_finding_of(flow, known) for known in earlier)
-        yield _finding_of(flow, image)
+    ascending = sorted(flow.images, key=lambda image: image.steps)
+    for name, images in by_key(ascending, lambda image: image.map).items():
+        known = [image for image in images if image.area_change is not None]
+        if name != EXACT_FLOW:
+            yield from (_finding_of(flow, each) for each in known[-1:] if each is not images[-1])
+            yield _finding_of(flow, images[-1])
 
 
 def _finding_of(flow: FlowResult, image: FlowImage) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 from markupsafe import Markup
 
 from verify.discovery import Catalogue
+from verify.pages.by_key import by_key
 from verify.pages.figures.captioned_plot import Plot
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
@@ -149,11 +150,8 @@ def walk(found: Iterable[Shown]) -> Iterator[Shown]:
 
 def terms(found: Iterable[Shown]) -> dict[str, Markup]:
     """The terms that these sections and those within them need, with what each means."""
-    views: dict[str, list[Shown]] = {}
-    for each in walk(found):
-        views.setdefault(each.template, []).append(each)
     return {
         term: meaning
-        for own in views.values()
+        for own in by_key(walk(found), lambda each: each.template).values()
         for term, meaning in own[0].section.terms([each.view for each in own]).items()
     }

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.logarithm import lg
 from verify.pages.sections.gallery_finding import findings, in_short, lambda_of, run_beyond
 from verify.pages.sections.given import Given
 from verify.pages.sections.section import Entry, Picture, Place, Section, Tile
@@ -30,7 +32,6 @@ class CardView:
     setting: Markup
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
-    command: str
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,6 @@ def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
         setting=_setting(each, gallery.steps),
         finding=(*lambda_of(each), *run_beyond(each)),
         plots=tuple(_plots(each, place, gallery.steps, anchor)),
-        command=f"verify report {anchor}.toml",
     )
 
 
@@ -137,7 +137,7 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
     """Truncation against rounding, which the first screen shows of the worst, and the orbit."""
     of = each.separation
     series = of.plain.series if of.plain else ()
-    drawable = [at for at in series if _bounded_number(at.truncation) or _bounded_number(at.total)]
+    drawable = [at for at in series if _is_known(at.truncation) or _is_known(at.total)]
     if len(drawable) > 1:
         from verify.pages.figures import gallery_figure
 
@@ -174,7 +174,7 @@ def _parts_sentence(each: GalleryScene) -> str:
         f"Λ in float64, evaluated the plain way, split after up to {whole(of.steps)} steps: what "
         "the scheme does to area, and what rounding adds."
     ]
-    if any(not _bounded_number(size) for at in series for size in (at.truncation, at.total)):
+    if any(not _is_known(size) for at in series for size in (at.truncation, at.total)):
         said.append("What is 0, or of what no digit is known, has no place on these axes.")
     said.append(f"In place of exact arithmetic: {of.arithmetic}; {of.error_method}.")
     return " ".join(said)
@@ -189,10 +189,8 @@ def _orbit_sentence(each: GalleryScene, steps: int) -> str:
     return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits.{at_rest}"
 
 
-def _bounded_number(size: str) -> bool:
-    from verify.pages.figures.logarithm import lg
-
-    return lg(size) > float("-inf")
+def _is_known(size: str) -> bool:
+    return isfinite(lg(size))
 
 
 def _pictures(view: GalleryView) -> Iterator[Picture]:

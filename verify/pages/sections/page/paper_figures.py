@@ -27,12 +27,9 @@ class PaperFigureView:
 
 def _views(given: Given) -> tuple[PaperFigureView, ...] | None:
     """In the order in which they are given; what is not in the report is left out of each."""
-    by_name: dict[str, SceneView] = {}
-    for scene in given.scenes:
-        by_name.setdefault(scene.result.name, scene)
-    by_id: dict[str, ClaimView] = {}
-    for claim in given.claims:
-        by_id.setdefault(claim.result.id, claim)
+    # Of those with one name the first counts.
+    by_name = {scene.result.name: scene for scene in reversed(given.scenes)}
+    by_id = {claim.result.id: claim for claim in reversed(given.claims)}
     drawn: set[int] = set()
     figures = given.report.figures
     return tuple(_view(f, by_name, by_id, given.anchors, drawn) for f in figures) or None

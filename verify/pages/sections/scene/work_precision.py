@@ -35,16 +35,14 @@ _UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
 
 @dataclass(frozen=True)
 class WorkPrecisionView:
+    result: WorkPrecisionResult
     finding: tuple[str, ...]
-    comparisons: tuple[str, ...]
     plots: tuple[Plot, ...]
     schemes: tuple[Row, ...]
     groups: tuple[Group, ...]
     systems: tuple[Row, ...]
-    systems_of: str
     count: int
     computed: str
-    left_out: tuple[tuple[str, str], ...]
 
 
 def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
@@ -55,16 +53,14 @@ def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
 
     own = [line for line in found.lines if not line.peer]
     return WorkPrecisionView(
+        result=found,
         finding=tuple(_finding(found)),
-        comparisons=tuple(each.sentence for each in found.comparisons),
         plots=tuple(plots(found, name=anchor)),
         schemes=tuple(_scheme(line) for line in own),
         groups=tuple(_group(line) for line in found.lines),
         systems=tuple(_system(point) for point in found.systems),
-        systems_of=f"{found.systems_scheme} at h = {found.systems_step_size}",
         count=sum(len(line.points) for line in found.lines),
         computed=_computed(found),
-        left_out=found.left_out,
     )
 
 

@@ -5,31 +5,23 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
-from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few, plotted
 from verify.pages.figures.logarithm import lg
-from verify.pages.sections.rows import Group, Row
+from verify.pages.sections.rows import Group, Row, shown
 from verify.pages.sections.section import Section
 from verify.pages.text import mathml
 from verify.pages.text.prose import prose
 from verify.pages.text.typography import NBSP, listed, number, start, step, superscript, whole
-from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 
-if TYPE_CHECKING:
-    from verify.pages.figures.growth_figure import Orbit
-
-MOST_ROWS = 600
-
 
 @dataclass(frozen=True)
 class GrowthView:
-    scheme: str
     law: Markup
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
@@ -43,7 +35,6 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
     if not laws:
         return None
     return GrowthView(
-        scheme=proof.scheme,
         law=_law(laws[0].law),
         finding=tuple(_finding(laws, scene.growth_explains)),
         plots=tuple(_plots(laws, anchor)),
@@ -155,14 +146,14 @@ def _percent(value: Fraction) -> str:
 
 def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     """|Λ| predicted and measured, where there are step sizes to compare."""
-    drawable = [each for each in laws if len(_known(each)) > 1]
+    drawable = orbits(laws)
     if not drawable:
         return
-    from verify.pages.figures import growth_figure
+    from verify.pages.figures.growth_figure import draw_predicted_against_measured
 
     lead = "Λ as the growth law predicts it and as measured, against the step size h"
     yield plotted(
-        lambda: growth_figure.draw_predicted_against_measured(orbits(laws)),
+        lambda: draw_predicted_against_measured(drawable),
         name=f"growth-of-{name}",
         lead=lead,
         label=lead,
@@ -170,9 +161,10 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     )
 
 
-def orbits(laws: Sequence[GrowthLawResult]) -> "list[Orbit]":
-    """Those along which two step sizes and more can be drawn."""
-    return [_orbit(each) for each in laws if len(_known(each)) > 1]
+def orbits(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
+    """Those along which two step sizes and more can be drawn, with these predictions alone."""
+    found = (each.model_copy(update={"predictions": _known(each)}) for each in laws)
+    return [each for each in found if len(each.predictions) > 1]
 
 
 def _caption(law: AverageResult) -> str:
@@ -189,29 +181,13 @@ def _caption(law: AverageResult) -> str:
     )
 
 
-def _known(each: GrowthLawResult) -> list[PredictionResult]:
+def _known(each: GrowthLawResult) -> tuple[PredictionResult, ...]:
     """Those of whose Λ and difference a digit is known."""
-    return [
+    return tuple(
         p
         for p in each.predictions
         if p.difference
         and all(isfinite(lg(v.value)) for v in (p.difference, p.predicted, p.measured))
-    ]
-
-
-def _orbit(each: GrowthLawResult) -> "Orbit":
-    from verify.pages.figures import growth_figure
-    from verify.pages.figures.figures import Line
-
-    def line(values: Iterator[tuple[str, Value | None]]) -> Line:
-        placed = ((h, lg(value.value)) for h, value in values if value)
-        return Line(start(each.law), tuple(placed))
-
-    points = _known(each)
-    return growth_figure.Orbit(
-        predicted=line((p.step_size, p.predicted) for p in points),
-        measured=line((p.step_size, p.measured) for p in points),
-        difference=line((p.step_size, p.difference) for p in points),
     )
 
 
@@ -219,11 +195,8 @@ def _orbit(each: GrowthLawResult) -> "Orbit":
 
 
 def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
-    left = MOST_ROWS
-    for each in laws:
-        shown = each.predictions[:left]
-        left -= len(shown)
-        yield Group(start(each.law), [_row(p) for p in shown], _about(each.law))
+    for each, rows in zip(laws, shown(each.predictions for each in laws), strict=True):
+        yield Group(start(each.law), [_row(p) for p in rows], _about(each.law))
 
 
 def _about(law: AverageResult) -> str:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from verify.pages.by_key import by_key
 from verify.pages.figures.captioned_plot import computed
-from verify.pages.sections.rows import Group, Row
+from verify.pages.sections.rows import MOST_ROWS, Group, Row
 from verify.pages.sections.section import Section
 from verify.pages.text import words
 from verify.pages.text.typography import number, start, value, whole
@@ -14,7 +15,6 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
-MOST_ROWS = 600  # of a table of runs; the others are in results.json
 _COLUMNS = {
     "mse": "MSE",
     "delta_j_max": "max |ΔJ|",
@@ -27,7 +27,6 @@ _COLUMNS = {
 class RunTable:
     """The runs of one scheme: a column an observable, a group an initial value."""
 
-    scheme: str
     columns: tuple[str, ...]
     groups: tuple[Group, ...]
     count: int
@@ -45,7 +44,6 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
         return None
     shown = runs[:MOST_ROWS]
     return RunTable(
-        scheme=proof.scheme,
         columns=tuple(_COLUMNS[n] for n in names) or ("outcome",),
         groups=tuple(_groups(shown, names)),
         count=len(runs),
@@ -79,10 +77,8 @@ def _certainty(runs: Sequence[RunResult]) -> str:
 
 def _fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
     """Each reason for another arithmetic than the one asked for, with its runs."""
-    groups: dict[tuple[str, str], list[RunResult]] = {}
-    for run in runs:
-        if run.fallback:
-            groups.setdefault((run.arithmetic, run.fallback), []).append(run)
+    elsewhere = [run for run in runs if run.fallback]
+    groups = by_key(elsewhere, lambda run: (run.arithmetic, run.fallback))
     for (arithmetic, reason), held in groups.items():
         sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in held))
         count = "One run" if len(held) == 1 else f"{whole(len(held))} runs"
@@ -90,11 +86,8 @@ def _fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
 
 
 def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[Group]:
-    groups: dict[str, list[Row]] = {}
-    for run in runs:
-        groups.setdefault(start(run), []).append(_row(run, names))
-    for label, rows in groups.items():
-        yield Group(label, rows)
+    for label, own in by_key(runs, start).items():
+        yield Group(label, [_row(run, names) for run in own])
 
 
 def _row(run: RunResult, names: Sequence[str]) -> Row:

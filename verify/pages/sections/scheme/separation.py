@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few, plotted
 from verify.pages.figures.separation_caption import WAYS, caption, end_of
-from verify.pages.sections.rows import Group, Row
+from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import (
     PARTS,
@@ -33,12 +33,9 @@ from verify.scenes.results.separation import (
     SeparationResult,
 )
 
-MOST_ROWS = 600
-
 
 @dataclass(frozen=True)
 class SeparationView:
-    scheme: str
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
     parts: tuple[Group, ...]
@@ -60,7 +57,6 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
     of_grid = [point for grid in own or wide for point in grid.points]
     rows = [point for grid in (*own, *wide) for point in grid.points]
     return SeparationView(
-        scheme=proof.scheme,
         finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
         plots=tuple(_plots(wide, anchor)),
         parts=tuple(_groups([*own, *wide], _parts_row)),
@@ -99,10 +95,8 @@ def _groups(
     grids: Sequence[SeparationGrid], row: Callable[[SeparationResult], Row | None]
 ) -> Iterator[Group]:
     """A group for each grid with a row; as many rows as are shown, of all that there are."""
-    left = MOST_ROWS
-    for grid in grids:
-        points = sorted(grid.points[:left], key=lambda point: Fraction(point.step_size))
-        left -= len(points)
+    for grid, held in zip(grids, shown(grid.points for grid in grids), strict=True):
+        points = sorted(held, key=lambda point: Fraction(point.step_size))
         rows = [found for point in points if (found := row(point))]
         if rows:
             yield Group(start(points[0]) + end_of(grid.points), rows)
