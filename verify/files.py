@@ -24,6 +24,8 @@ def opened(path: Path) -> Iterator[BinaryIO]:
 
     Raises InputError, which names it, for what is not there, is no regular file or cannot be read.
     """
+    if "\0" in str(path):
+        raise InputError("file", str(path), "is no name of a file: it holds a null character")
     try:
         # A pipe that nobody writes to would be waited for.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))

@@ -20,7 +20,7 @@ _RUN = (
     "r = run(h, 'lie2', q=F(3, 2), p=F(0), step_size=F(1, 1000), steps=%d)"
 )
 _TABLES = (
-    "from verify.commands.input import target; from verify.studies.plan import plan_scenes;"
+    "from verify.commands.shared.input import target; from verify.studies.plan import plan_scenes;"
     "from verify.execution.execute import Store, execute\n"
     "if __name__ == '__main__':\n"
     "    _, scenes, _ = target('paper')\n"

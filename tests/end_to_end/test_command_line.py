@@ -113,7 +113,7 @@ BAD = {
     "system-and-hamiltonian": (arguments("prove", PROVE, hamiltonian="p**2"), "give one of"),
     "parameter-missing": (arguments("run", RUN, system="duffing"), "parameter=delta: has no value"),
     "parameter-no-value": (
-        arguments("run", RUN, system="duffing", param="delta"), "parameter=delta: has no value"),
+        arguments("run", RUN, system="duffing", param="delta"), "--param=delta: has no value"),
     "parameter-unknown": (arguments("run", RUN, param="eps=1"), "parameter=eps"),
     "parameter-nan": (arguments("prove", PROVE, param="delta=nan"), "delta=nan"),
     "parameter-empty": (arguments("prove", PROVE, param="delta="), "delta="),
@@ -181,7 +181,7 @@ def test_bad_input_is_the_same_in_a_process_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "bad.toml").write_bytes(b"\xff\xfe")
     done = apart("plan", "bad.toml", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "verify: file=bad.toml: is not UTF-8 text\n"
+    assert done.stderr == "verify: file=bad.toml: is not UTF-8 text, at byte 0\n"
 
 
 # -- what is printed ------------------------------------------------------------------------------
@@ -243,7 +243,7 @@ def test_run_says_where_an_orbit_left_the_range(capsys: pytest.CaptureFixture[st
     changes = {"system": None, "hamiltonian": "p**2/2 - q**4", "step_size": "1", "steps": "90"}
     status, out, _ = here(capsys, *arguments("run", RUN, **changes), "--json")
     found = json_of(out)
-    assert (status, found["status"], found["lambda"]) == (0, "left range", None)
+    assert (status, found["status"], found["lambda"]) == (1, "left range", None)
     assert 1 < int(found["failed_step"]) < 90
     assert found["failed_step"] == json_of(
         here(capsys, *arguments("run", {**RUN, "--steps": "90"}, **{**changes, "steps": "80"}),

@@ -6,7 +6,7 @@ import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
 from tests.paths import ROOT
-from verify.commands.input import target
+from verify.commands.shared.input import target
 
 SCENE = """
 system = "duffing"

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.answer import Answer, answering
-from verify.commands.input import target
-from verify.commands.output import plain_json
-from verify.commands.tasks import cluster_option
+from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import target
+from verify.commands.shared.output import plain_json
+from verify.commands.shared.tasks import cluster_option
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def bench(scene: str, output: Path | None, cluster: str | None) -> Answer:
 
 
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
-    from verify.commands.progress import progress_bar
+    from verify.commands.shared.progress import progress_bar
     from verify.studies.work_precision import peers
 
     for scene in scenes:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.answer import Answer, answering
+from verify.commands.shared.answer import Answer, answering
 
 if TYPE_CHECKING:
     from verify.proof.certificates.established import Established

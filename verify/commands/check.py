@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.answer import Answer, picked
-from verify.commands.input import paper_folder
-from verify.commands.tasks import kept_tasks, with_tasks
+from verify.commands.shared.answer import Answer, picked
+from verify.commands.shared.input import paper_folder
+from verify.commands.shared.tasks import kept_tasks, with_tasks
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement

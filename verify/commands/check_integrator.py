@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output as show
-from verify.commands.answer import Answer, answering, picked
-from verify.commands.input import with_hamiltonian
+from verify.commands.shared import output as show
+from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.input import with_hamiltonian
 from verify.errors import InputError
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.answer import Answer
 from verify.commands.hunt import STEPS, hunt
-from verify.commands.input import writable_later
-from verify.commands.tasks import kept_tasks, with_tasks
+from verify.commands.shared.answer import Answer
+from verify.commands.shared.input import writable_later
+from verify.commands.shared.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.arithmetic.exact import short
-from verify.commands.answer import Answer
-from verify.commands.input import target
-from verify.commands.tasks import perform, with_tasks
+from verify.commands.shared.answer import Answer
+from verify.commands.shared.input import target
+from verify.commands.shared.tasks import perform, with_tasks
 from verify.errors import InputError
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands import output as show
-from verify.commands.answer import Answer
-from verify.commands.input import writable
-from verify.commands.tasks import kept_tasks
+from verify.commands.shared import output as show
+from verify.commands.shared.answer import Answer
+from verify.commands.shared.input import writable
+from verify.commands.shared.tasks import kept_tasks
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement

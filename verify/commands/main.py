@@ -9,7 +9,7 @@ import sys
 import click
 
 from verify.commands import commands
-from verify.commands.streams import Printable, printable_streams
+from verify.commands.shared.streams import Printable, printable_streams
 from verify.errors import InputError, PlaceError
 
 INTERRUPTED, UNREAD, TERMINATED = 130, 141, 143

@@ -5,8 +5,8 @@ from typing import Any
 
 import click
 
-from verify.commands.answer import Answer, answering
-from verify.commands.input import target
+from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import target
 
 Task = Mapping[str, Any]  # as JSON has it
 

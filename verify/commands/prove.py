@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output as show
-from verify.commands.answer import Answer, answering, picked
-from verify.commands.input import hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.output import cut
+from verify.commands.shared import output as show
+from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
+from verify.commands.shared.output import cut
 from verify.errors import InputError
 
 if TYPE_CHECKING:

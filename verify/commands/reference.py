@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.answer import Answer, answering, picked
-from verify.commands.input import writable
 from verify.commands.reference_compare import compare
-from verify.commands.tasks import perform, with_placement, with_tasks
+from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.input import writable
+from verify.commands.shared.tasks import perform, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def check(
     """
     from random import SystemRandom
 
-    from verify.commands.progress import progress_bar
+    from verify.commands.shared.progress import progress_bar
     from verify.reference.check import check as checking
     from verify.reference.make.make import PUBLISHED, SCENES
 

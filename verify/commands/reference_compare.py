@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.answer import Answer, answering, picked
+from verify.commands.shared.answer import Answer, answering, picked
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def compare(
 
     verify reference compare mine.csv --scene duffing --scheme lie2
     """
-    from verify.commands.progress import progress_bar
+    from verify.commands.shared.progress import progress_bar
     from verify.reference.compare.compare import compare as compared
     from verify.reference.compare.published import load
     from verify.reference.compare.submitted import read

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands import output as show
-from verify.commands.answer import Answer, answering
-from verify.commands.input import keepable, target, writable
-from verify.commands.tasks import kept_tasks, with_placement
+from verify.commands.shared import output as show
+from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import keepable, target, writable
+from verify.commands.shared.tasks import kept_tasks, with_placement
 from verify.errors import InputError
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import click
 
 from verify import arithmetic as number_systems
-from verify.commands import output as show
-from verify.commands.answer import Answer, answering
-from verify.commands.input import keepable, scheme_option, with_hamiltonian
+from verify.commands.shared import output as show
+from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import keepable, scheme_option, with_hamiltonian
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -49,7 +49,7 @@ def run(
 
     With --keep, an interruption costs at most some seconds of work.
     """
-    from verify.commands.progress import steps_bar
+    from verify.commands.shared.progress import steps_bar
     from verify.execution.keeping import Keeper, name_of
     from verify.runs.run import run as run_scheme
     from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED

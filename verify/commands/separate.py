@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands import output as show
-from verify.commands.answer import Answer, answering
-from verify.commands.input import scheme_option, with_hamiltonian
+from verify.commands.shared import output as show
+from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import scheme_option, with_hamiltonian
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -39,7 +39,7 @@ def separate(
 
     With several step sizes also the one below which rounding is the larger part.
     """
-    from verify.commands.progress import progress_bar
+    from verify.commands.shared.progress import progress_bar
     from verify.studies.separation.separate import RUNS, grid, separate_grid
 
     counts = grid(step_sizes, options["steps"], options["time"])

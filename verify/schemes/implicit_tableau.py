@@ -13,8 +13,8 @@ import sympy
 
 from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
-from verify.algebra.residue import condition_of
 from verify.algebra.ring import Poly, Ring
+from verify.schemes.residue import condition_of
 
 _SHOWN = 5  # digits of a residue
 

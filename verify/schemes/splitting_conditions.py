@@ -31,11 +31,11 @@ import sympy
 
 from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
-from verify.algebra.residue import condition_of
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.free_lie_words import lyndon
+from verify.schemes.residue import condition_of
 
 Part = tuple[str, sympy.Expr]  # "kick" or "drift", and what part of h it takes
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane

@@ -12,12 +12,12 @@ from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions
 from tests.helpers.sampled.formulas import polynomials, rationals
 from verify.algebra.embedding import embed
-from verify.algebra.residue import decimal_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.symmetry import by_series, palindromic, prove_symmetry
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.residue import decimal_of
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from verify.commands import commands, main
-from verify.commands import input as given
 from verify.commands.reference import reference
 from verify.commands.reference_compare import compare
+from verify.commands.shared import input as given
 
 
 def test_each_is_called_as_its_file_and_what_it_shares_is_none() -> None:

@@ -5,8 +5,8 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.by_key import by_key
 from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.by_key import by_key
 from verify.pages.sections.section import Counts
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict

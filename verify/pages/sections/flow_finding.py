@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from decimal import ROUND_CEILING, Decimal
 from fractions import Fraction
 
-from verify.pages.by_key import by_key
+from verify.pages.sections.by_key import by_key
 from verify.pages.text.typography import NBSP, listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 

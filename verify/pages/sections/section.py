@@ -12,8 +12,8 @@ from typing import Any
 from markupsafe import Markup
 
 from verify.discovery import Catalogue
-from verify.pages.by_key import by_key
 from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.by_key import by_key
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.unit.scenes.test_scene import load
-from verify.commands.input import suites, target
+from verify.commands.shared.input import suites, target
 from verify.errors import InputError
 from verify.execution.study import plan_of
 from verify.scenes.stability_sections import Stability, StabilityMap

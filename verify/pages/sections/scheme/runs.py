@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.by_key import by_key
 from verify.pages.figures.captioned_plot import computed
+from verify.pages.sections.by_key import by_key
 from verify.pages.sections.rows import MOST_ROWS, Group, Row
 from verify.pages.sections.section import Section
 from verify.pages.text import words

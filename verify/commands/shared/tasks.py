@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.answer import answering
-from verify.commands.input import keepable
+from verify.commands.shared.answer import answering
+from verify.commands.shared.input import keepable
 
 if TYPE_CHECKING:
     from verify.execution.execute import OnResult, Store
@@ -67,7 +67,7 @@ def kept_tasks(
 
     Their progress is shown; an interruption says what is kept where.
     """
-    from verify.commands.progress import progress_bar
+    from verify.commands.shared.progress import progress_bar
     from verify.execution.execute import Store
 
     if keep is not None:

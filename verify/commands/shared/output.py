@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.answer import picked
+from verify.commands.shared.answer import picked
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian

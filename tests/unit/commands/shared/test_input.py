@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.paths import ROOT
-from verify.commands.input import keepable
+from verify.commands.shared.input import keepable
 from verify.errors import InputError
 
 
