@@ -33,7 +33,6 @@ _NONE_LEFT = {
 _LONG = re.compile(r"[0-9]+/[0-9]{20,}|[0-9]{25,}(?:/[0-9]+)?")
 _MOST_DIGITS, _DIGITS_SHOWN = 400, 36
 _ANY = 0.5  # digits: with fewer, none agrees
-_PARTS = ("input", "trajectory", "determinant", "product")
 _KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 
 
@@ -219,10 +218,11 @@ def _few(lines: "Sequence[str]", rest: str) -> None:
 
 def _separated(x: "Separated") -> str:
     from verify.arithmetic.exact import decimal
+    from verify.scenes.results.separation import ROUNDING
 
     plain = x.result.plain
     assert plain is not None  # noqa: S101 - it is not shown without
-    parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in _PARTS)
+    parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in ROUNDING)
     return (
         f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_run(x.run)}); rounding "
         f"makes {plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"

@@ -38,6 +38,14 @@ class Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
+class OfScheme(Frozen):
+    """What was found of a scheme for one H with its parameter values."""
+
+    hamiltonian: str
+    parameters: dict[str, str]
+    scheme: str
+
+
 class WithProse(Frozen):
     """A model with fields that are `Said`: each is its plain text in data.
 

@@ -27,7 +27,16 @@ from verify.errors import InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
-from verify.scenes.values import MAX_STEPS, Digits, InitialValue, Number, Steps, StepSize, Time
+from verify.scenes.values import (
+    MAX_STEPS,
+    Digits,
+    InitialValue,
+    Number,
+    Steps,
+    StepSize,
+    Time,
+    distinct,
+)
 
 MOST_DIGITS = 1000  # of points: a curve has thousands of them
 FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them are floats too
@@ -116,11 +125,8 @@ class Flow(PlacedShape):
             raise InputError("flow", "steps, times", "give one of the two")
         if self.digits > MOST_DIGITS:
             raise InputError("digits", self.digits, f"must be at most {MOST_DIGITS}")
-        counts = self.counts
-        if len(set(counts)) < len(counts):
-            raise InputError("steps", len(counts), "one of them stands twice")
-        if len(set(self.schemes)) < len(self.schemes):
-            raise InputError("schemes", len(self.schemes), "one of them stands twice")
+        distinct("steps", self.counts)
+        distinct("schemes", self.schemes)
         return self
 
     @property

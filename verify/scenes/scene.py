@@ -55,7 +55,6 @@ from typing import Annotated, Any, Self
 from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import text
 from verify.drawable import drawn_by
 from verify.errors import CONTROL, InputError, without_controls
 from verify.files import read_text
@@ -67,7 +66,6 @@ from verify.scenes.sections import Reference, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
 from verify.scenes.values import (
     CLOSED_FORM,
-    MAX_STEPS,
     OBSERVABLES,
     ArithmeticName,
     Digits,
@@ -76,6 +74,8 @@ from verify.scenes.values import (
     Steps,
     StepSize,
     Time,
+    distinct,
+    steps_of,
 )
 
 _MAX_DEPTH = 12
@@ -104,8 +104,7 @@ class Grid(Frozen):
                 raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
         if self.growth and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")
-        if len(set(self.step_sizes)) < len(self.step_sizes):
-            raise InputError("step_sizes", len(self.step_sizes), "one of them stands twice")
+        distinct("step_sizes", self.step_sizes)
         if len(set(self.initial_values)) < len(self.initial_values):
             raise InputError("initial_values", len(self.initial_values), "one stands twice")
         for h in self.step_sizes:
@@ -114,13 +113,7 @@ class Grid(Frozen):
 
     def steps_for(self, h: Fraction) -> int:
         """N: as given, or the whole steps of size h that fit into `time`."""
-        if self.steps is not None:
-            return self.steps
-        assert self.time is not None  # noqa: S101 - the validator above
-        count = self.time // h
-        if not 1 <= count <= MAX_STEPS:
-            raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {MAX_STEPS}")
-        return count
+        return steps_of(self.time, self.steps, h)
 
 
 class SeparationOver(Frozen):
@@ -165,18 +158,12 @@ class Series(Frozen):
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
             raise InputError("series", "time, steps", "give one of the two")
-        if not 1 <= self.count <= MAX_STEPS:
-            problem = f"makes {self.count} steps; allowed: 1 … {MAX_STEPS}"
-            raise InputError("step_size", text(self.step_size), problem)
+        steps_of(self.time, self.steps, self.step_size)
         return self
 
     @property
     def count(self) -> int:
-        """N: as given, or the whole steps that fit into `time`."""
-        if self.steps is not None:
-            return self.steps
-        assert self.time is not None  # noqa: S101 - the validator above
-        return self.time // self.step_size
+        return steps_of(self.time, self.steps, self.step_size)
 
 
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "schemes")

@@ -30,7 +30,15 @@ from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
-from verify.scenes.values import AUTO, ArithmeticName, Digits, InitialValue, StepSize, Time
+from verify.scenes.values import (
+    AUTO,
+    ArithmeticName,
+    Digits,
+    InitialValue,
+    StepSize,
+    Time,
+    distinct,
+)
 
 MOST_STEPS = 10**8  # of a run that is repeated
 
@@ -52,9 +60,7 @@ class WorkPrecision(Frozen):
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "schemes", "number_systems", "digits"):
-            given = getattr(self, name)
-            if len(set(given)) < len(given):
-                raise InputError(name, len(given), "one of them stands twice")
+            distinct(name, getattr(self, name))
         own = self.number_systems_step_size
         for h in (*self.step_sizes, *(() if own is None else (own,))):
             self.steps_for(h)
@@ -96,9 +102,7 @@ class Reference(Frozen):
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "initial_values", "schemes"):
-            given = getattr(self, name)
-            if len(set(given)) < len(given):
-                raise InputError(name, len(given), "one of them stands twice")
+            distinct(name, getattr(self, name))
         if list(self.steps) != sorted(set(self.steps)):
             raise InputError("steps", list(self.steps), "must ascend")
         rows = len(self.step_sizes) * len(self.initial_values) * len(self.steps)

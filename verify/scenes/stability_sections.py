@@ -26,11 +26,11 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import decimal, positive, text, whole
+from verify.arithmetic.exact import decimal, positive, whole
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
-from verify.scenes.values import InitialValue, Number, Steps, StepSize, Time
+from verify.scenes.values import InitialValue, Number, Steps, StepSize, Time, distinct, steps_of
 
 _MOST_STEPS = 10**9  # of a run that is judged: minutes
 _MOST_MAP_STEPS = 100_000
@@ -80,8 +80,7 @@ class OfSchemes(Frozen):
     def _known(self) -> Self:
         for name in self.schemes:
             scheme_catalogue.get(name)
-        if len(set(self.schemes)) < len(self.schemes):
-            raise InputError("schemes", len(self.schemes), "one of them stands twice")
+        distinct("schemes", self.schemes)
         return self
 
 
@@ -99,17 +98,12 @@ class Stability(OfSchemes):
         if (self.time is None) == (self.steps is None):
             raise InputError("stability", "time, steps", "give one of the two")
         for h in self.step_sizes:
-            if not 1 <= self.steps_for(h) <= _MOST_STEPS:
-                problem = f"makes {self.steps_for(h)} steps; allowed: 1 … {_MOST_STEPS}"
-                raise InputError("step_size", text(h), problem)
+            self.steps_for(h)
         return self
 
     def steps_for(self, h: Fraction) -> int:
         """N: as given, or the whole steps of size h that fit into `time`."""
-        if self.steps is not None:
-            return self.steps
-        assert self.time is not None  # noqa: S101 - the validator above
-        return self.time // h
+        return steps_of(self.time, self.steps, h, _MOST_STEPS)
 
 
 class LargestStepOver(OfSchemes):

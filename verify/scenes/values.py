@@ -1,5 +1,6 @@
 """The values that a scene's keys take: exact numbers, counts, initial values."""
 
+from collections.abc import Collection
 from fractions import Fraction
 from typing import Annotated
 
@@ -37,6 +38,20 @@ def _known_arithmetic(name: str) -> str:
 
 
 ArithmeticName = Annotated[str, AfterValidator(_known_arithmetic)]
+
+
+def distinct(name: str, given: Collection[object]) -> None:
+    """InputError where one of the values under this key stands twice."""
+    if len(set(given)) < len(given):
+        raise InputError(name, len(given), "one of them stands twice")
+
+
+def steps_of(time: Fraction | None, steps: int | None, h: Fraction, most: int = MAX_STEPS) -> int:
+    """N: as given, or the whole steps of size h that fit into `time`; InputError beyond `most`."""
+    count = steps if time is None else time // h
+    if count is None or not 1 <= count <= most:
+        raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {most}")
+    return count
 
 
 @drawn_by("initial_values")

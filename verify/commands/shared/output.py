@@ -30,15 +30,6 @@ _LABELS = {
     "q": "q",
     "p": "p",
 }
-_PARTS = {
-    "lambda_working": "Λ in float64",
-    "truncation": "truncation",
-    "total": "rounding",
-    "input": "  input",
-    "trajectory": "  trajectory",
-    "determinant": "  determinant",
-    "product": "  product",
-}
 
 
 def cut(formula: str) -> str:
@@ -159,7 +150,9 @@ def _separated(point: "SeparationResult") -> dict[str, Any]:
 
 
 def _evaluated(way: "EvaluationResult | None") -> dict[str, Any]:
-    values = {n: getattr(way.parts, n) if way else None for n in _PARTS}
+    from verify.scenes.results.separation import Parts
+
+    values = {n: getattr(way.parts, n) if way else None for n in Parts.model_fields}
     shown = {n: value.value if value else None for n, value in values.items()}
     return {
         "lambda_working": shown.pop("lambda_working"),
@@ -187,9 +180,11 @@ def print_separation(found: "SeparationGrid") -> None:
 
 
 def _print_parts(point: "SeparationResult") -> None:
+    from verify.scenes.results.separation import ROUNDING, SHOWN
+
     ways = [way for way in (point.plain, point.closed_form) if way]
     click.echo(f"  {'':16}{'plain':26}{'closed form' if len(ways) > 1 else ''}")
-    for name, label in _PARTS.items():
+    for name, label in (SHOWN | {name: f"  {name}" for name in ROUNDING}).items():
         values = [getattr(way.parts, name) for way in ways]
         click.echo(f"  {label:16}" + "".join(f"{value.value:26}" for value in values).rstrip())
     for label, way in zip(("plain", "closed form"), ways, strict=False):

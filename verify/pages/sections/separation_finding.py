@@ -13,10 +13,8 @@ from markupsafe import Markup
 
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.separation_caption import PLAIN, WAYS
-from verify.pages.text.typography import listed, whole
-from verify.scenes.results.separation import EvaluationResult, SeparationResult
-
-PARTS = ("input", "trajectory", "determinant", "product")
+from verify.pages.text.typography import between, counted, every, listed, whole
+from verify.scenes.results.separation import ROUNDING, EvaluationResult, SeparationResult
 
 
 def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:
@@ -104,17 +102,12 @@ def computed(points: Sequence[SeparationResult]) -> str:
 
 def _of(n: int, count: int) -> str:
     if n == count:
-        return "the one entry" if count == 1 else f"all {_entries(count)}"
-    return f"{whole(n)} of {_entries(count)}"
-
-
-def _entries(count: int) -> str:
-    return "1 entry" if count == 1 else f"{whole(count)} entries"
+        return every(count, "entry", "entries")
+    return f"{whole(n)} of {counted(count, 'entry', 'entries')}"
 
 
 def _range(found: Sequence[float]) -> str:
-    low, high = f"{min(found):.1f}", f"{max(found):.1f}"
-    return low if low == high else f"{low} to {high}"
+    return between(f"{min(found):.1f}", f"{max(found):.1f}")
 
 
 def decades_below(evaluation: EvaluationResult) -> float | None:
@@ -124,6 +117,6 @@ def decades_below(evaluation: EvaluationResult) -> float | None:
 
 
 def greatest_part(evaluation: EvaluationResult) -> str:
-    sizes = {name: abs(Decimal(getattr(evaluation.parts, name).value)) for name in PARTS}
+    sizes = {name: abs(Decimal(getattr(evaluation.parts, name).value)) for name in ROUNDING}
     greatest = max(sizes, key=lambda name: sizes[name])
     return greatest if sizes[greatest] else ""

@@ -2,11 +2,11 @@
 
 from typing import Literal
 
-from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 
 
-class AverageResult(WithProse):
+class AverageResult(OfScheme, WithProse):
     """The growth law of Λ on one orbit: see `verify.proof.growth_law`.
 
     `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas;
@@ -15,9 +15,6 @@ class AverageResult(WithProse):
     known to be closed, and `reason` says why; `period` is None at an equilibrium too.
     """
 
-    hamiltonian: str
-    parameters: dict[str, str]
-    scheme: str
     digits: int
     q: str
     p: str

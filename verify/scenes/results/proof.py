@@ -1,16 +1,13 @@
 """What was proved of a scheme, for one H and for every H."""
 
 from verify.algebra.conditions import Condition
-from verify.scenes.frozen import Said, Seconds, WithProse
+from verify.scenes.frozen import OfScheme, Said, Seconds, WithProse
 from verify.verdict import Verdict
 
 
-class ProofResult(WithProse):
+class ProofResult(OfScheme, WithProse):
     """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for."""
 
-    hamiltonian: str
-    parameters: dict[str, str]
-    scheme: str
     verdict: Verdict
     reason: Said
     order: int | None

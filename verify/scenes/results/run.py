@@ -3,7 +3,7 @@
 from typing import Literal
 
 from verify.notebook import aligned_latex, html_table, number_latex
-from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.frozen import Frozen, OfScheme, Seconds
 from verify.scenes.results.bounded_value import Value
 
 _SHOWN = {
@@ -26,7 +26,7 @@ class SeriesPoint(Frozen):
     lam: tuple[str, str]
 
 
-class RunResult(Frozen):
+class RunResult(OfScheme):
     """One run of N steps of a scheme in one arithmetic.
 
     `values` holds p, q and the observables asked for. It is empty where the orbit left the
@@ -38,9 +38,6 @@ class RunResult(Frozen):
     says that the run repeats.
     """
 
-    hamiltonian: str
-    parameters: dict[str, str]
-    scheme: str
     arithmetic: str
     fallback: str = ""
     digits: int

@@ -4,18 +4,11 @@ from collections.abc import Iterator
 from typing import Literal
 
 from verify.notebook import html_table
-from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 
-_PARTS = {
-    "lambda_working": "Λ in float64",
-    "truncation": "truncation",
-    "total": "rounding",
-    "input": "– input",
-    "trajectory": "– trajectory",
-    "determinant": "– determinant",
-    "product": "– product",
-}
+ROUNDING = ("input", "trajectory", "determinant", "product")  # the parts of it
+SHOWN = {"lambda_working": "Λ in float64", "truncation": "truncation", "total": "rounding"}
 _WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 
 
@@ -69,7 +62,7 @@ class EvaluationResult(Frozen):
     error_kind: Literal["enclosed", "estimated"]
 
 
-class SeparationResult(Frozen):
+class SeparationResult(OfScheme):
     """Truncation and rounding in Λ of one run in float64; see `verify.studies.separation.separate`.
 
     `plain` and `closed_form` are None where `status` is not "finished" (`reason` says why), and
@@ -77,9 +70,6 @@ class SeparationResult(Frozen):
     stood for exact arithmetic; `seconds` is the stepping of all runs.
     """
 
-    hamiltonian: str
-    parameters: dict[str, str]
-    scheme: str
     arithmetic: str
     digits: int
     step_size: str
@@ -123,9 +113,10 @@ def _separation_html(point: SeparationResult) -> str:
     if point.plain is None:
         return html_table(caption, (), [(point.status, point.reason)])
     ways = {way: label for way, label in _WAYS.items() if getattr(point, way)}
+    parts = SHOWN | {name: f"– {name}" for name in ROUNDING}
     rows = [
         (label, *(_bounded(getattr(getattr(point, way).parts, name)) for way in ways))
-        for name, label in _PARTS.items()
+        for name, label in parts.items()
     ]
     rows.append(("rounding with N", *(getattr(point, way).growth["total"].name for way in ways)))
     foot = f"{point.arithmetic} as exact arithmetic; bounds {point.plain.error_kind}: "

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.scenes.frozen import Frozen, Said, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, Said, WithProse
 
 Kind = Literal[
     "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",
@@ -51,7 +51,7 @@ class StabilityResult(WithProse):
         return self.kind
 
 
-class LargestStepResult(WithProse):
+class LargestStepResult(OfScheme, WithProse):
     """The largest step size with bounded motion, measured, against linear theory.
 
     `bounded`: the motion stays bounded with it; `unbounded`: with this next one, a thousandth
@@ -59,9 +59,6 @@ class LargestStepResult(WithProse):
     that linear theory allows where the orbit is stiffest; "0" where it allows none.
     """
 
-    hamiltonian: str
-    parameters: dict[str, str]
-    scheme: str
     time: str
     q: str
     p: str
@@ -80,16 +77,13 @@ class MapCell(Frozen):
     step: int | None = None
 
 
-class StabilityMapResult(Frozen):
+class StabilityMapResult(OfScheme):
     """Verdicts in the plane of step size and stiffness, of one scheme.
 
     `cells[i][j]`: at the i-th value of the parameter and the j-th step size. `linear[i]`: the step
     size that linear theory allows there; None where it does not say.
     """
 
-    hamiltonian: str
-    parameters: dict[str, str]
-    scheme: str
     parameter: str
     values: Annotated[tuple[str, ...], Field(min_length=1)]
     step_sizes: Annotated[tuple[str, ...], Field(min_length=1)]

@@ -2,18 +2,16 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from functools import partial
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few, plotted
+from verify.pages.figures.captioned_plot import Plot, few_digits, plotted
 from verify.pages.figures.separation_caption import WAYS, caption, end_of
 from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import (
-    PARTS,
     computed,
     decades_below,
     finding,
@@ -23,10 +21,10 @@ from verify.pages.sections.separation_finding import (
 from verify.pages.text import words
 from verify.pages.text.prose import prose
 from verify.pages.text.typography import NBSP, number, start, step, whole
-from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.separation import (
+    ROUNDING,
     EvaluationResult,
     GrowthResult,
     SeparationGrid,
@@ -108,28 +106,20 @@ def _parts_row(point: SeparationResult) -> Row:
         return Row(h, (steps,), point.reason or point.status)
     parts, closed = point.plain.parts, point.closed_form
     greatest = greatest_part(point.plain)
-    own = (_bounded_number(getattr(parts, name), strong=name == greatest) for name in PARTS)
+    own = (few_digits(getattr(parts, name), strong=name == greatest) for name in ROUNDING)
     last = _compared(closed) if closed else Markup("–")
-    truncation = _bounded_number(parts.truncation)
+    truncation = few_digits(parts.truncation)
     return Row(h, (steps, truncation, _compared(point.plain), *own, last))
-
-
-def _bounded_number(found: Value, *, strong: bool = False) -> Markup:
-    """The first of the known digits; where none is known, the bound."""
-    if Decimal(found.value) == 0 and found.bound != "0":
-        return Markup("|·|{0}≤{0}{1}").format(NBSP, few(found.bound))
-    shown = Markup("<b>{}</b>") if strong else Markup("{}")
-    return shown.format(few(found.value))
 
 
 def _compared(evaluation: EvaluationResult) -> Markup:
     gap = decades_below(evaluation)
     if gap is None:
-        return _bounded_number(evaluation.parts.total)
+        return few_digits(evaluation.parts.total)
     side = "below" if gap > 0 else "above"
     kind = "bound" if gap > 0 else "bound over"
     return Markup('{} <span class="{}">{:.1f} decades {}</span>').format(
-        _bounded_number(evaluation.parts.total), kind, abs(gap), side
+        few_digits(evaluation.parts.total), kind, abs(gap), side
     )
 
 
