@@ -35,17 +35,10 @@ def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Envi
         formula=mathml.formula,
         name=mathml.name,
         plain=mathml.plain,
-        every=every,
+        every=typography.every,
     )
     made.globals.update(equation=_equation, words=words, signs=SIGNS, drawn=drawn)
     return made
-
-
-def every(count: int, one: str, many: str = "") -> str:
-    """`the one run` or `all 1,200 runs`; `many`: the plural where it is not `one` with an s."""
-    if count == 1:
-        return f"the one {one}"
-    return f"all {typography.whole(count)} {many or one + 's'}"
 
 
 def _equation(left: str, text: str) -> Markup:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.text.typography import is_decimal, number, whole
+from verify.pages.text.typography import NBSP, between, is_decimal, number, whole
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def plotted(
 def computed(runs: Sequence[RunResult]) -> str:
     """The arithmetic, the number of steps and the origin of the error bounds, in one sentence."""
     steps = sorted({run.steps for run in runs})
-    count = whole(steps[0]) if len(steps) == 1 else f"{whole(steps[0])} … {whole(steps[-1])}"
+    count = between(whole(steps[0]), whole(steps[-1]), " … ")
     systems = " and ".join(dict.fromkeys(_arithmetic(run) for run in runs))
     methods = dict.fromkeys(
         f"{run.error_kind}: {run.error_method}" for run in runs if run.status == "finished"
@@ -64,6 +65,16 @@ def _arithmetic(run: RunResult) -> str:
     return (
         run.arithmetic if run.arithmetic == "float64" else f"{run.arithmetic} ({run.digits} digits)"
     )
+
+
+def few_digits(found: Value | None, *, strong: bool = False) -> Markup:
+    """The first of the known digits; where none is known, the bound."""
+    if found is None:
+        return Markup("–")
+    if Decimal(found.value) == 0 and found.bound != "0":
+        return Markup("|·|{0}≤{0}{1}").format(NBSP, few(found.bound))
+    shown = Markup("<b>{}</b>") if strong else Markup("{}")
+    return shown.format(few(found.value))
 
 
 def few(text: str) -> str:

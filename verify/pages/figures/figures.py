@@ -26,7 +26,7 @@ from verify.pages.figures.axes import (
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.notebook_figure import canvas, sheet
 from verify.pages.figures.svg import INK, SERIES
-from verify.pages.text.typography import start, superscript
+from verify.pages.text.typography import power_of_h, start
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult, SeriesPoint
 
@@ -124,7 +124,7 @@ def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
             ends, [base + slope * (e - x) for e in ends], color=INK, alpha=0.55, linewidth=0.9
         )
         axes.annotate(
-            "∝ h" if slope == 1 else f"∝ h{superscript(slope)}",
+            f"∝ {power_of_h(slope)}",
             (x, base + slope * rise * left), xytext=(0, 2), textcoords="offset points",
             ha="left" if left else "right", fontsize=11,
         )  # fmt: skip

@@ -5,7 +5,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from verify.arithmetic.exact import text
-from verify.pages.text.typography import NBSP, number, step, whole
+from verify.pages.text.typography import NBSP, between, number, step, whole
 from verify.scenes.results.separation import CrossoverResult, SeparationGrid, SeparationResult
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
@@ -31,7 +31,7 @@ def caption(grid: SeparationGrid, computed: str) -> str:
     if len(set(crossovers.values())) == 1 and not grid.plain.step_size:
         found = [_crossover(grid.plain, "either way")]
     steps = sorted(point.steps for point in grid.points)
-    count = whole(steps[0]) if steps[0] == steps[-1] else f"{whole(steps[0])} … {whole(steps[-1])}"
+    count = between(whole(steps[0]), whole(steps[-1]), " … ")
     return " ".join(
         [
             "Rounding is the larger part left of its dashed line h*, where smaller steps make Λ no "

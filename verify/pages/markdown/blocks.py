@@ -28,9 +28,8 @@ def document(root: Node) -> str:
 
 def _all(node: Node) -> Iterator[Node]:
     yield node
-    for child in node.children:
-        if isinstance(child, Node):
-            yield from _all(child)
+    for child in node.elements():
+        yield from _all(child)
 
 
 class _Writer:
@@ -73,16 +72,16 @@ class _Writer:
         elif node.tag == "details":
             yield from self._details(node)
         elif node.tag == "ul":
-            yield _list(self.inside(item) for item in _children(node, "li"))
+            yield _list(self.inside(item) for item in node.elements("li"))
         elif node.tag == "dl":
-            yield _list(map(self._defined, _children(node, "div")))
+            yield _list(map(self._defined, node.elements("div")))
         elif node.tag == "footer":
             yield from (Markdown("---"), *self.inside(node))
         else:
             yield from self.inside(node)
 
     def _details(self, node: Node) -> Iterator[Markdown]:
-        (head,) = _children(node, "summary")
+        (head,) = node.elements("summary")
         rest = [c for c in node.children if c is not head]
         yield Markdown(f"<details>\n<summary>{in_html(head)}</summary>")
         yield from self._each(rest)
@@ -90,7 +89,7 @@ class _Writer:
 
     def _defined(self, node: Node) -> list[Markdown]:
         """A term and what it means, which goes on in the same line where it begins with one."""
-        (term,), (meaning,) = _children(node, "dt"), _children(node, "dd")
+        (term,), (meaning,) = node.elements("dt"), node.elements("dd")
         found = self.inside(meaning)
         first = next((c for c in meaning.children if isinstance(c, Node) or c.strip()), "")
         said = isinstance(first, str) or first.tag in _LINES or not _is_block(first)
@@ -98,10 +97,6 @@ class _Writer:
         if said and found:
             return [Markdown(f"{head} {found[0]}"), *found[1:]]
         return [Markdown(head), *found]
-
-
-def _children(node: Node, tag: str) -> list[Node]:
-    return [c for c in node.children if isinstance(c, Node) and c.tag == tag]
 
 
 def _is_block(node: Node) -> bool:
@@ -119,7 +114,7 @@ def _is_for_screen(child: Node | str) -> bool:
 
 def _heading(node: Node) -> Iterator[Markdown]:
     """The heading, and below it verdicts that are counted in it."""
-    counted = [c for c in node.children if isinstance(c, Node) and "tally" in c.classes]
+    counted = [c for c in node.elements() if "tally" in c.classes]
     yield Markdown(f"{_HEADINGS[node.tag]} {line(c for c in node.children if c not in counted)}")
     yield from _paragraph(counted)
 

@@ -21,6 +21,11 @@ class Node:
         """Its classes."""
         return self.attributes.get("class", "").split()
 
+    def elements(self, *tags: str) -> list["Node"]:
+        """The elements right in it; of these tags, where any is named."""
+        found = [child for child in self.children if isinstance(child, Node)]
+        return [each for each in found if not tags or each.tag in tags]
+
     @property
     def text(self) -> str:
         """All text in it."""

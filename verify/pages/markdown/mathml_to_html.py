@@ -9,7 +9,7 @@ from verify.pages.markdown.markup import Node
 
 def html_of_math(node: Node) -> Node:
     """The formula with no element but `sub` and `sup`."""
-    inner = [html_of_math(c) for c in node.children if isinstance(c, Node)]
+    inner = [html_of_math(c) for c in node.elements()]
     match node.tag, inner:
         case (("mi" | "mn" | "mtext"), _):
             return Node("", {}, [node.text])

@@ -8,14 +8,10 @@ A leaf is never taken for a command: its letters are set one by one or as uprigh
 import re
 
 from verify.pages.markdown.markup import Node
+from verify.pages.text.mathml import GREEK
 
-_GREEK = {
-    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "varepsilon", "ζ": "zeta",
-    "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu",
-    "ξ": "xi", "π": "pi", "ρ": "rho", "σ": "sigma", "τ": "tau", "υ": "upsilon", "φ": "varphi",
-    "χ": "chi", "ψ": "psi", "ω": "omega", "Γ": "Gamma", "Δ": "Delta", "Θ": "Theta",
-    "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
-}  # fmt: skip
+_OTHERWISE = {"ε": "varepsilon", "λ": "lambda", "π": "pi", "φ": "varphi"}
+_GREEK = {letter: name for name, letter in GREEK.items() if letter != "ο"} | _OTHERWISE
 _FUNCTIONS = {"sin", "cos", "tan", "exp", "ln", "log", "sinh", "cosh", "tanh", "arctan"}
 _SIGNS = {
     "−": "-", "\u2061": "", "\u2062": r"\,", "′": "'", "≡": r"\equiv ", "≤": r"\le ",
@@ -28,7 +24,7 @@ _ESCAPED = set("#%&_{}")
 
 def tex(node: Node) -> str:
     """The element as TeX, without delimiters; it holds no backtick, no dollar sign and no pipe."""
-    inner = [tex(c) for c in node.children if isinstance(c, Node)]
+    inner = [tex(c) for c in node.elements()]
     match node.tag, inner:
         case (("mi" | "mn" | "mtext"), _):
             return _leaf(node.text)
@@ -50,8 +46,7 @@ def tex(node: Node) -> str:
 
 
 def _table(node: Node) -> str:
-    rows = [row for row in node.children if isinstance(row, Node)]
-    entries = [[e for e in row.children if isinstance(e, Node)] for row in rows]
+    entries = [row.elements() for row in node.elements()]
     lines = r" \\ ".join(" & ".join(tex(e) for e in row) for row in entries)
     # Lines of one sum carry how they are aligned; the entries of a matrix do not.
     aligned = any("class" in e.attributes for row in entries for e in row)

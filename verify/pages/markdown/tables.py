@@ -14,11 +14,11 @@ _Rows = list[list[Node]]
 
 def tables(node: Node) -> Iterator[Markdown]:
     """The caption, and then each group with its heading."""
-    (head,) = _inside(node, "thead")
+    (head,) = node.elements("thead")
     heads = _heads(_rows(head))
-    for caption in _inside(node, "caption"):
+    for caption in node.elements("caption"):
         yield line(caption.children)
-    groups = [list(_groups(_rows(body))) for body in _inside(node, "tbody")]
+    groups = [list(_groups(_rows(body))) for body in node.elements("tbody")]
     all_rows = [row for body in groups for _, rows in body for row in rows]
     heads += [Markdown("")] * (max(map(len, all_rows), default=0) - len(heads))
     columns = ([row[i] for row in all_rows if len(row) > i] for i in range(len(heads)))
@@ -30,12 +30,8 @@ def tables(node: Node) -> Iterator[Markdown]:
         yield table(heads, [[line(cell.children) for cell in row] for row in rows], places)
 
 
-def _inside(node: Node, *tags: str) -> list[Node]:
-    return [c for c in node.children if isinstance(c, Node) and c.tag in tags]
-
-
 def _rows(node: Node) -> _Rows:
-    return [_inside(row, "td", "th") for row in _inside(node, "tr")]
+    return [row.elements("td", "th") for row in node.elements("tr")]
 
 
 def _groups(rows: _Rows) -> Iterator[tuple[Markdown, _Rows]]:

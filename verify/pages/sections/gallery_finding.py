@@ -6,7 +6,7 @@ from math import floor
 
 from verify.pages.figures.logarithm import lg
 from verify.pages.sections.separation_finding import decades_below
-from verify.pages.text.typography import NBSP, number, whole
+from verify.pages.text.typography import NBSP, counted, number, whole
 from verify.scenes.results.exploration import GalleryScene
 from verify.scenes.results.separation import EvaluationResult
 
@@ -74,7 +74,7 @@ def power(value: float) -> str:
 def lambda_of(each: GalleryScene) -> Iterator[str]:
     """From which step on Λ in float64 is meaningless, or how many digits it keeps."""
     of, after, over = each.separation, each.meaningless_after, each.meaningful_from
-    count = _steps(of.steps)
+    count = counted(of.steps, "step")
     if of.plain is None:
         yield f"Λ of float64 cannot be split over {count}: {of.reason or of.status}."
     elif after is None:
@@ -85,12 +85,8 @@ def lambda_of(each: GalleryScene) -> Iterator[str]:
         end = f"and stays so over all {count}"
         if over is not None:
             end = f"until truncation outgrows rounding for good, after {whole(over)}"
-        yield f"Λ of float64 is meaningless after {_steps(after)}{already}, {end}."
+        yield f"Λ of float64 is meaningless after {counted(after, 'step')}{already}, {end}."
         yield from _without_truncation(of.plain)
-
-
-def _steps(count: int) -> str:
-    return "1 step" if count == 1 else f"{whole(count)} steps"
 
 
 def _kept(plain: EvaluationResult, count: str) -> str:
@@ -127,5 +123,5 @@ def run_beyond(each: GalleryScene) -> Iterator[str]:
     """What became of the longer run, where it is not the one that is shown."""
     if each.longer is not None:
         why = each.longer.reason or each.longer.status
-        count = _steps(each.longer.steps)
+        count = counted(each.longer.steps, "step")
         yield f"A longer run of {count} cannot be split: {why}."

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from verify.pages.figures.captioned_plot import Plot, computed, few, plotted
 from verify.pages.sections.claim_view import ClaimView
-from verify.pages.text.typography import is_decimal, start, superscript, whole
+from verify.pages.text.typography import is_decimal, start, whole
+from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
@@ -82,10 +83,6 @@ def _bound(runs: Sequence[RunResult], guides: Sequence[int]) -> str:
 
 def _guides(guides: Sequence[int]) -> str:
     return f"Grey: the slopes of {' and '.join(_h(g) for g in guides)}." if guides else ""
-
-
-def _h(power: int) -> str:
-    return "h" if power == 1 else f"h{superscript(power)}"
 
 
 # -- over time ------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ LONGEST_SHOWN = 600  # characters of a formula that is shown as text
 _STACKED_FROM = 4  # terms from which a sum is set one term a line
 
 _NAMES = {"log": "ln", "atan": "arctan"}
-_GREEK = {
+GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
     "eta": "η", "theta": "θ", "iota": "ι", "kappa": "κ", "lamda": "λ", "mu": "μ", "nu": "ν",
     "xi": "ξ", "omicron": "ο", "rho": "ρ", "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ",
@@ -268,11 +268,11 @@ def _bracketed(expression: Expr) -> str:
 def identifier(text: str) -> str:
     """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript."""
     stem, below = _parts(text)
-    letter = f"<mi>{escape(_GREEK.get(stem, stem))}</mi>"
+    letter = f"<mi>{escape(GREEK.get(stem, stem))}</mi>"
     if not below:
         return letter
     tag = "mn" if below.isdigit() else "mi"
-    return f"<msub>{letter}<{tag}>{escape(_GREEK.get(below, below))}</{tag}></msub>"
+    return f"<msub>{letter}<{tag}>{escape(GREEK.get(below, below))}</{tag}></msub>"
 
 
 def _parts(text: str) -> tuple[str, str]:

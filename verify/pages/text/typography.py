@@ -56,6 +56,25 @@ def whole(n: int) -> str:
     return f"{n:,}"
 
 
+def counted(n: int, one: str, many: str = "") -> str:
+    """`1 run` or `1,200 runs`; `many`: the plural where it is not `one` with an s."""
+    return f"1 {one}" if n == 1 else f"{whole(n)} {many or one + 's'}"
+
+
+def every(n: int, one: str, many: str = "") -> str:
+    """`the one run` or `all 1,200 runs`."""
+    return f"the one {one}" if n == 1 else f"all {counted(n, one, many)}"
+
+
+def between(low: str, high: str, to: str = " to ") -> str:
+    """The two ends of a range; one of them where they are the same."""
+    return low if low == high else f"{low}{to}{high}"
+
+
+def power_of_h(n: int) -> str:
+    return "h" if n == 1 else f"h{superscript(n)}"
+
+
 def value(found: Value) -> Markup:
     """The known digits and, below them, the error bound; a bound alone where no digit is known."""
     if found.bound == "0":

@@ -13,7 +13,7 @@ from verify.pages.sections.given import Given
 from verify.pages.sections.section import Entry, Picture, Place, Section, Tile
 from verify.pages.text import mathml, words
 from verify.pages.text.signs import SIGNS
-from verify.pages.text.typography import NBSP, start, step, whole
+from verify.pages.text.typography import NBSP, counted, start, step, whole
 from verify.scenes.results.exploration import Gallery, GalleryScene
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
@@ -73,7 +73,7 @@ def _tiles(gallery: Gallery) -> list[Tile]:
 
 
 def _finding(gallery: Gallery) -> str:
-    count = f"{_scenes(gallery.examples)} of seed {gallery.seed}"
+    count = f"{counted(gallery.examples, 'scene')} of seed {gallery.seed}"
     where = f"{_within(gallery)}, {whole(gallery.steps)} steps each"
     if not gallery.scenes:
         return f"None of {count} ({where}) can be measured by the {gallery.sentence}."
@@ -83,10 +83,6 @@ def _finding(gallery: Gallery) -> str:
         f"In the worst of {count} ({where}), {finding}: {worst.scheme} with "
         f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
-
-
-def _scenes(count: int) -> str:
-    return "1 scene" if count == 1 else f"{whole(count)} scenes"
 
 
 def _within(gallery: Gallery) -> str:

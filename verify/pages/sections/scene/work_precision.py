@@ -3,16 +3,14 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from decimal import Decimal
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, few
+from verify.pages.figures.captioned_plot import Plot, few_digits
 from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text import words
 from verify.pages.text.typography import NBSP, number, start, step, whole
-from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.work_precision import (
     CostResult,
@@ -144,16 +142,8 @@ def _row(point: WorkPoint) -> Row:
         return Row(label, (steps,), f"failed{at}: {point.reason}")
     values = (point.error, point.rounding, point.energy, point.lam, point.lam_plain)
     times = (point.seconds_min, point.seconds_median)
-    cells = (*map(_value, values), *map(_seconds, times), LIMITS[point.limited_by])
+    cells = (*map(few_digits, values), *map(_seconds, times), LIMITS[point.limited_by])
     return Row(label, (steps, *cells))
-
-
-def _value(value: Value | None) -> Markup:
-    if value is None:
-        return Markup("–")
-    if Decimal(value.value) == 0 and value.bound != "0":
-        return Markup("|·|{0}≤{0}{1}").format(NBSP, few(value.bound))
-    return Markup("{}").format(few(value.value))
 
 
 def _system(point: SystemPoint) -> Row:

@@ -14,7 +14,8 @@ from verify.pages.sections.rows import Group, Row, shown
 from verify.pages.sections.section import Section
 from verify.pages.text import mathml
 from verify.pages.text.prose import prose
-from verify.pages.text.typography import NBSP, listed, number, start, step, superscript, whole
+from verify.pages.text.typography import NBSP, between, listed, number, start, step, whole
+from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
@@ -104,8 +105,7 @@ def _agreement(found: Sequence[PredictionResult]) -> Iterator[str]:
     )
     shares = [share for p in found if (share := _share(p)) is not None]
     if shares:
-        low, high = _percent(min(shares)), _percent(max(shares))
-        parts = low if low == high else f"{low} to {high}"
+        parts = between(_percent(min(shares)), _percent(max(shares)))
         yield f"The bounded part is {parts} as large as the secular one."
 
 
@@ -124,10 +124,6 @@ def _computed(laws: Sequence[GrowthLawResult]) -> str:
         f"⟨g⟩ by quadrature over one period of the exact flow; its error is {listed(methods)}. "
         "The difference has no bound of its own: it is the law’s remainder."
     )
-
-
-def _h(power: int) -> str:
-    return "h" if power == 1 else f"h{superscript(power)}"
 
 
 def _few(value: Fraction) -> str:
