@@ -8,7 +8,6 @@ where there is room.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import isfinite
 from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -37,7 +36,7 @@ _APART = 5  # pixels between places of a line that a label must not cover
 
 @dataclass(frozen=True)
 class Mark:
-    """A point, by logarithms: lg of the abscissa and of the ordinate, and its label if it has one.
+    """A point, by finite logarithms: of the abscissa and of the ordinate; its label if it has one.
 
     `full`: limited by truncation. A failed run has no `y`.
     """
@@ -138,7 +137,7 @@ def _panel(axes: Any, panel: Panel) -> None:
 
 def _line(axes: Any, panel: Panel, line: DrawnLine) -> None:
     look = style(line)
-    known = [m for m in line.marks if m.y is not None and isfinite(m.y)]
+    known = [m for m in line.marks if m.y is not None]
     bare = {k: v for k, v in look.items() if k not in ("marker", "markersize")}
     axes.plot([m.x for m in known], [m.y for m in known], **bare)
     for full in (True, False):
@@ -152,7 +151,7 @@ def _line(axes: Any, panel: Panel, line: DrawnLine) -> None:
 
 
 def _bottom(panel: Panel) -> float:
-    placed = [m.y for line in panel.lines for m in line.marks if m.y is not None and isfinite(m.y)]
+    placed = [m.y for line in panel.lines for m in line.marks if m.y is not None]
     return min((*placed, *(y for _, y in panel.floor)))
 
 
@@ -211,7 +210,7 @@ def _place_labels(axes: Any, panel: Panel) -> None:
     inside = axes.get_window_extent(renderer)
     for line in panel.lines:
         for mark in line.marks:
-            if not mark.label or mark.y is None or not isfinite(mark.y) or panel.beyond(mark):
+            if not mark.label or mark.y is None or panel.beyond(mark):
                 continue
             text = axes.annotate(
                 mark.label, (mark.x, mark.y), xytext=(0, 0), textcoords="offset points",
@@ -226,8 +225,7 @@ def _covered(axes: Any, panel: Panel) -> Iterator[tuple[float, float]]:
     for x, y in panel.floor:
         yield tuple(to_pixels((x, y)))
     for line in panel.lines:
-        known = [(m.x, m.y) for m in line.marks if m.y is not None and isfinite(m.y)]
-        places = [tuple(to_pixels(each)) for each in known]
+        places = [tuple(to_pixels((m.x, m.y))) for m in line.marks if m.y is not None]
         yield from places
         for (x0, y0), (x1, y1) in pairwise(places):
             count = int(max(abs(x1 - x0), abs(y1 - y0)) / _APART)

@@ -62,9 +62,10 @@ class _Writer:
             strong = _STRONG & set(node.classes)
             yield from _paragraph([Node("b", {}, node.children)] if strong else node.children)
         elif node.tag == "img":
-            yield _image(node)
+            alternative = line([node.attributes["alt"]])
+            yield Markdown(f"![{alternative}]({node.attributes['src']})")
         elif node.tag == "math":
-            yield _display(node)
+            yield Markdown(line([node], started=False).strip())
         elif node.tag == "pre":
             yield _code(node)
         elif node.tag == "table":
@@ -117,14 +118,6 @@ def _heading(node: Node) -> Iterator[Markdown]:
     counted = [c for c in node.elements() if "tally" in c.classes]
     yield Markdown(f"{_HEADINGS[node.tag]} {line(c for c in node.children if c not in counted)}")
     yield from _paragraph(counted)
-
-
-def _image(node: Node) -> Markdown:
-    return Markdown(f"![{line([node.attributes['alt']])}]({node.attributes['src']})")
-
-
-def _display(node: Node) -> Markdown:
-    return Markdown(line([node], started=False).strip())
 
 
 def _code(node: Node) -> Markdown:

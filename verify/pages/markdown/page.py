@@ -4,7 +4,6 @@ It is the page's own content set anew: nothing is said here that the page does n
 """
 
 import re
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from markupsafe import Markup
@@ -21,23 +20,6 @@ from verify.scenes.results.report import Report
 _CONTENT = '{% include "content.html" %}{% include "footer.html" %}'
 TEXT, FIGURES = "report.md", "figures"
 _OWN = re.compile(r"figure-[0-9]{2,}\.svg")  # the names of figures that `write` has written
-
-
-@dataclass
-class _Figures:
-    """The figures in the order in which the text shows them, each under the name of its file."""
-
-    files: dict[str, str] = field(default_factory=dict)
-
-    def image(self, plot: Plot) -> Markup:
-        """The image, with its lead as the text alternative."""
-        from verify.pages.figures.svg import (
-            document as as_file,  # and with it matplotlib, where something is drawn
-        )
-
-        path = f"{FIGURES}/figure-{len(self.files) + 1:02}.svg"
-        self.files[path] = as_file([plot.svg])
-        return Markup('<img src="{}" alt="{}">').format(path, plot.lead)
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -58,7 +40,16 @@ def write(report: Report, folder: Path) -> Path:
 
 def render(report: Report) -> tuple[str, dict[str, str]]:
     """The whole text, and the SVG documents that it shows by the paths at which it does."""
-    figures = _Figures()
-    templates = environment(drawn=figures.image)
+    figures: dict[str, str] = {}  # in the order in which the text shows them
+
+    def image(plot: Plot) -> Markup:
+        """The image, with its lead as the text alternative."""
+        from verify.pages.figures import svg  # and with it matplotlib, where something is drawn
+
+        path = f"{FIGURES}/figure-{len(figures) + 1:02}.svg"
+        figures[path] = svg.document([plot.svg])
+        return Markup('<img src="{}" alt="{}">').format(path, plot.lead)
+
+    templates = environment(drawn=image)
     content = templates.from_string(_CONTENT).render(page=page_view(report))
-    return document(tree(Markup(content))), figures.files  # noqa: S704 - the page's own markup
+    return document(tree(Markup(content))), figures  # noqa: S704 - the page's own markup

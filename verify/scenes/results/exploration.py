@@ -23,12 +23,9 @@ class ExploreResult(Frozen):
     first: tuple[Failure, ...]
 
 
-class ShrunkResult(Frozen):
+class ShrunkResult(Failure):
     """The simplest scene found for which the property fails, as TOML, and what is found there."""
 
-    property: str
-    example: int
-    message: str
     scene: str
 
 
@@ -65,7 +62,7 @@ class HuntResult(Frozen):
     examples: int
 
 
-class GalleryScene(Frozen):
+class GalleryScene(Worst):
     """One of the worst scenes, as TOML, with lg of its measure.
 
     `orbit`: points (q, p) of the hunt's run, with 40 digits. `separation`: its Λ over a longer run;
@@ -75,8 +72,6 @@ class GalleryScene(Frozen):
     which on it never is again.
     """
 
-    value: Real
-    scene: str
     orbit: tuple[tuple[str, str], ...]
     separation: SeparationResult
     longer: SeparationResult | None = None

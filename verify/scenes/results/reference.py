@@ -24,21 +24,15 @@ _P, _Q = "the momentum p", "the displacement q"
 class Rounded(Frozen):
     """A number: the decimal nearest to it of so many digits, and how far from it that may be."""
 
-    value: Annotated[
-        Decimal,
-        Field(
-            description="the number, correctly rounded to the digits asked for: one digit, a "
-            "point, digits, e and the exponent; 0 where it is 0, or smaller than the radius"
-        ),
-    ]
-    radius: Annotated[
-        Decimal,
-        Field(
-            description="half a unit of the value's last place; 0 where the value is exact; for a "
-            "value of 0 that is not exact, 10 to minus twice the digits, p and q in units of "
-            "their initial values"
-        ),
-    ]
+    value: Decimal = Field(
+        description="the number, correctly rounded to the digits asked for: one digit, a "
+        "point, digits, e and the exponent; 0 where it is 0, or smaller than the radius"
+    )
+    radius: Decimal = Field(
+        description="half a unit of the value's last place; 0 where the value is exact; for a "
+        "value of 0 that is not exact, 10 to minus twice the digits, p and q in units of "
+        "their initial values"
+    )
 
 
 class OrbitPoint(Frozen):
@@ -46,35 +40,27 @@ class OrbitPoint(Frozen):
 
     model_config = ConfigDict(populate_by_name=True)
 
-    step: Annotated[int, Field(ge=0, description=_STEP)]
-    status: Annotated[
-        Literal["finished", "left range", "unresolved"],
-        Field(
-            description="finished: the values are there; left range: the scheme's orbit has passed "
-            "2^4000, or is not defined any more; unresolved: the digits asked for could not be had"
-        ),
-    ]
-    failed_step: Annotated[
-        int | None, Field(description="the step that left the range, 1 being the first; else null")
-    ]
-    kind: Annotated[Kind | None, Field(description=f"{_KIND}; null where there are no values")]
-    p: Annotated[Rounded | None, Field(description=f"{_P} after N steps")]
-    q: Annotated[Rounded | None, Field(description=f"{_Q} after N steps")]
-    delta_j: Annotated[
-        Rounded | None,
-        Field(
-            description="ΔJ = det J − 1 of the step that begins at that state; null too where no "
-            "step is defined there, or it is given by equations and det J is not known to be 1"
-        ),
-    ]
-    mse: Annotated[
-        Rounded | None,
-        Field(description="(1/N) Σ ΔJ_k² over the steps k = 0 … N−1; null too where N is 0"),
-    ]
-    lam: Annotated[
-        Rounded | None,
-        Field(alias="lambda", description="Λ = Π(1 + ΔJ_k) − 1 over the steps k = 0 … N−1"),
-    ]
+    step: int = Field(ge=0, description=_STEP)
+    status: Literal["finished", "left range", "unresolved"] = Field(
+        description="finished: the values are there; left range: the scheme's orbit has passed "
+        "2^4000, or is not defined any more; unresolved: the digits asked for could not be had"
+    )
+    failed_step: int | None = Field(
+        description="the step that left the range, 1 being the first; else null"
+    )
+    kind: Kind | None = Field(description=f"{_KIND}; null where there are no values")
+    p: Rounded | None = Field(description=f"{_P} after N steps")
+    q: Rounded | None = Field(description=f"{_Q} after N steps")
+    delta_j: Rounded | None = Field(
+        description="ΔJ = det J − 1 of the step that begins at that state; null too where no "
+        "step is defined there, or it is given by equations and det J is not known to be 1"
+    )
+    mse: Rounded | None = Field(
+        description="(1/N) Σ ΔJ_k² over the steps k = 0 … N−1; null too where N is 0"
+    )
+    lam: Rounded | None = Field(
+        alias="lambda", description="Λ = Π(1 + ΔJ_k) − 1 over the steps k = 0 … N−1"
+    )
 
 
 class OrbitResult(Frozen):
@@ -86,18 +72,15 @@ class OrbitResult(Frozen):
 class FlowPoint(Frozen):
     """The exact solution at the time N·h; p and q are None unless `status` is "finished"."""
 
-    step: Annotated[int, Field(ge=0, description="N, where the time is N·h")]
-    time: Annotated[str, Field(description="the time N·h exactly: a decimal or a quotient")]
-    status: Annotated[
-        Literal["finished", "blows up", "not followed"],
-        Field(
-            description="finished: p and q are there; blows up: the exact solution has left every "
-            "bound by then; not followed: it could not be had"
-        ),
-    ]
-    kind: Annotated[Kind | None, Field(description=f"{_KIND}; null where there are no values")]
-    p: Annotated[Rounded | None, Field(description=f"{_P} at that time")]
-    q: Annotated[Rounded | None, Field(description=f"{_Q} at that time")]
+    step: int = Field(ge=0, description="N, where the time is N·h")
+    time: str = Field(description="the time N·h exactly: a decimal or a quotient")
+    status: Literal["finished", "blows up", "not followed"] = Field(
+        description="finished: p and q are there; blows up: the exact solution has left every "
+        "bound by then; not followed: it could not be had"
+    )
+    kind: Kind | None = Field(description=f"{_KIND}; null where there are no values")
+    p: Rounded | None = Field(description=f"{_P} at that time")
+    q: Rounded | None = Field(description=f"{_Q} at that time")
 
 
 class SolutionResult(Frozen):

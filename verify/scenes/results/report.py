@@ -87,7 +87,19 @@ class Report(Frozen):
     provenance: Provenance
 
     def _repr_html_(self) -> str:
-        return _report_html(self)
+        """How many claims have which verdict, then each claim, the refuted ones first."""
+        if not self.claims:
+            rows = [
+                (scene.title, proof.scheme, str(proof.verdict), str(proof.reason))
+                for scene in self.scenes
+                for proof in scene.proofs
+            ]
+            return html_table(self.title, ("scene", "scheme", "verdict", "reason"), rows)
+        claims = sorted(self.claims, key=lambda claim: claim.verdict is not Verdict.REFUTED)
+        counts = ((v, sum(c.verdict is v for c in claims)) for v in Verdict)
+        rows = [(str(c.verdict), c.source, c.id, c.evidence) for c in claims]
+        foot = ", ".join(f"{n} {v.lower()}" for v, n in counts if n)
+        return html_table(self.title, ("verdict", "source", "claim", "evidence"), rows, foot)
 
 
 def read_report(path: Path) -> Report:
@@ -99,19 +111,3 @@ def read_report(path: Path) -> Report:
         told = error.errors(include_url=False)[0]
         where = ".".join(map(str, told["loc"]))
         raise InputError("file", str(path), f"is no report: {where}: {told['msg']}") from None
-
-
-def _report_html(report: Report) -> str:
-    """How many claims have which verdict, then each claim, the refuted ones first."""
-    if not report.claims:
-        rows = [
-            (scene.title, proof.scheme, str(proof.verdict), str(proof.reason))
-            for scene in report.scenes
-            for proof in scene.proofs
-        ]
-        return html_table(report.title, ("scene", "scheme", "verdict", "reason"), rows)
-    claims = sorted(report.claims, key=lambda claim: claim.verdict is not Verdict.REFUTED)
-    counts = ((v, sum(c.verdict is v for c in claims)) for v in Verdict)
-    rows = [(str(c.verdict), c.source, c.id, c.evidence) for c in claims]
-    foot = ", ".join(f"{n} {v.lower()}" for v, n in counts if n)
-    return html_table(report.title, ("verdict", "source", "claim", "evidence"), rows, foot)

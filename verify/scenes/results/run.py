@@ -56,36 +56,28 @@ class RunResult(OfScheme):
     source: str = ""
 
     def _repr_html_(self) -> str:
-        return _run_html(self)
+        """The values, each with its error bound."""
+        start = f"from q = {self.q}, p = {self.p}"
+        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size} {start}"
+        bounds = f"bounds {self.error_kind}: {self.error_method}"
+        foot = f"{self.arithmetic}, {self.digits} digits; {bounds}"
+        if self.fallback:
+            foot += f"; taken instead of what was asked for: {self.fallback}"
+        if self.status != "finished":
+            at = f" at step {self.failed_step}" if self.failed_step is not None else ""
+            return html_table(caption, (), [("outcome", self.status + at)], foot)
+        rows = [
+            (label, value.value, f"± {value.bound}")
+            for name, (label, _) in _SHOWN.items()
+            if (value := self.values.get(name))
+        ]
+        return html_table(caption, ("", "value", "error bound"), rows, foot)
 
     def _repr_latex_(self) -> str:
-        return _run_latex(self)
-
-
-def _run_html(run: RunResult) -> str:
-    """The values, each with its error bound."""
-    caption = (
-        f"{run.scheme}: {run.steps} steps of h = {run.step_size} from q = {run.q}, p = {run.p}"
-    )
-    foot = f"{run.arithmetic}, {run.digits} digits; bounds {run.error_kind}: {run.error_method}"
-    if run.fallback:
-        foot += f"; taken instead of what was asked for: {run.fallback}"
-    if run.status != "finished":
-        at = f" at step {run.failed_step}" if run.failed_step is not None else ""
-        return html_table(caption, (), [("outcome", run.status + at)], foot)
-    rows = [
-        (label, value.value, f"± {value.bound}")
-        for name, (label, _) in _SHOWN.items()
-        if (value := run.values.get(name))
-    ]
-    return html_table(caption, ("", "value", "error bound"), rows, foot)
-
-
-def _run_latex(run: RunResult) -> str:
-    """The values with their error bounds."""
-    lines = [
-        f"{symbol} &= {number_latex(value.value)} \\pm {number_latex(value.bound)}"
-        for name, (_, symbol) in _SHOWN.items()
-        if (value := run.values.get(name))
-    ]
-    return aligned_latex(lines or [rf"\Lambda &: \text{{{run.status}}}"])
+        """The values with their error bounds."""
+        lines = [
+            f"{symbol} &= {number_latex(value.value)} \\pm {number_latex(value.bound)}"
+            for name, (_, symbol) in _SHOWN.items()
+            if (value := self.values.get(name))
+        ]
+        return aligned_latex(lines or [rf"\Lambda &: \text{{{self.status}}}"])

@@ -85,7 +85,19 @@ class SeparationResult(OfScheme):
     seconds: Seconds
 
     def _repr_html_(self) -> str:
-        return _separation_html(self)
+        """The parts of Λ for each way to evaluate it, with their bounds."""
+        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, Λ in float64"
+        if self.plain is None:
+            return html_table(caption, (), [(self.status, self.reason)])
+        ways = {way: label for way, label in _WAYS.items() if getattr(self, way)}
+        parts = SHOWN | {name: f"– {name}" for name in ROUNDING}
+        rows = [
+            (label, *(_bounded(getattr(getattr(self, way).parts, name)) for way in ways))
+            for name, label in parts.items()
+        ]
+        rows.append(("rounding with N", *(getattr(self, way).growth["total"].name for way in ways)))
+        foot = f"{self.arithmetic} as exact arithmetic; bounds {self.plain.error_kind}: "
+        return html_table(caption, ("", *ways.values()), rows, foot + self.error_method)
 
 
 class CrossoverResult(Frozen):
@@ -104,34 +116,14 @@ class SeparationGrid(Frozen):
     closed_form: CrossoverResult
 
     def _repr_html_(self) -> str:
-        return _grid_html(self)
-
-
-def _separation_html(point: SeparationResult) -> str:
-    """The parts of Λ for each way to evaluate it, with their bounds."""
-    caption = f"{point.scheme}: {point.steps} steps of h = {point.step_size}, Λ in float64"
-    if point.plain is None:
-        return html_table(caption, (), [(point.status, point.reason)])
-    ways = {way: label for way, label in _WAYS.items() if getattr(point, way)}
-    parts = SHOWN | {name: f"– {name}" for name in ROUNDING}
-    rows = [
-        (label, *(_bounded(getattr(getattr(point, way).parts, name)) for way in ways))
-        for name, label in parts.items()
-    ]
-    rows.append(("rounding with N", *(getattr(point, way).growth["total"].name for way in ways)))
-    foot = f"{point.arithmetic} as exact arithmetic; bounds {point.plain.error_kind}: "
-    return html_table(caption, ("", *ways.values()), rows, foot + point.error_method)
-
-
-def _grid_html(grid: SeparationGrid) -> str:
-    """Truncation and rounding of each step size, and where they cross; one alone in full."""
-    if len(grid.points) == 1:
-        return _separation_html(grid.points[0])
-    heads = ("h", "N", "truncation", *(f"rounding, {label}" for label in _WAYS.values()))
-    rows = [(point.step_size, str(point.steps), *_sizes(point)) for point in grid.points]
-    crossed = (f"{label}: {_crossing(getattr(grid, way))}" for way, label in _WAYS.items())
-    foot = "rounding overtakes truncation, " + "; ".join(crossed)
-    return html_table("Truncation and rounding in Λ", heads, rows, foot)
+        """Truncation and rounding of each step size, and where they cross; one alone in full."""
+        if len(self.points) == 1:
+            return self.points[0]._repr_html_()
+        heads = ("h", "N", "truncation", *(f"rounding, {label}" for label in _WAYS.values()))
+        rows = [(point.step_size, str(point.steps), *_sizes(point)) for point in self.points]
+        crossed = (f"{label}: {_crossing(getattr(self, way))}" for way, label in _WAYS.items())
+        foot = "rounding overtakes truncation, " + "; ".join(crossed)
+        return html_table("Truncation and rounding in Λ", heads, rows, foot)
 
 
 def _sizes(point: SeparationResult) -> Iterator[str]:
