@@ -120,11 +120,7 @@ def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
     if found.proof is not None and found.counterexample is None:
         show.print_proof(exact, target, found.proof, potential_of_finding(found))
     else:
-        click.echo(f"{found.verdict}: {found.reason}")
-        click.echo(f"  H        {exact.formula}")
-        for name, value in exact.texts["parameters"].items():
-            click.echo(f"  {name:8} {value}")
-        click.echo(f"  scheme   {target}")
+        show.print_head(exact, target, found)
         if found.leading is not None and found.order is not None:
             click.echo(f"  ΔJ       ({show.cut(found.leading)})·h^{found.order} + …")
         if found.probe_error is not None:

@@ -106,7 +106,7 @@ def check(
     """
     from random import SystemRandom
 
-    from verify.commands.shared.progress import progress_bar
+    from verify.commands.shared.progress import counting_bar
     from verify.reference.check import check as checking
     from verify.reference.make.make import PUBLISHED, SCENES
 
@@ -117,15 +117,7 @@ def check(
     if most_steps is None and not everything:
         most_steps = _MOST_STEPS
     seed = SystemRandom().randrange(10**6) if seed is None else seed
-    with progress_bar("recomputed", 1000, unit="") as advance:
-        before = 0
-
-        def done(count: int, of: int) -> None:
-            nonlocal before
-            now = 1000 * count // of
-            advance(now - before)
-            before = now
-
+    with counting_bar("recomputed", 1000, unit="") as tell:
         found = checking.check(
             folder or PUBLISHED,
             share=1.0 if everything else share,
@@ -133,7 +125,7 @@ def check(
             own=SCENES if folder is None else None,
             most_steps=most_steps,
             where=where,
-            done=done,
+            done=lambda count, of: tell(1000 * count // of),
         )
     return Answer(lambda: _as_json(found), lambda: _print(found), failed=bool(found.differences))
 

@@ -49,7 +49,7 @@ def run(
 
     With --keep, an interruption costs at most some seconds of work.
     """
-    from verify.commands.shared.progress import steps_bar
+    from verify.commands.shared.progress import counting_bar
     from verify.execution.keeping import Keeper, name_of
     from verify.runs.run import run as run_scheme
     from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED
@@ -59,7 +59,7 @@ def run(
         keepable(keep)
     asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
     keeper = Keeper(keep, name_of(asked))
-    with steps_bar(steps) as tell:
+    with counting_bar("stepping", steps) as tell:
         result = run_scheme(
             exact,
             scheme,

@@ -11,6 +11,10 @@ from verify.pages.text import mathml, notation, prose, typography, words
 from verify.pages.text.signs import SIGNS
 
 TEMPLATES = Path(__file__).parent / "templates"
+_FILTERS = (
+    prose.prose, prose.quoted, prose.sentence, prose.cell, notation.notation, mathml.name,
+    mathml.plain, typography.number, typography.whole, typography.listed, typography.every,
+)  # fmt: skip
 
 
 def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Environment:
@@ -22,21 +26,7 @@ def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Envi
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters.update(
-        prose=prose.prose,
-        quoted=prose.quoted,
-        notation=notation.notation,
-        sentence=prose.sentence,
-        cell=prose.cell,
-        is_number=typography.is_number,
-        number=typography.number,
-        whole=typography.whole,
-        listed=typography.listed,
-        formula=mathml.formula,
-        name=mathml.name,
-        plain=mathml.plain,
-        every=typography.every,
-    )
+    made.filters.update({each.__name__: each for each in _FILTERS})
     made.globals.update(equation=_equation, words=words, signs=SIGNS, drawn=drawn)
     return made
 

@@ -9,6 +9,7 @@ from verify.commands.shared.answer import picked
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.integrators.results import Finding
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
     from verify.scenes.frozen import Frozen
@@ -60,15 +61,19 @@ def proof_json(
     }
 
 
+def print_head(exact: "Hamiltonian", scheme: str, found: "Proof | Finding") -> None:
+    """The verdict, and of what it is."""
+    click.echo(f"{found.verdict}: {found.reason}")
+    click.echo(f"  H        {exact.formula}")
+    for name, value in exact.texts["parameters"].items():
+        click.echo(f"  {name:8} {value}")
+    click.echo(f"  scheme   {scheme}")
+
+
 def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential") -> None:
-    from verify.algebra.formula import to_text
     from verify.arithmetic.exact import text
 
-    click.echo(f"{proof.verdict}: {proof.reason}")
-    click.echo(f"  H        {to_text(exact.expression)}")
-    for name, value in exact.values:
-        click.echo(f"  {name:8} {text(value)}")
-    click.echo(f"  scheme   {scheme}")
+    print_head(exact, scheme, proof)
     if proof.order is not None:
         click.echo(f"  ΔJ       ({cut(proof.first.text)})·h^{proof.order} + O(h^{proof.order + 1})")
         at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())

@@ -41,9 +41,9 @@ def progress_bar(label: str, total: int, unit: str = "steps") -> Iterator[Advanc
 
 
 @contextmanager
-def steps_bar(total: int) -> Iterator[Callable[[int], None]]:
-    """Yields `tell(done)`, the number of steps done so far, of a run that may be begun anew."""
-    with progress_bar("stepping", total) as advance:
+def counting_bar(label: str, total: int, unit: str = "steps") -> Iterator[Callable[[int], None]]:
+    """Yields `tell(done)`, the number of units done so far, of what may be begun anew."""
+    with progress_bar(label, total, unit) as advance:
         last = 0
 
         def tell(done: int) -> None:

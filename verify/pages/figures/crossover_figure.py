@@ -9,9 +9,9 @@ from verify.pages.figures.axes import Mark, decades, grid_lines, line_style, mar
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.notebook_figure import canvas
-from verify.pages.figures.separation_caption import WAYS, short, ways_of
+from verify.pages.figures.separation_caption import short, ways_of
 from verify.pages.text.typography import NBSP
-from verify.scenes.results.separation import SeparationGrid
+from verify.scenes.results.separation import WAYS, SeparationGrid
 
 _HEIGHT = 350
 _ROOM = 0.45  # of the axes: what a mark's label takes

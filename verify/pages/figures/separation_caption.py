@@ -6,11 +6,15 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import text
 from verify.pages.text.typography import NBSP, between, number, step, whole
-from verify.scenes.results.separation import CrossoverResult, SeparationGrid, SeparationResult
+from verify.scenes.results.separation import (
+    WAYS,
+    CrossoverResult,
+    SeparationGrid,
+    SeparationResult,
+)
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
 _NONE = "none in this range: "  # how a crossover's reason begins where there is none
-WAYS = {PLAIN: "the plain way", CLOSED_FORM: "closed form"}
 
 
 def ways_of(grid: SeparationGrid) -> Iterator[tuple[str, list[tuple[str, str]]]]:

@@ -69,8 +69,8 @@ class Section:
     """What a section is asked for; `view` alone it must have, the rest may have nothing to say.
 
     `view` is given what its level is of (`Given` on the page; scene and anchor; scene, proof and
-    anchor), and returns what the template shows, or None where there is nothing to show. All other
-    functions are given the view.
+    anchor), and returns what the template shows: None, or nothing in it, where that is nothing. All
+    other functions are given the view.
     """
 
     order: int  # among the sections of its level
@@ -138,7 +138,7 @@ def sections(files: Catalogue) -> list[tuple[str, Section]]:
 def shown(files: Catalogue, place: Place, *given: object) -> tuple[Shown, ...]:
     """The sections in these files that have something to show of what is given."""
     views = ((s, template, s.view(*given)) for template, s in sections(files))
-    return tuple(Shown(s, template, view, place) for s, template, view in views if view is not None)
+    return tuple(Shown(s, template, view, place) for s, template, view in views if view)
 
 
 def walk(found: Iterable[Shown]) -> Iterator[Shown]:

@@ -12,9 +12,9 @@ from math import isfinite
 from markupsafe import Markup
 
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.separation_caption import PLAIN, WAYS
+from verify.pages.figures.separation_caption import PLAIN
 from verify.pages.text.typography import between, counted, every, listed, whole
-from verify.scenes.results.separation import ROUNDING, EvaluationResult, SeparationResult
+from verify.scenes.results.separation import ROUNDING, WAYS, EvaluationResult, SeparationResult
 
 
 def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:

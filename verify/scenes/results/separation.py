@@ -9,7 +9,7 @@ from verify.scenes.results.bounded_value import Value
 
 ROUNDING = ("input", "trajectory", "determinant", "product")  # the parts of it
 SHOWN = {"lambda_working": "Λ in float64", "truncation": "truncation", "total": "rounding"}
-_WAYS = {"plain": "the plain way", "closed_form": "closed form"}
+WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 
 
 class Parts(Frozen):
@@ -89,7 +89,7 @@ class SeparationResult(OfScheme):
         caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, Λ in float64"
         if self.plain is None:
             return html_table(caption, (), [(self.status, self.reason)])
-        ways = {way: label for way, label in _WAYS.items() if getattr(self, way)}
+        ways = {way: label for way, label in WAYS.items() if getattr(self, way)}
         parts = SHOWN | {name: f"– {name}" for name in ROUNDING}
         rows = [
             (label, *(_bounded(getattr(getattr(self, way).parts, name)) for way in ways))
@@ -119,9 +119,9 @@ class SeparationGrid(Frozen):
         """Truncation and rounding of each step size, and where they cross; one alone in full."""
         if len(self.points) == 1:
             return self.points[0]._repr_html_()
-        heads = ("h", "N", "truncation", *(f"rounding, {label}" for label in _WAYS.values()))
+        heads = ("h", "N", "truncation", *(f"rounding, {label}" for label in WAYS.values()))
         rows = [(point.step_size, str(point.steps), *_sizes(point)) for point in self.points]
-        crossed = (f"{label}: {_crossing(getattr(self, way))}" for way, label in _WAYS.items())
+        crossed = (f"{label}: {_crossing(getattr(self, way))}" for way, label in WAYS.items())
         foot = "rounding overtakes truncation, " + "; ".join(crossed)
         return html_table("Truncation and rounding in Λ", heads, rows, foot)
 

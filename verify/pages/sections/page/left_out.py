@@ -6,5 +6,5 @@ SECTION = Section(
     order=50,
     title="What was left out, and why",
     anchor="left-out",
-    view=lambda given: given.report.left_out or None,
+    view=lambda given: given.report.left_out,
 )

@@ -25,14 +25,14 @@ class PaperFigureView:
     scene: SceneView | None
 
 
-def _views(given: Given) -> tuple[PaperFigureView, ...] | None:
+def _views(given: Given) -> tuple[PaperFigureView, ...]:
     """In the order in which they are given; what is not in the report is left out of each."""
     # Of those with one name the first counts.
     by_name = {scene.result.name: scene for scene in reversed(given.scenes)}
     by_id = {claim.result.id: claim for claim in reversed(given.claims)}
     drawn: set[int] = set()
     figures = given.report.figures
-    return tuple(_view(f, by_name, by_id, given.anchors, drawn) for f in figures) or None
+    return tuple(_view(f, by_name, by_id, given.anchors, drawn) for f in figures)
 
 
 def _view(

@@ -2,14 +2,10 @@
 
 from collections.abc import Iterator
 
-from verify.pages.sections.given import Given, SceneView
+from verify.pages.sections.given import SceneView
 from verify.pages.sections.section import Entry, Section
 
 _FEW = 3  # scenes whose sections stand in the contents
-
-
-def _view(given: Given) -> tuple[SceneView, ...] | None:
-    return given.scenes or None
 
 
 def _entries(scenes: tuple[SceneView, ...]) -> Iterator[Entry]:
@@ -24,7 +20,7 @@ def _entries(scenes: tuple[SceneView, ...]) -> Iterator[Entry]:
 
 SECTION = Section(
     order=40,
-    view=_view,
+    view=lambda given: given.scenes,
     entries=_entries,
     inner=lambda view: (each for scene in view for each in scene.sections),
 )

@@ -24,13 +24,10 @@ class SchemeView:
         return Entry(self.anchor, Markup("<code>{}</code>").format(self.proof.scheme))
 
 
-def _view(scene: SceneResult, anchor: str) -> tuple[SchemeView, ...] | None:
-    return (
-        tuple(
-            _scheme(scene, proof, f"scheme-{index}-of-{anchor}")
-            for index, proof in enumerate(scene.proofs)
-        )
-        or None
+def _view(scene: SceneResult, anchor: str) -> tuple[SchemeView, ...]:
+    return tuple(
+        _scheme(scene, proof, f"scheme-{index}-of-{anchor}")
+        for index, proof in enumerate(scene.proofs)
     )
 
 

@@ -9,9 +9,9 @@ from verify.studies.criteria import NAMES
 CriteriaView = tuple[tuple[CriterionResult, str], ...]  # each with what it asks for
 
 
-def _view(scene: SceneResult, proof: ProofResult, _: str) -> CriteriaView | None:
+def _view(scene: SceneResult, proof: ProofResult, _: str) -> CriteriaView:
     own = (c for c in scene.criteria if c.scheme == proof.scheme)
-    return tuple((c, NAMES.get(c.number, "")) for c in own) or None
+    return tuple((c, NAMES.get(c.number, "")) for c in own)
 
 
 SECTION = Section(order=30, view=_view)

@@ -8,7 +8,7 @@ from functools import partial
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few_digits, plotted
-from verify.pages.figures.separation_caption import WAYS, caption, end_of
+from verify.pages.figures.separation_caption import caption, end_of
 from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import (
@@ -25,6 +25,7 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.separation import (
     ROUNDING,
+    WAYS,
     EvaluationResult,
     GrowthResult,
     SeparationGrid,

@@ -10,14 +10,11 @@ from verify.scenes.results.report import SceneResult
 SeriesView = tuple[tuple[Plot, str], ...]  # each with what of a paper it repeats
 
 
-def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView | None:
+def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeriesView:
     own = [run for run in scene.series if run.scheme == proof.scheme and run.series]
-    return (
-        tuple(
-            (scheme_plots.over_time(run, name=f"time-{index}-of-{anchor}"), run.source)
-            for index, run in enumerate(own)
-        )
-        or None
+    return tuple(
+        (scheme_plots.over_time(run, name=f"time-{index}-of-{anchor}"), run.source)
+        for index, run in enumerate(own)
     )
 
 

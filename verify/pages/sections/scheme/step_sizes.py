@@ -8,9 +8,9 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 
 
-def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> tuple[Plot, ...] | None:
+def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> tuple[Plot, ...]:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
-    return tuple(scheme_plots.against_step_size(runs, scene, proof, name=anchor)) or None
+    return tuple(scheme_plots.against_step_size(runs, scene, proof, name=anchor))
 
 
 SECTION = Section(
