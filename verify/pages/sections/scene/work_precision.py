@@ -21,13 +21,6 @@ from verify.scenes.results.work_precision import (
     WorkPrecisionResult,
 )
 
-LIMITS = {
-    "truncation": "truncation",
-    "rounding": "rounding",
-    "undecided": "undecided",
-    "tolerance": "its tolerance",
-    "failed": "failed",
-}
 _UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
 
 
@@ -142,7 +135,8 @@ def _row(point: WorkPoint) -> Row:
         return Row(label, (steps,), f"failed{at}: {point.reason}")
     values = (point.error, point.rounding, point.energy, point.lam, point.lam_plain)
     times = (point.seconds_min, point.seconds_median)
-    cells = (*map(few_digits, values), *map(_seconds, times), LIMITS[point.limited_by])
+    limit = "its tolerance" if point.limited_by == "tolerance" else point.limited_by
+    cells = (*map(few_digits, values), *map(_seconds, times), limit)
     return Row(label, (steps, *cells))
 
 
