@@ -65,6 +65,7 @@ BY_NAME = {
     "verify.discovery": {"import_module"},  # files of a package, by their names
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
     "verify.integrators.faults": {"modules"},  # numpy, where it is imported
+    "verify.integrators.kept_state": {"modules"},  # numpy as above, and where a function is from
     "verify.integrators.loading": {"import_module", "modules", "spec_from_file_location",
                                    "exec_module"},  # the user's code
     "verify.integrators.others.report": {"import_module"},  # a library that may be broken

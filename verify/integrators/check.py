@@ -7,11 +7,12 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal, text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.agreement import by_duals, by_graph, must_agree
+from verify.integrators.agreement import by_duals, must_agree, must_agree_but_for_rounding
 from verify.integrators.claims import with_claims
 from verify.integrators.faults import Fault, changed_since, examined
 from verify.integrators.measured import of_measured
 from verify.integrators.probe import Point, Trial, dual_step, measured
+from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
@@ -51,17 +52,29 @@ def check_integrator(
             )
     trial = Trial(step, hamiltonian, ((start,) if start else ()) + POINTS)
     faults, first = examined(step, trial.points)
+    if not any(fault.fatal for fault in faults):
+        faults += repeated(step, trial.points)
     if any(fault.fatal for fault in faults):
         return _no_step(faults)
-    found = _examine(trial)
+    provable = all(fault.allows is Verdict.PROVED for fault in faults)
+    found = _examine(trial, provable)
     later = changed_since(step, first)
     if later:
         return _no_step([*faults, *later])
     if found.verdict is Verdict.REFUTED:
-        found = found.noting(*_exchanged(trial))
+        found = found.noting(*_exchanged(trial, provable))
     found = replace(found, faults=tuple(fault.name for fault in faults))
     found = found.noting(*(fault.text for fault in faults))
-    return with_claims(found, claims, trial)
+    return _but_for(faults, with_claims(found, claims, trial))
+
+
+def _but_for(faults: Sequence[Fault], found: Finding) -> Finding:
+    """UNDECIDED where a fault lets no more stand; what is refuted stays so."""
+    in_the_way = [fault for fault in faults if fault.allows is Verdict.UNDECIDED]
+    if not in_the_way or not found.verdict.holds:
+        return found
+    reason = prose(in_the_way[0].text, " (", found.reason, ")")
+    return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
 
 
 def _no_step(faults: Sequence[Fault]) -> Finding:
@@ -69,11 +82,12 @@ def _no_step(faults: Sequence[Fault]) -> Finding:
     return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
 
 
-def _examine(trial: Trial) -> Finding:
+def _examine(trial: Trial, provable: bool) -> Finding:
     step, notes = trial.step, list[Prose]()
     try:
         with within(_PROOF_SECONDS, "its proof takes too long"):
-            return _proved(trial)
+            if provable:
+                return _proved(trial)
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", _why(error)))
     kept = _KEPT * max(step.left, 0)
@@ -90,12 +104,12 @@ def _examine(trial: Trial) -> Finding:
     return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
 
 
-def _exchanged(trial: Trial) -> list[str]:
+def _exchanged(trial: Trial, provable: bool) -> list[str]:
     """Whether it is a scheme when p and q stand in each other's place."""
     exchange = {"p": "q", "q": "p", "h": "h"}
     a, b, c = (exchange[name] for name in trial.step.order)
     other = replace(trial, step=replace(trial.step, order=(a, b, c)))
-    if not _examine(other).verdict.holds:
+    if not _examine(other, provable).verdict.holds:
         return []
     return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
 
@@ -115,7 +129,7 @@ def _proved(trial: Trial) -> Finding:
     if tape.refused:  # what is traced is then what it does where that fails
         raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
     p_next, q_next = (x.node for x in roots)
-    must_agree(trial, lambda kind: by_graph(kind, p_next, q_next))
+    must_agree_but_for_rounding(trial, p_next, q_next)
     traced = traced_map(trial.hamiltonian, p_next, q_next)
     proof = prove(traced.step_map)
     found = Finding(

@@ -7,15 +7,22 @@ from fractions import Fraction
 
 from verify.integrators.step import State, Step, StepError, last_line, line_of_error
 from verify.prose import Number, Prose, joined, prose
+from verify.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class Fault:
-    """`name`: such as "frozen"; `text`: the sentence. `fatal`: it is no step of a scheme."""
+    """`name`: such as "frozen"; `text`: the sentence. `allows`: the best verdict that it lets
+    stand. REFUTED: it is no step of a scheme. PROVED: it is only told.
+    """
 
     name: str
     text: str
-    fatal: bool = True
+    allows: Verdict = Verdict.REFUTED
+
+    @property
+    def fatal(self) -> bool:
+        return self.allows is Verdict.REFUTED
 
 
 _STEPS = 0.125, 0.0625  # with which it is tried
@@ -51,13 +58,14 @@ def changed_since(step: Step, first: Mapping[State, State]) -> list[Fault]:
         except Exception:  # noqa: S112 - a cache may hold numbers of ours
             continue
         if after != before:
-            return [_not_a_function(state, before, after)]
+            return [not_a_function(state, _STEPS[0], before, after)]
     return []
 
 
-def _not_a_function(state: State, before: State, after: State) -> Fault:
+def not_a_function(state: State, h: float, before: State, after: State) -> Fault:
+    """It returned one and then the other."""
     pair = prose(_shown(before), " and then ", _shown(after))
-    found = prose(pair, line_of_error(*state, _STEPS[0]))
+    found = prose(pair, line_of_error(*state, h))
     return Fault("not a function", prose("it is not deterministic: it returns ", found))
 
 
@@ -95,9 +103,10 @@ def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
             after = step.at(*state, _STEPS[0])
         except Exception as error:  # the user's code may raise anything
             said = error.said if isinstance(error, StepError) else f"it raises {last_line(error)}"
-            return [Fault("fails", prose(said, ", at a later call"), fatal=step.left <= 0)]
+            allows = Verdict.REFUTED if step.left <= 0 else Verdict.PROVED
+            return [Fault("fails", prose(said, ", at a later call"), allows)]
         if after != before:
-            return [_not_a_function(state, before, after)]
+            return [not_a_function(state, _STEPS[0], before, after)]
     if all(state == after for state, after in first.items()):
         text = "it is frozen: p' = p and q' = q, which preserves area and is no scheme"
         return [Fault("frozen", text)]
@@ -121,4 +130,4 @@ def _with_arrays(step: Step, first: Mapping[State, State]) -> list[Fault]:
         return []
     if np.array_equal(p, kept[0]) and np.array_equal(q, kept[1]):
         return []
-    return [Fault("mutates", "it changes the arrays p or q that it is given", fatal=False)]
+    return [Fault("mutates", "it changes the arrays p or q that it is given", Verdict.PROVED)]

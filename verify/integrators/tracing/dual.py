@@ -15,7 +15,7 @@ from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, Unt
 
 Number: TypeAlias = gmpy2.mpfr
 BITS = 200
-_SLOPES: dict[str, Callable[[Number, Number], Number]] = {  # of each function y of x
+SLOPES: dict[str, Callable[[Number, Number], Number]] = {  # of each function y of x
     "sin": lambda x, _: gmpy2.cos(x),
     "cos": lambda x, _: -gmpy2.sin(x),
     "tan": lambda _, y: 1 + y * y,
@@ -109,7 +109,7 @@ class Dual(TracedNumber):
         if (name == "sqrt" and x < 0) or (name == "log" and x <= 0):
             raise ValueError("math domain error")
         y = getattr(gmpy2, name)(x)
-        return self._chained(y, _SLOPES[name](x, y))
+        return self._chained(y, SLOPES[name](x, y))
 
     def raised(self, exponent: Fraction) -> "Dual":
         x = self.value

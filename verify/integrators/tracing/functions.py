@@ -39,7 +39,7 @@ def _is_users(x: types.FunctionType) -> bool:
     return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
 
 
-def _is_users_module(x: types.ModuleType) -> bool:
+def is_users_module(x: types.ModuleType) -> bool:
     """Whether it is the user's: neither of Python's library nor installed."""
     folders = Path(getattr(x, "__file__", None) or "site-packages").parts
     standard = x.__name__.partition(".")[0] in sys.stdlib_module_names
@@ -62,7 +62,7 @@ class _Copier:
         if isinstance(x, types.ModuleType):
             if x.__name__ in _MODULES:
                 return _Module(x, self)
-            return _Helpers(x, self) if _is_users_module(x) else x
+            return _Helpers(x, self) if is_users_module(x) else x
         if isinstance(x, functools.partial):
             bound = {name: self.value(v) for name, v in x.keywords.items()}
             return functools.partial(self.value(x.func), *map(self.value, x.args), **bound)
@@ -96,7 +96,7 @@ class _Copier:
         made = types.FunctionType(code, scope, x.__name__, None, cells or None)
         self.copies[id(x)] = made  # before what it calls: it may call itself
         self.kept.append(x)
-        for name in _names(code):
+        for name in names_in(code):
             if name in scope:
                 scope[name] = self.value(scope[name])
         scope.setdefault("float", _Float)
@@ -110,12 +110,12 @@ class _Copier:
         return made
 
 
-def _names(code: types.CodeType) -> Iterable[str]:
+def names_in(code: types.CodeType) -> Iterable[str]:
     """The names that the code, and what is defined in it, may look up."""
     yield from code.co_names
     for inner in code.co_consts:
         if isinstance(inner, types.CodeType):
-            yield from _names(inner)
+            yield from names_in(inner)
 
 
 class _Module:
