@@ -1,11 +1,12 @@
 """What a user claims of his step, held against what was found, with a counterexample."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 from verify.integrators.probe import FINER, Measured, Point, Row, Trial, measured
-from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, broken
-from verify.prose import prose
+from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, judged
+from verify.prose import Prose, joined, prose
 from verify.verdict import Verdict
 
 _TOO_SLOW = 1.3  # times what a power allows: a step's other terms make less of it
@@ -19,7 +20,8 @@ def with_claims(found: Finding, claims: Claims, trial: Trial) -> Finding:
     Where all that is claimed is shown, and that it is a scheme, what else is not decided does not
     count.
     """
-    failed = broken(claims, found)
+    told = judged(claims, found)
+    failed = [claim for claim in told if claim[1] is not True]
     false = [claim for claim in failed if claim[1] is False]
     if not failed and found.verdict is not Verdict.REFUTED:
         waits = found.verdict is Verdict.UNDECIDED and claims != NOTHING
@@ -30,6 +32,8 @@ def with_claims(found: Finding, claims: Claims, trial: Trial) -> Finding:
             verdict=Verdict.UNDECIDED,
             reason=prose(failed[0][0], " is claimed and not decided: ", found.reason),
         )
+    if found.verdict is Verdict.REFUTED:
+        found = _but_for_area(found, [name for name, holds, _ in told if holds])
     if false:
         name, _, known = false[0]
         reason = prose(name, " is claimed; ", known, " (", found.reason, ")")
@@ -37,6 +41,18 @@ def with_claims(found: Finding, claims: Claims, trial: Trial) -> Finding:
     else:
         name = prose("order 1")
     return replace(found, counterexample=_counterexample(name, claims, trial))
+
+
+def _but_for_area(found: Finding, held: Sequence[Prose]) -> Finding:
+    """Says of what is no scheme what it has all the same: the order is refuted, and not that."""
+    area = [prose("det J ≡ 1")] if found.area_preserving else []
+    stands = area or held  # which is more than an order of ΔJ
+    if not stands:
+        return found
+    shown = "proved" if found.how == "proof" else "measured"
+    which = joined(" and ", stands)
+    reason = prose("the order is refuted, not ", which, f", which is {shown}: ", found.reason)
+    return replace(found, reason=reason)
 
 
 def _counterexample(name: str, claims: Claims, trial: Trial) -> Counterexample | None:

@@ -36,7 +36,7 @@ LADDERS = {
     ],
 }
 # To show where an order is missed: what is small beside the rest shows at small steps.
-FINER = {"duals": [Fraction(1, 2**k) for k in range(3, 31)], "floats": LADDERS["floats"]}
+FINER = {"duals": [Fraction(1, 2**k) for k in range(3, 61)], "floats": LADDERS["floats"]}
 _RISES = 1.5  # times the ΔJ of a larger step: no power of h does so
 _FINE = (
     0.25  # the largest step at which that is looked for: further terms may do so for larger ones

@@ -85,15 +85,18 @@ class Finding:
         return replace(self, notes=(*self.notes, *map(prose, notes)))
 
 
-def broken(claims: Claims, found: Finding) -> list[tuple[Prose, bool | None, Prose]]:
-    """The claims that are not shown: (which, False or None for undecided, what was found)."""
-    judged: list[tuple[str, bool | None, str]] = []
+Judged = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what was found
+
+
+def judged(claims: Claims, found: Finding) -> list[Judged]:
+    """Each claim; None where it is not decided."""
+    told: list[tuple[str, bool | None, str]] = []
     if claims.order is not None:
         holds = None
         if found.order_decided:
             holds = found.convergence_order is None or found.convergence_order >= claims.order
         known = f"the map agrees with the exact flow up to `h^{found.convergence_order}` only"
-        judged.append((f"order {claims.order}", holds, known))
+        told.append((f"order {claims.order}", holds, known))
     area = f"ΔJ has order {found.order}"
     if found.order is None:
         area = "ΔJ is not 0"
@@ -102,18 +105,14 @@ def broken(claims: Claims, found: Finding) -> list[tuple[Prose, bool | None, Pro
                 f"ΔJ is not 0, but O(`h^{found.area_at_least}`), as where an iteration ends early"
             )
     if claims.area_preserving:
-        judged.append(("det J ≡ 1", found.area_preserving, area))
+        told.append(("det J ≡ 1", found.area_preserving, area))
     if claims.area_order is not None:
         shown = found.area_at_least is not None and claims.area_order <= found.area_at_least
         holds = True if found.area_preserving or shown else None
         if found.order is not None:
             holds = found.order >= claims.area_order
-        judged.append((f"ΔJ = O(`h^{claims.area_order}`)", holds, area))
-    return [
-        (read_prose(claim), holds, read_prose(known))
-        for claim, holds, known in judged
-        if holds is not True
-    ]
+        told.append((f"ΔJ = O(`h^{claims.area_order}`)", holds, area))
+    return [(read_prose(claim), holds, read_prose(known)) for claim, holds, known in told]
 
 
 def potential_of_finding(found: Finding) -> Potential:
