@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import target
+from verify.commands.shared.input import PATH, target
 from verify.commands.shared.output import plain_json
 from verify.commands.shared.tasks import cluster_option
 from verify.errors import InputError
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw it there."
-)
+@click.option("-o", "--output", type=PATH, metavar="FILE.svg", help="Draw it there.")
 @cluster_option
 @answering
 def bench(scene: str, output: Path | None, cluster: str | None) -> Answer:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import PATH
 
 if TYPE_CHECKING:
     from verify.proof.certificates.established import Established
@@ -20,7 +21,7 @@ def certificate() -> None:
 
 
 @certificate.command()
-@click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
+@click.argument("file", type=PATH, metavar="FILE")
 @answering
 def check(file: Path) -> Answer:
     """Check FILE with nothing but integers; exit status 1 where it proves nothing."""

@@ -8,7 +8,7 @@ import click
 
 from verify.commands.hunt import STEPS, hunt
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import writable_later
+from verify.commands.shared.input import PATH, writable_later
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
 
@@ -48,7 +48,7 @@ _SEEDS = 2**32
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=PATH,
     default=Path("explored"),
     metavar="DIR",
     help="Where scenes that fail are written, and looked at again first; explored.",

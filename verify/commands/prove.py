@@ -10,7 +10,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
+from verify.commands.shared.input import PATH, hamiltonian_of, hamiltonian_options, scheme_option
 from verify.commands.shared.output import cut
 from verify.errors import InputError
 
@@ -37,7 +37,7 @@ _WIDTH = 88
 )
 @click.option(
     "--certificate",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help="Write the identities there, for `verify certificate check`; where H has functions other "
     "than sin, cos, exp and quotients, those of the proof for every H.",

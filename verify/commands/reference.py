@@ -8,7 +8,7 @@ import click
 
 from verify.commands.reference_compare import compare
 from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.input import writable
+from verify.commands.shared.input import PATH, writable
 from verify.commands.shared.tasks import perform, with_placement, with_tasks
 from verify.errors import InputError, without_controls
 
@@ -30,7 +30,7 @@ reference.add_command(compare)
 
 @reference.command()
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR")
+@click.option("-o", "--output", type=PATH, metavar="DIR")
 @click.option("--parquet", is_flag=True, help="The tables as Parquet, too; wants pyarrow.")
 @with_tasks
 def make(
@@ -78,7 +78,7 @@ def make(
 
 
 @reference.command()
-@click.argument("folder", required=False, type=click.Path(path_type=Path), metavar="[DIR]")
+@click.argument("folder", required=False, type=PATH, metavar="[DIR]")
 @click.option("--share", default=_SHARE, metavar="X", help="Of the data, recomputed; 0.05.")
 @click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
 @click.option(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.input import PATH
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ _KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 
 
 @click.command()
-@click.argument("theirs", type=click.Path(path_type=Path), metavar="THEIRS.csv")
-@click.option("--data", type=click.Path(path_type=Path), metavar="DIR",
+@click.argument("theirs", type=PATH, metavar="THEIRS.csv")
+@click.option("--data", type=PATH, metavar="DIR",
               help="The reference data; without it, the committed set.")  # fmt: skip
 @click.option("--scene", metavar="NAME", help="The scene of all rows, such as duffing.")
 @click.option("--scheme", metavar="NAME", help="The scheme of all rows.")

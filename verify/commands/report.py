@@ -9,7 +9,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import keepable, target, writable
+from verify.commands.shared.input import PATH, check_ours, keepable, target, writable
 from verify.commands.shared.tasks import kept_tasks, with_placement
 from verify.errors import InputError
 
@@ -22,7 +22,7 @@ _INTEGRATORS = "integrators"
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
-@click.option("-o", "--output", default=None, type=click.Path(path_type=Path), metavar="DIR")
+@click.option("-o", "--output", default=None, type=PATH, metavar="DIR")
 @click.option(
     "--format",
     "formats",
@@ -32,9 +32,16 @@ _INTEGRATORS = "integrators"
     help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
     "repository; given twice, both.",
 )
+@click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
 @with_placement
 @answering
-def report(scene: str, output: Path | None, formats: tuple[str, ...], where: "Placement") -> Answer:
+def report(
+    scene: str,
+    output: Path | None,
+    formats: tuple[str, ...],
+    force: bool,
+    where: "Placement",
+) -> Answer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
     SCENE is a TOML file, `paper`, `stiff`, `extreme` or `integrators`.
@@ -46,13 +53,15 @@ def report(scene: str, output: Path | None, formats: tuple[str, ...], where: "Pl
     coefficient tables of splitting methods as they are printed. It runs their code.
     """
     asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
-    folder, made = (_integrators if scene == _INTEGRATORS else _scene)(scene, output, asked, where)
+    folder, made = (_integrators if scene == _INTEGRATORS else _scene)(
+        scene, output, asked, where, force
+    )
     written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
     return Answer(lambda: made.model_dump(mode="json"), lambda: show.print_report(made, *written))
 
 
 def _scene(
-    scene: str, output: Path | None, asked: str, where: "Placement"
+    scene: str, output: Path | None, asked: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     from verify.claims.plan import add_claims
     from verify.claims.report import make_report
@@ -61,6 +70,7 @@ def _scene(
     title, scenes, file = target(scene)
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
+    _check(folder, force)
     keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
@@ -81,7 +91,7 @@ def _scene(
 
 
 def _integrators(
-    scene: str, output: Path | None, asked: str, where: "Placement"
+    scene: str, output: Path | None, asked: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     """Other libraries run here, in this process: they are not sent to workers."""
     from verify.integrators.others.report import make_integrators_report
@@ -89,9 +99,18 @@ def _integrators(
     if where.cluster is not None:
         raise InputError("--cluster", where.cluster, "the integrators of others are run here")
     folder = output or Path(f"{scene}-report")
+    _check(folder, force)
     writable(folder)
     command = f"verify report {scene} -o {folder.name}{asked}"
     return folder, make_integrators_report(command, _tell)
+
+
+def _check(folder: Path, force: bool) -> None:
+    from verify.pages.page import DATA
+    from verify.scenes.results.report import FORMAT
+
+    if not force:
+        check_ours(folder, DATA, FORMAT)
 
 
 def _tell(name: str) -> None:

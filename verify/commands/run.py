@@ -8,7 +8,7 @@ import click
 from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import keepable, scheme_option, with_hamiltonian
+from verify.commands.shared.input import PATH, keepable, scheme_option, with_hamiltonian
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--keep",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Keep checkpoints there; the same command goes on from them.",
 )

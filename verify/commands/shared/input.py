@@ -15,6 +15,17 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.scenes.scene import Scene
 
+
+class _GivenPath(click.Path):
+    """A path; an empty text is none, and not the current folder."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        if not str(value).strip():
+            self.fail("is empty; give a path", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+PATH = _GivenPath(path_type=Path)
 _HAMILTONIAN_OPTIONS = (
     click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
@@ -22,6 +33,7 @@ _HAMILTONIAN_OPTIONS = (
         "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
     ),
 )
+_KEPT = "kept"  # the folder of what is finished
 scheme_option = click.option(
     "--scheme",
     required=True,
@@ -119,6 +131,28 @@ def writable(folder: Path, option: str = "--output") -> None:
     except OSError as error:
         problem = error.strerror or "cannot be written to"
         raise InputError(option, str(folder), problem) from None
+
+
+def check_ours(folder: Path, data: str, form: str) -> None:
+    """InputError where a folder holds files, and not those of an earlier report of ours.
+
+    Ours has a file `data` of that format, or nothing but what an interrupted one has kept.
+    """
+    try:
+        names = {path.name for path in folder.iterdir()} - {_KEPT} if folder.exists() else set()
+        if names and not _begins_with(folder / data, form.rpartition(" ")[0]):
+            problem = f"holds {min(names)!a}, which is not ours; take another folder, or --force"
+            raise InputError("--output", str(folder), problem)
+    except OSError as error:
+        raise InputError("--output", str(folder), error.strerror or "cannot be read") from None
+
+
+def _begins_with(path: Path, form: str) -> bool:
+    """Whether a JSON file of ours names the format, of whatever version."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return form.encode() in file.read(200)
 
 
 def keepable(folder: Path, option: str = "--keep") -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import answering
-from verify.commands.shared.input import keepable
+from verify.commands.shared.input import PATH, keepable
 
 if TYPE_CHECKING:
     from verify.execution.execute import OnResult, Store
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 keep_option = click.option(
     "--keep",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Keep what is finished there; the same command goes on from it.",
 )
