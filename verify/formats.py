@@ -15,6 +15,8 @@ from typing import Any
 from verify.errors import InputError
 from verify.files import read_bytes
 
+_BEGINNING = 200  # bytes within which our files name their format
+
 
 def read_json(path: Path, wanted: str) -> dict[str, Any]:
     """The object of that format in a file. InputError for what is not there, or no such JSON."""
@@ -46,6 +48,14 @@ newer; this version reads 'areaproof certificate 2'
     else:
         found = f"has the format {_short(data['format'])}{_age(data['format'], wanted)}"
     raise InputError("file", file, f"{found}; this version reads {wanted!r}")
+
+
+def names_format(path: Path, wanted: str) -> bool:
+    """Whether a file's beginning names this format, of whatever version; False where none is."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return wanted.rpartition(" ")[0].encode() in file.read(_BEGINNING)
 
 
 def _age(found: object, wanted: str) -> str:

@@ -31,6 +31,7 @@ from verify.proof.every import prove_every
 from verify.reference.compare.published import load
 from verify.reference.compare.table import opened
 from verify.reference.make.make import PUBLISHED
+from verify.reference.make.parquet import parquet_bytes, parquet_rows
 from verify.scenes.results.report import Provenance, Report, read_report
 from verify.scenes.scene import load_scene
 from verify.scenes.shapes.user_outline import svg_path
@@ -74,6 +75,11 @@ def _reference(path: Path) -> int:
     return len(list(load(folder, None).runs()))
 
 
+def _parquet(path: Path) -> object:
+    """A table of reference data, whose bytes are characters here."""
+    return parquet_rows(path.read_text("utf-8", "replace").encode("latin-1", "replace"), path.name)
+
+
 def _claims(path: Path) -> object:
     """A claims file beside the scenes that its claims name."""
     for name in ("duffing.toml", "pendulum.toml"):
@@ -105,6 +111,7 @@ def sorts() -> dict[str, tuple[Reader, tuple[str, ...]]]:
         "table": (_table, (TABLE,)),
         "report": (read_report, (report.model_dump_json(),)),
         "reference": (_reference, (data,)),
+        "parquet": (_parquet, (parquet_bytes([("t", "q"), ("1", "2")]).decode("latin-1"),)),
     }
 
 

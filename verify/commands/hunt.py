@@ -10,7 +10,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import writable
+from verify.commands.shared.input import check_ours, writable
 from verify.commands.shared.tasks import kept_tasks
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from verify.scenes.results.exploration import Gallery, GalleryScene
 
 STEPS = 100  # of each scene, where nothing else is asked for
-_OWN = re.compile(r"worst-([0-9]+)\.toml")
+_OWN = re.compile(r"worst-([0-9]+)\.toml|[A-Za-z0-9_-]+\.[0-9a-f]{8}\.toml")
 
 
 def hunt(
@@ -40,6 +40,7 @@ def hunt(
     from verify.pages.page import write
 
     asked = Hunt(measure=measure, seed=seed, examples=examples, steps=steps, drawn=drawn)
+    check_ours(output, _OWN)
     writable(output)
     begun, tasks = time.perf_counter(), asked.plan.tasks
     with kept_tasks(tasks, keep) as (store, done):
@@ -73,7 +74,7 @@ def _keep_scenes(shown: "Gallery", output: Path) -> None:
         write_atomically(output / f"worst-{place}.toml", each.scene)
     for file in output.glob("worst-*.toml"):
         own = _OWN.fullmatch(file.name)
-        if own and int(own[1]) > len(shown.scenes):
+        if own and own[1] and int(own[1]) > len(shown.scenes):
             file.unlink()
 
 

@@ -1,5 +1,6 @@
 """Options that commands share, and what they stand for."""
 
+import re
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -133,26 +134,24 @@ def writable(folder: Path, option: str = "--output") -> None:
         raise InputError(option, str(folder), problem) from None
 
 
-def check_ours(folder: Path, data: str, form: str) -> None:
+def check_ours(folder: Path, own: re.Pattern[str] | None = None, *, advice: str = "") -> None:
     """InputError where a folder holds files, and not those of an earlier report of ours.
 
-    Ours has a file `data` of that format, or nothing but what an interrupted one has kept.
+    Ours has a report's data, of whatever version, or nothing but what an interrupted one has kept,
+    and files whose names match `own`.
     """
+    from verify.formats import names_format
+    from verify.pages.page import DATA
+    from verify.scenes.results.report import FORMAT
+
     try:
         names = {path.name for path in folder.iterdir()} - {_KEPT} if folder.exists() else set()
-        if names and not _begins_with(folder / data, form.rpartition(" ")[0]):
-            problem = f"holds {min(names)!a}, which is not ours; take another folder, or --force"
+        foreign = [name for name in sorted(names) if own is None or not own.fullmatch(name)]
+        if foreign and not names_format(folder / DATA, FORMAT):
+            problem = f"holds {foreign[0]!a}, which is not ours; take another folder{advice}"
             raise InputError("--output", str(folder), problem)
     except OSError as error:
         raise InputError("--output", str(folder), error.strerror or "cannot be read") from None
-
-
-def _begins_with(path: Path, form: str) -> bool:
-    """Whether a JSON file of ours names the format, of whatever version."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        return form.encode() in file.read(200)
 
 
 def keepable(folder: Path, option: str = "--keep") -> None:

@@ -11,6 +11,7 @@ from verify.content import content
 from verify.errors import InputError
 from verify.execution.keeping import versions
 from verify.files import MOST_BYTES, read_text, write_atomically
+from verify.formats import names_format
 from verify.reference.make.models import (
     DATA_FORMAT,
     MANIFEST_FORMAT,
@@ -91,9 +92,13 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
 
 
 def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
-    """InputError where the folder holds what is not made again, and would be extra in a check."""
+    """InputError where the folder holds what is not made again, and would be extra in a check, or
+    a file of one of our names that is not ours."""
     made = {MANIFEST, *names_of((each.scene.name for each in asked), parquet=parquet)}
-    other = sorted({path.name for path in folder.iterdir()} - made)
+    forms = {MANIFEST: MANIFEST_FORMAT} | {f"{x.scene.name}.json": DATA_FORMAT for x in asked}
+    there = {path.name: path for path in folder.iterdir()}
+    other = sorted(there.keys() - made)
+    other += [x for x, form in forms.items() if x in there and not names_format(there[x], form)]
     if other:
         problem = (
             f"holds {other[0]!r}, which does not belong to these data; give a folder of its own"

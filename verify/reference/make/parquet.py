@@ -55,7 +55,8 @@ def _read(content: bytes) -> tuple[list[str], list[list[str]]]:
 
     told = parquet.read_metadata(io.BytesIO(content))
     kinds = [told.schema.column(k) for k in range(told.num_columns)]
-    if any(x.physical_type != "BYTE_ARRAY" or x.max_repetition_level for x in kinds):
+    # A column of lists or structures has a path of several names.
+    if any(x.logical_type.type != "STRING" or x.path != x.name for x in kinds):
         raise ValueError("a column is no text")
     groups = [told.row_group(k).total_byte_size for k in range(told.num_row_groups)]
     if sum(groups) > MOST_BYTES or told.num_rows * told.num_columns > MOST_CELLS:

@@ -3,6 +3,8 @@
 import errno
 import io
 import json
+from datetime import date
+from decimal import Decimal
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -209,6 +211,12 @@ def test_an_early_burst_is_a_difference(data: Data) -> None:
         (["a"], [["x" * 2_000_000] * 50], "too long cells"),
         (["a", "a"], [["1"], ["2"]], "stands twice"),
         (["a"], [[1, 2]], "no text"),
+        (["a"], [[b"1"]], "no text"),
+        (["a"], [[Decimal(1)]], "no text"),
+        (["a"], [[True]], "no text"),
+        (["a"], [[date(2026, 1, 1)]], "no text"),
+        (["a"], [[{"b": "1"}]], "no text"),
+        (["a"], [[["1"]]], "no text"),
     ],
 )
 def test_a_table_that_would_fill_the_memory_is_one_line(
