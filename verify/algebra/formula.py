@@ -26,6 +26,7 @@ MAX_LENGTH = 4000
 MAX_DEPTH = 60
 MAX_EXPONENT = 64
 MAX_NUMBER_BITS = 4000
+MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
 
 FUNCTIONS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
     name: getattr(sympy, name) for name in (*NAMES, "sqrt")
@@ -65,7 +66,7 @@ class _Printer(StrPrinter):  # type: ignore[misc]
 
 
 def to_text(expression: sympy.Expr) -> str:
-    """The expression as a formula that `parse` reads back to the same expression."""
+    """The expression as a formula that `parse` reads back, to an equal expression."""
     return str(_Printer().doprint(expression))
 
 
@@ -149,7 +150,17 @@ def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str)
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
-        raise InputError(source, text, f"is not defined: the root of {base} < 0")
+        raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
+    if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
+        raise InputError(source, text, "a root of a number in it has too many digits")
+
+
+def _root_bits(base: sympy.Expr) -> int:
+    """Bits of the largest number among its constant factors, times the indices of their roots."""
+    constant, _ = base.as_independent(*base.free_symbols, as_Add=False)
+    numbers, powers, _ = _by_kind(constant)
+    bits = max((max(n.p.bit_length(), n.q.bit_length()) for n in numbers), default=0)
+    return bits * math.prod(int(power.exp.q) for power in powers if power.exp.is_Rational)
 
 
 class _Reader:
@@ -213,14 +224,13 @@ class _Reader:
             raise self.fail(f"{name} takes one argument")
         argument = self.read(node.args[0], depth + 1)
         # sympy sums and simplifies as it builds: infinities must not get into it.
+        if name == "sqrt":
+            return self.power(argument, sympy.S.Half)
         if name == "exp" and argument.has(sympy.log):
             return self.finite(self.exponential(argument))
         if not argument.free_symbols and not within_reach(argument):
             raise self.fail(f"{name} of a constant that is too large, or not defined")
-        try:
-            value = self.finite(FUNCTIONS[name](argument))
-        except (ArithmeticError, AttributeError, TypeError, RecursionError):  # from within sympy
-            raise self.fail(f"{name} of that argument cannot be handled exactly") from None
+        value = self.finite(self.apply(FUNCTIONS[name], argument, shown=f"{name} of that argument"))
         # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 
@@ -264,7 +274,7 @@ class _Reader:
         for op, right in factors:
             if op is ast.Div and right.is_zero:
                 raise self.fail("division by zero")
-            value = _APPLY[op](value, right)
+            value = self.apply(_APPLY[op], value, right, shown="a product or quotient in it")
         return self.finite(-value if minus else value)
 
     def terms(self, first: ast.expr, chain: list[ast.BinOp], depth: int) -> Iterator[sympy.Expr]:
@@ -281,9 +291,20 @@ class _Reader:
         if not exponent.is_Rational:
             raise self.fail(f"exponent {exponent} must be a rational number; or exp(x*log(y))")
         _check_power(base, exponent, self.source, self.text)
+        if exponent.q != 1 and not base.free_symbols and not within_reach(base):
+            raise self.fail("a root of a constant that is too large, or not defined")
         if base.is_zero and exponent <= 0:
             raise self.fail("division by zero" if exponent < 0 else "0**0 is not defined")
-        return self.finite(base**exponent)
+        return self.finite(self.apply(operator.pow, base, exponent, shown="a power in it"))
+
+    def apply(
+        self, operation: Callable[..., sympy.Expr], *operands: sympy.Expr, shown: str
+    ) -> sympy.Expr:
+        """What sympy makes of it; sympy fails on a few, such as roots of enormous numbers."""
+        try:
+            return operation(*operands)
+        except (ArithmeticError, AttributeError, TypeError, ValueError, RecursionError):
+            raise self.fail(f"{shown} cannot be handled exactly") from None
 
     def finite(self, value: sympy.Expr) -> sympy.Expr:
         return checked(value, self.source, self.text)

@@ -18,8 +18,8 @@ Exact = int | str | float | Decimal | Fraction
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(/\d+)?")
 _MAX_EXPONENT = 1000
-_MAX_LENGTH = 1000
-_MAX_BITS = 8000
+_MAX_BITS = 8000  # of the numerator, and of the denominator
+_MAX_LENGTH = 5000  # characters: more than two numbers of so many bits have
 _ORDINARY = Fraction(1, 1000), 10**4
 _SHORT = 10  # characters
 
@@ -35,22 +35,19 @@ def rational(value: Exact, name: str = "number") -> Fraction:
     """The exact value of a user's number.
 
     Strings may be decimals (`0.001`, `1e-3`) or quotients (`7/3`). Raises InputError for NaN,
-    infinities, booleans, other types, and exponents beyond ±1000.
+    infinities, booleans, other types, exponents beyond ±1000, and more than 8000 bits; so `text`
+    of what it returns is read again.
 
     >>> rational("0.1"), rational("7/3")
     (Fraction(1, 10), Fraction(7, 3))
     """
     if isinstance(value, bool) or not isinstance(value, Exact):
         raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
-    if isinstance(value, str):
-        return _from_text(value, name)
-    if isinstance(value, Decimal):
-        return _from_text(str(value), name)
     if isinstance(value, float):
         return _from_float(value, name)
-    exact = Fraction(value)
+    exact = _from_text(str(value), name) if isinstance(value, str | Decimal) else Fraction(value)
     if max(exact.numerator.bit_length(), exact.denominator.bit_length()) > _MAX_BITS:
-        raise InputError(name, value, f"has more than {_MAX_BITS} bits")
+        raise _too_long(name, value)
     return exact
 
 
@@ -73,16 +70,25 @@ def whole(name: str, value: object, least: int, most: int | None = None) -> int:
 
 def _from_text(text: str, name: str) -> Fraction:
     stripped = text.strip()
-    match = _NUMBER.fullmatch(stripped) if len(stripped) <= _MAX_LENGTH else None
+    if len(stripped) > _MAX_LENGTH:
+        raise _too_long(name, text)
+    match = _NUMBER.fullmatch(stripped)
     # `\d` matches the digits of every script; a number here is written in ASCII.
     if match is None or not stripped.isascii():
         raise InputError(name, text, "not a finite number; allowed: 0.001, 1e-3, 7/3")
     if match[2] and abs(int(match[2][1:])) > _MAX_EXPONENT:
         raise InputError(name, text, f"exponent beyond ±{_MAX_EXPONENT}")
     mantissa, _, divisor = stripped.partition("/")
-    if divisor and int(divisor) == 0:
-        raise InputError(name, text, "division by zero")
-    return Fraction(mantissa) / int(divisor or 1)
+    try:
+        return Fraction(mantissa) / int(divisor or 1)
+    except ZeroDivisionError:
+        raise InputError(name, text, "division by zero") from None
+    except ValueError:  # Python reads no integer of more than 4300 digits
+        raise _too_long(name, text) from None
+
+
+def _too_long(name: str, value: Exact) -> InputError:
+    return InputError(name, value, f"has more than {_MAX_BITS} bits")
 
 
 def _from_float(value: float, name: str) -> Fraction:

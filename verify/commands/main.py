@@ -3,16 +3,16 @@
 import contextlib
 import errno
 import os
-import signal
 import sys
 
 import click
 
 from verify.commands import commands
+from verify.commands.shared.signals import heard_signals
 from verify.commands.shared.streams import Printable, printable_streams
 from verify.errors import InputError, PlaceError
 
-INTERRUPTED, UNREAD, TERMINATED = 130, 141, 143
+INTERRUPTED, UNREAD = 130, 141
 BAD_INPUT = 2
 
 
@@ -51,9 +51,7 @@ def main(arguments: list[str] | None = None) -> None:
     0 done, 1 a check failed, 2 bad input, workers lost, or output that cannot be written,
     130 interrupted, 141 nobody reads, 143 terminated.
     """
-    with contextlib.suppress(ValueError):  # not in the main thread, which alone is signalled
-        signal.signal(signal.SIGTERM, _terminated)
-    with printable_streams():
+    with printable_streams(), heard_signals():
         try:
             if sys.stdout is None:
                 raise OSError(errno.EBADF, "is closed")
@@ -89,11 +87,6 @@ def _write_nowhere() -> None:
     """What is still to be written would fail again as the process ends."""
     with contextlib.suppress(OSError, AttributeError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _terminated(*_: object) -> None:
-    """As an interruption: worker processes are ended, and what is finished is kept."""
-    sys.exit(TERMINATED)
 
 
 def _fail(message: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import sympy
 
 from verify.algebra.embedding import MAX_TERMS, embed
-from verify.algebra.formula import parameter_name, parse, symbol, to_text
+from verify.algebra.formula import MAX_DEPTH, parameter_name, parse, symbol, to_text
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
@@ -21,7 +21,18 @@ from verify.hamiltonians.lie_derivatives import LieDerivatives
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
 @lru_cache(maxsize=64)
 def _of_formula(formula: str) -> "Hamiltonian":
-    return Hamiltonian(parse(formula, source="hamiltonian"))
+    """H as it is read from its own text: tasks, kept results and certificates hold that.
+
+    It can be much longer than the formula, and sympy multiplies a number into a sum one level
+    deeper each time that it is read.
+    """
+    read = parse(formula, source="hamiltonian")
+    for _ in range(MAX_DEPTH):
+        again = parse(to_text(read), source="hamiltonian, written out")
+        if again == read:
+            return Hamiltonian(read)
+        read = again
+    raise InputError("hamiltonian", formula, "is read otherwise each time that it is written out")
 
 
 @lru_cache(maxsize=64)
@@ -97,7 +108,7 @@ class Hamiltonian:
 
     @cached_property
     def formula(self) -> str:
-        """The expression as text that `parse` reads back."""
+        """The expression as text that `Hamiltonian.parse` reads back, to the same expression."""
         return to_text(self.expression)
 
     @property

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import NAMES, evaluate, formulas, is_real, plain, points
 from verify.algebra.embedding import embed
-from verify.algebra.formula import _Reader, parse, symbol, to_text
+from verify.algebra.formula import FUNCTIONS, _Reader, parse, symbol, to_text
 from verify.algebra.monomials import Monomials
 from verify.errors import InputError
 
@@ -126,6 +126,11 @@ REFUSED = {
     "huge power in steps": ("(q**64)**64", "exponent"),
     "huge number": ("(2**64)**64", "bits"),
     "huge product": ("1e999*1e999", "bits"),
+    "root of a huge number": ("sqrt(3e999)", "root"),
+    "root of a huge number in a product": ("(3e700*q)**(1/2)", "root"),
+    "root of a root of a huge number": ("((1e300 - 64)**(-5/3))**(1/64)", "root"),
+    "root of the inverse of a huge number": ("(1/(1e1000 - 64))**(1/64)", "root"),
+    "root of a constant out of reach": ("cosh(pi**64)**(1/2)", "too large"),
     "variable exponent": ("2**q", "exponent"),
     "irrational exponent": ("q**pi", "exponent"),
     "root of a negative constant": ("sqrt(-2)", "not real"),
@@ -234,6 +239,21 @@ def test_an_escape_sequence_does_not_reach_the_terminal() -> None:
 def test_a_long_flat_sum_is_not_deeply_nested() -> None:
     text = " + ".join(f"q**{n % 60 + 1}/{n + 1}" for n in range(100))
     assert parse(text) == plain(text)
+
+
+@pytest.mark.parametrize("error", [OverflowError, ValueError, TypeError, RecursionError])
+@pytest.mark.parametrize("text", ["tan(q/3)", "(p + 1)*q", "(q + 1)/p", "(q + 1)**(1/3)"])
+def test_where_sympy_fails_the_line_says_so(
+    text: str, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise error("int too large to convert to float")
+
+    monkeypatch.setitem(FUNCTIONS, "tan", fail)
+    for name in ("_eval_power", "__mul__", "__truediv__"):
+        monkeypatch.setattr(sympy.Add, name, fail)
+    with pytest.raises(InputError, match="cannot be handled exactly"):
+        parse(text)
 
 
 @given(text=formulas(), point=points("p", "q", "a"))

@@ -95,7 +95,15 @@ REFUSED = {
     "huge exponent": "1e1001",
     "tiny exponent": "1e-1001",
     "very huge exponent": "1e" + "9" * 500,
-    "long": "1" * 2000,
+    "long": "1" * 3000,
+    "long with a point": "1." + "1" * 3000,
+    "long quotient": "1/" + "1" * 3000,
+    "longer than Python reads": "1" * 4500,
+    "longer than anybody writes": "1" * 10**6,
+    "long Decimal": Decimal("1" * 3000),
+    "long integer": 10**3000,
+    "integer that Python does not print": 10**5000,
+    "long below": Fraction(1, 10**3000),
 }
 
 
@@ -160,6 +168,9 @@ def test_text_is_a_decimal_where_it_ends_and_a_quotient_else(shown: str, value: 
 @given(scaled())
 @example(Fraction(1, 2**21))
 @example(Fraction(10**25))
+@example(Fraction(10**1000))
+@example(Fraction(-1, 10**1000))
+@example(Fraction(2**8000 - 1, 2**7999 + 1))
 def test_text_reads_back_as_the_same_number(value: Fraction) -> None:
     assert Fraction(text(value)) == value
     assert rational(text(value)) == value

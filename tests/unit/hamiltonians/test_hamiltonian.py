@@ -7,8 +7,16 @@ import sympy
 from hypothesis import given
 
 from tests.examples import drawn
-from tests.helpers.sampled.formulas import P, Q, outcome, plain, polynomials, trigonometric
-from verify.algebra.formula import symbol
+from tests.helpers.sampled.formulas import (
+    P,
+    Q,
+    formulas,
+    outcome,
+    plain,
+    polynomials,
+    trigonometric,
+)
+from verify.algebra.formula import parse, symbol
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -33,6 +41,40 @@ def test_the_field_is_minus_h_q_and_h_p(text: str) -> None:
         field.ring.expression(field.h_q) - expression.diff(Q),
     )
     assert [sympy.simplify(gap) for gap in gaps] == [0, 0]
+
+
+GIANT = ["p**2/2 + 1e-1000*q**3", "p**2/2 + 1e1000*q**2", "(p**2 + q**4/3e700)/7e400"]
+
+
+@pytest.mark.parametrize("text", [*FORMULAS, *GIANT, "(p**7 + 1/10)/((q**2 + 2)*(a - 1)*7/3)"])
+def test_h_written_out_is_read_as_the_same_h(text: str) -> None:
+    made = Hamiltonian.parse(text)
+    assert Hamiltonian.parse(made.formula) == made
+    assert sympy.simplify(made.expression - plain(text)) == 0
+
+
+@given(text=formulas())
+@drawn(200)
+def test_so_is_any(text: str) -> None:
+    try:
+        made = Hamiltonian.parse(text)
+    except InputError:
+        return
+    assert Hamiltonian.parse(made.formula) == made
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("p**2/2 + 7e-1000*(q + q**2*pi + q**3 + q**4/3 + q**5/9)", "longer than 4000"),
+        ("p**2/2 + 1e-1000/(1e300 + q**2)", "more than 4000 bits"),
+    ],
+)
+def test_what_grows_too_long_when_it_is_written_out_is_refused(text: str, said: str) -> None:
+    """It would be read by plan, and not by the worker that report gives it to."""
+    parse(text)
+    with pytest.raises(InputError, match=f"^hamiltonian, written out=.*{said}"):
+        Hamiltonian.parse(text)
 
 
 @pytest.mark.parametrize("text", FORMULAS)

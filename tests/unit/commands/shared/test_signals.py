@@ -1,0 +1,79 @@
+"""An interruption or a termination is heard wherever it comes."""
+
+import contextlib
+import gc
+import signal
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from verify.commands.shared.signals import TERMINATED, heard_signals
+
+WAIT = 10  # seconds
+
+
+@contextlib.contextmanager
+def signalled_in_a_callback(number: signal.Signals) -> Iterator[None]:
+    """The next collection of garbage is signalled, and Python prints and forgets what it raises."""
+
+    def once(phase: str, _: object) -> None:
+        if phase == "stop":
+            gc.callbacks.remove(once)
+            signal.raise_signal(number)
+
+    gc.callbacks.append(once)
+    yield
+
+
+@pytest.fixture(autouse=True)
+def handler() -> Iterator[None]:
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def wait() -> None:
+    until = time.monotonic() + WAIT
+    while time.monotonic() < until:
+        time.sleep(0.01)
+
+
+def test_an_interruption_in_a_callback_is_heard(capsys: pytest.CaptureFixture[str]) -> None:
+    with (
+        pytest.raises(KeyboardInterrupt),
+        heard_signals(),
+        signalled_in_a_callback(signal.SIGINT),
+    ):
+        gc.collect()
+        wait()
+    assert capsys.readouterr() == ("", "")
+
+
+def test_and_so_is_a_termination(capsys: pytest.CaptureFixture[str]) -> None:
+    with (
+        pytest.raises(SystemExit) as ended,
+        heard_signals(),
+        signalled_in_a_callback(signal.SIGTERM),
+    ):
+        gc.collect()
+        wait()
+    assert ended.value.code == TERMINATED
+    assert capsys.readouterr() == ("", "")
+
+
+def test_what_else_is_raised_there_is_told_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda ignored: told.append(ignored.exc_type))
+    before = sys.unraisablehook
+
+    def once(*_: object) -> None:
+        gc.callbacks.remove(once)
+        raise ValueError
+
+    with heard_signals():
+        gc.callbacks.append(once)
+        gc.collect()
+    assert told == [ValueError]
+    assert sys.unraisablehook is before
