@@ -99,10 +99,9 @@ def _linear(scheme: str) -> Answer:
 
 
 def _print_linear(found: "LinearStability", delta_j: str) -> None:
-    shown = f"for 0 < hω < {found.decimal(12)}"
-    if found.interval.is_infinite or found.interval == 0:
-        shown = "for every hω > 0" if found.interval else "for no hω > 0"
+    ends = {"infinite": "for every hω > 0", "0": "for no hω > 0"}
+    shown = ends.get(found.exact, f"for 0 < hω < {found.decimal(12)}")
     click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
-    if found.interval.is_finite and not found.interval.is_rational:
+    if found.exact not in ends and not found.exact.isdecimal():
         click.echo(f"  exactly  {found.exact}")
     click.echo(f"  ΔJ       {delta_j}, y = hω")

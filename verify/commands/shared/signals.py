@@ -1,8 +1,8 @@
 """Interruption and termination as the command hears them: always, and as exceptions.
 
-Python raises what a signal's handler raises wherever the program happens to be, and where that is a
-callback of the garbage collector (hypothesis has one), a finaliser or a C library's callback, prints
-it and goes on: the signal would be lost. Such a one is sent again.
+Python raises what a signal's handler raises wherever the program happens to be. Where that is a
+callback of the garbage collector (hypothesis has one), a finaliser or a callback from C, Python
+prints it and goes on: the signal would be lost. Such a one is sent again.
 """
 
 import contextlib
@@ -20,14 +20,14 @@ def heard_signals() -> Iterator[None]:
     """SIGTERM is SystemExit with status 143, and no such exit, nor KeyboardInterrupt, is lost."""
     with contextlib.suppress(ValueError):  # not in the main thread, which alone is signalled
         signal.signal(signal.SIGTERM, _terminated)
-    before = sys.unraisablehook
+    before, here = sys.unraisablehook, threading.get_ident()
 
     def hear(ignored: "sys.UnraisableHookArgs") -> None:
         number = _signal(ignored.exc_value)
         if number is None:
             before(ignored)
         else:
-            again = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (_main_thread(), number))
+            again = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (here, number))
             again.daemon = True
             again.start()
 
@@ -49,9 +49,3 @@ def _signal(error: BaseException | None) -> signal.Signals | None:
     if isinstance(error, SystemExit) and error.code == TERMINATED:
         return signal.SIGTERM
     return None
-
-
-def _main_thread() -> int:
-    number = threading.main_thread().ident
-    assert number is not None, "it runs"
-    return number

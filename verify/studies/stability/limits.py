@@ -9,6 +9,8 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
+import sympy
+
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
@@ -34,7 +36,7 @@ def linear_limit(scheme: str) -> Fraction | None:
         found = linear_stability(scheme)
     except InputError:
         return None
-    if found.interval.is_infinite:
+    if found.interval == sympy.oo:
         return None
     return Fraction(found.decimal())
 

@@ -14,10 +14,12 @@ isolating the real roots of integer polynomials.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from fractions import Fraction
 
+import flint
 import sympy
 
+from verify.algebra.positive_roots import PositiveRoot, positive_roots
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.schemes import get
@@ -30,29 +32,27 @@ Y = sympy.Symbol("y", positive=True)
 class LinearStability:
     """`interval`: the Y of (0, Y), 0 where there is none, ∞ where there is no end.
 
-    `delta_j`: det M − 1 as a function of y. `root_of`: an irreducible polynomial of which Y is a
-    root, and the which of its positive ones, where Y is not written with square roots.
+    Y is a formula where it is written with square roots, else a certain root of a polynomial.
+    `delta_j`: det M − 1 as a function of y.
     """
 
     scheme: str
-    interval: sympy.Expr
+    interval: sympy.Expr | PositiveRoot
     delta_j: sympy.Expr
-    root_of: tuple[sympy.Expr, int] | None = None
 
     @property
     def exact(self) -> str:
         """As a formula, or as a certain root of a polynomial."""
-        if self.interval is sympy.oo:
-            return "infinite"
-        if self.root_of is not None:
-            polynomial, which = self.root_of
-            return f"positive root {which} of {polynomial}"
-        return str(self.interval)
+        if isinstance(self.interval, PositiveRoot):
+            return self.interval.written(Y.name)
+        return "infinite" if self.interval is sympy.oo else str(self.interval)
 
     def decimal(self, digits: int = 30) -> str:
         """Rounded to so many significant digits."""
+        if isinstance(self.interval, PositiveRoot):
+            return self.interval.decimal(digits)
         if self.interval in (sympy.oo, 0):
-            return "infinite" if self.interval else "0"
+            return self.exact
         return str(self.interval.evalf(digits))
 
 
@@ -74,23 +74,10 @@ def of_map(name: str, step: StepMap) -> LinearStability:
     a, b, c, e = entries
     det, trace = (sympy.cancel(x) for x in (a * e - b * c, a + e))
     conditions = [_polynomial(x) for x in (1 - det, 1 + det - trace, 1 + det + trace)]
-    interval = min(_first_failure(f) for f in conditions)
+    interval = _interval(conditions)
     if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
         interval = sympy.S.Zero
-    root = _root_of(interval, conditions)
-    return LinearStability(name, interval, sympy.factor(det - 1), root)
-
-
-def _root_of(y: sympy.Expr, conditions: Sequence[sympy.Poly]) -> tuple[sympy.Expr, int] | None:
-    """The irreducible factor of a condition that vanishes at y, and which positive root y is."""
-    if not y.has(sympy.CRootOf):
-        return None
-    for f in conditions:
-        for factor, _ in _over_rationals(f).factor_list()[1] if not f.is_zero else ():
-            positive = sorted(root for root in factor.real_roots() if root > 0)
-            if y in positive:
-                return factor.as_expr(), positive.index(y) + 1
-    return None
+    return LinearStability(name, interval, sympy.factor(det - 1))
 
 
 def _polynomial(x: sympy.Expr) -> sympy.Poly:
@@ -99,31 +86,24 @@ def _polynomial(x: sympy.Expr) -> sympy.Poly:
     return sympy.Poly(sympy.expand(above * below), Y, extension=True)
 
 
-def _over_rationals(f: sympy.Poly) -> sympy.Poly:
-    """A polynomial with rational coefficients that has all of f's roots."""
-    return f.norm() if f.domain.is_Algebraic else f
-
-
-def _first_failure(f: sympy.Poly) -> sympy.Expr:
-    """The greatest Y such that f ≥ 0 on (0, Y)."""
-    if f.is_zero:
-        return sympy.oo
-    roots = sorted({root for root in _over_rationals(f).real_roots() if root > 0})
-    ends = [sympy.S.Zero, *roots]
-    for left, right in pairwise([*ends, None]):
-        if f.eval(_between(left, right)) < 0:
+def _interval(conditions: Sequence[sympy.Poly]) -> sympy.Expr | PositiveRoot:
+    """The greatest Y such that all of them are ≥ 0 on (0, Y)."""
+    conditions = [f for f in conditions if not f.is_zero]
+    left: sympy.Expr | PositiveRoot = sympy.S.Zero
+    above = Fraction(0)  # the end of what encloses `left`
+    for root, (low, high) in positive_roots(_over_integers(f) for f in conditions):
+        if _one_is_negative(conditions, (above + low) / 2):
             return left
-    return sympy.oo
+        left, above = root.closed_form() or root, high
+    return left if _one_is_negative(conditions, above + 1) else sympy.oo
 
 
-def _between(left: sympy.Expr, right: sympy.Expr | None) -> sympy.Rational:
-    """A rational number in the open interval; `right` None is infinity."""
-    if right is None:
-        return sympy.Rational(sympy.ceiling(left) + 1)
-    digits = 15
-    while True:
-        low, high = (sympy.Rational(str(sympy.N(x, digits))) for x in (left, right))
-        middle = (low + high) / 2
-        if left < middle < right:
-            return middle
-        digits *= 2
+def _over_integers(f: sympy.Poly) -> flint.fmpz_poly:
+    """A polynomial with integer coefficients that has all of f's roots."""
+    f = f.norm() if f.domain.is_Algebraic else f
+    return flint.fmpq_poly([flint.fmpq(int(x.p), int(x.q)) for x in f.all_coeffs()[::-1]]).numer()
+
+
+def _one_is_negative(conditions: Sequence[sympy.Poly], y: Fraction) -> bool:
+    at = sympy.Rational(y.numerator, y.denominator)
+    return any(f.eval(at) < 0 for f in conditions)

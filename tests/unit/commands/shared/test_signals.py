@@ -1,6 +1,5 @@
 """An interruption or a termination is heard wherever it comes."""
 
-import contextlib
 import gc
 import signal
 import sys
@@ -14,17 +13,20 @@ from verify.commands.shared.signals import TERMINATED, heard_signals
 WAIT = 10  # seconds
 
 
-@contextlib.contextmanager
-def signalled_in_a_callback(number: signal.Signals) -> Iterator[None]:
-    """The next collection of garbage is signalled, and Python prints and forgets what it raises."""
+def signalled_in_a_callback(number: signal.Signals) -> None:
+    """Python prints and forgets what is raised in a callback of the garbage collector."""
 
     def once(phase: str, _: object) -> None:
         if phase == "stop":
             gc.callbacks.remove(once)
             signal.raise_signal(number)
 
-    gc.callbacks.append(once)
-    yield
+    with heard_signals():
+        gc.callbacks.append(once)
+        gc.collect()
+        until = time.monotonic() + WAIT
+        while time.monotonic() < until:
+            time.sleep(0.01)
 
 
 @pytest.fixture(autouse=True)
@@ -34,31 +36,15 @@ def handler() -> Iterator[None]:
     signal.signal(signal.SIGTERM, before)
 
 
-def wait() -> None:
-    until = time.monotonic() + WAIT
-    while time.monotonic() < until:
-        time.sleep(0.01)
-
-
 def test_an_interruption_in_a_callback_is_heard(capsys: pytest.CaptureFixture[str]) -> None:
-    with (
-        pytest.raises(KeyboardInterrupt),
-        heard_signals(),
-        signalled_in_a_callback(signal.SIGINT),
-    ):
-        gc.collect()
-        wait()
+    with pytest.raises(KeyboardInterrupt):
+        signalled_in_a_callback(signal.SIGINT)
     assert capsys.readouterr() == ("", "")
 
 
 def test_and_so_is_a_termination(capsys: pytest.CaptureFixture[str]) -> None:
-    with (
-        pytest.raises(SystemExit) as ended,
-        heard_signals(),
-        signalled_in_a_callback(signal.SIGTERM),
-    ):
-        gc.collect()
-        wait()
+    with pytest.raises(SystemExit) as ended:
+        signalled_in_a_callback(signal.SIGTERM)
     assert ended.value.code == TERMINATED
     assert capsys.readouterr() == ("", "")
 

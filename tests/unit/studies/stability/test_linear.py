@@ -62,7 +62,7 @@ def test_powers_of_the_matrix_stay_bounded_inside_and_grow_outside(name: str) ->
     found = linear_stability(name)
     step = schemes.get(name).step_map(HARMONIC)
     matrix = sympy.lambdify(sympy.Symbol("h", real=True), step.jacobian)
-    end = float(found.interval)
+    end = float(found.decimal())
     # `mclachlan4` is stable again a little farther on.
     for share, grows in ((0.4, False), (0.98, False), (1.05, True)):
         numbers = np.array(matrix(share * end), dtype=float)
@@ -78,9 +78,15 @@ def test_the_determinant_is_what_the_proof_gives() -> None:
 def test_a_root_that_is_no_radical_is_named_by_its_polynomial() -> None:
     found = linear_stability("lie7")
     assert found.exact == "positive root 1 of y**6 - 35*y**4 + 504*y**2 - 1260"
-    assert found.root_of is not None
-    value = found.root_of[0].subs(Y, sympy.Float(found.decimal(40), 40))
-    assert abs(value) < 1e-30
+    polynomial = Y**6 - 35 * Y**4 + 504 * Y**2 - 1260
+    assert abs(polynomial.subs(Y, sympy.Float(found.decimal(40), 40))) < 1e-30
+
+
+def test_schemes_of_high_order_end_at_the_same_root_by_bisection() -> None:
+    """`lie99` was silent for minutes, while sympy isolated its roots."""
+    found = Fraction(linear_stability("lie99").decimal(30))
+    low, high = found - Fraction(1, 10**28), found + Fraction(1, 10**28)
+    assert excess(99, low) < 0 < excess(99, high)
 
 
 @pytest.mark.parametrize(
