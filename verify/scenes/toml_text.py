@@ -4,13 +4,14 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from verify.errors import without_controls
 from verify.scenes.scene import Scene
 
 
 def scene_text(scene: Scene, *, comment: str = "") -> str:
     """The scene's TOML, with what it does not ask for left out, under a comment of some lines."""
     data = scene.model_dump(mode="json", exclude_defaults=True)
-    lines = [f"# {line}".rstrip() for line in comment.splitlines()]
+    lines = [f"# {without_controls(line)}".rstrip() for line in comment.splitlines()]
     tables = {k: v for k, v in data.items() if _is_table(k, v)}
     lines += [f"{name} = {_value(x)}" for name, x in data.items() if name not in tables]
     for name, x in tables.items():
