@@ -199,7 +199,7 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
             assert begun.poll() is None
             time.sleep(0.02)
         status, out, err = interrupt(begun)
-    assert (status, out) == (130, "")
+    assert (status, out) == (130, ""), err
     before = {file: file.read_bytes() for file in kept(folder)}
     assert 1 <= len(before) < 11
     assert err.count("\n") == 1

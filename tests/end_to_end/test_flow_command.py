@@ -117,7 +117,8 @@ def test_an_interruption_keeps_what_is_finished(
     assert here(capsys, *given)[:2] == (0, out)
 
 
-def test_the_installed_command_carries_and_plans(scene: Path) -> None:
-    planned = apart("plan", str(scene))
-    assert "carry circle by lie2, 10 steps of 0.1" in planned.stdout
+def test_the_installed_command_carries_and_plans(
+    scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "carry circle by lie2, 10 steps of 0.1" in here(capsys, "plan", str(scene))[1]
     assert apart("flow", str(scene)).returncode == 0

@@ -1,8 +1,8 @@
 """Whether what a checked certificate prints is true, from the printed formulas alone.
 
-In numbers of 100 digits at random points. Formulas are read by Python's own parser; values carry
-their derivatives by p and q, and powers of h or t as truncated series. Nothing here comes from
-`verify`: not the reading of formulas, not the arithmetic, not the flow.
+In numbers of 100 digits, or more, at random points. Formulas are read by Python's own parser;
+values carry their derivatives by p and q, and powers of h or t as truncated series. Nothing here
+comes from `verify`: not the reading of formulas, not the arithmetic, not the flow.
 """
 
 import ast
@@ -16,7 +16,8 @@ from typing import Any
 from mpmath.ctx_mp import MPContext
 
 MP = MPContext()
-MP.dps = 100
+DIGITS = 100
+MP.dps = DIGITS
 TOLERANCE = MP.mpf(10) ** -60
 Data = Mapping[str, Any]  # what `verify certificate check --json` prints
 
@@ -180,10 +181,17 @@ class Polynomial:
 def is_true(said: Data, seed: int = 1, points: int = 3) -> bool:
     """Whether it holds at so many random points, and L is other than 0 at one of them."""
     rng = random.Random(seed)  # noqa: S311 - no secret
-    found = [_holds_at(said, rng) for _ in range(points)]
+    with MP.workdps(_digits(said)):
+        found = [_holds_at(said, rng) for _ in range(points)]
     return all(holds for holds, _ in found) and (
         said["area_preserving"] or any(not_zero for _, not_zero in found)
     )
+
+
+def _digits(said: Data) -> int:
+    """Enough where coefficients of thousands of digits are multiplied, and cancel."""
+    longest = max(len(n) for name in ("p_next", "q_next") for n in re.findall(r"\d+", said[name]))
+    return DIGITS + 12 * max(0, longest - 20)
 
 
 def _holds_at(said: Data, rng: random.Random) -> tuple[bool, bool]:

@@ -122,7 +122,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
             raise InputError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
     for power in powers:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
-            _check_power(power.base, power.exp, source, text)
+            check_power(power.base, power.exp, source, text)
     logarithms = (node for node in others if isinstance(node, sympy.log))
     if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
         raise InputError(source, text, "is not real, so it is not defined")
@@ -146,7 +146,8 @@ def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr]
     return numbers, powers, others
 
 
-def _check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
+def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
+    """InputError where that rational power is not real, or may be too large for sympy."""
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
@@ -290,7 +291,7 @@ class _Reader:
     def power(self, base: sympy.Expr, exponent: sympy.Expr) -> sympy.Expr:
         if not exponent.is_Rational:
             raise self.fail(f"exponent {exponent} must be a rational number; or exp(x*log(y))")
-        _check_power(base, exponent, self.source, self.text)
+        check_power(base, exponent, self.source, self.text)
         if exponent.q != 1 and not base.free_symbols and not within_reach(base):
             raise self.fail("a root of a constant that is too large, or not defined")
         if base.is_zero and exponent <= 0:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import sympy
 
 from verify.algebra.constant_size import within_reach
-from verify.algebra.formula import MAX_EXPONENT, checked
+from verify.algebra.formula import MAX_EXPONENT, check_power, checked
 from verify.errors import InputError
 
 
@@ -42,13 +42,12 @@ def _problem(shown: str, text: str) -> InputError:
 
 def _check(node: sympy.Expr, arguments: list[sympy.Expr], shown: str) -> None:
     """Whether rebuilding the node of these arguments is safe."""
-    if node.is_Pow:
-        exponents = [arguments[1]]
+    exponents = []
+    if node.is_Pow and arguments[1].is_Rational:
+        check_power(arguments[0], arguments[1], "parameter", shown)
     elif isinstance(node, sympy.exp):  # a sum with logarithms becomes powers
         terms = sympy.Add.make_args(arguments[0])
         exponents = [term.as_coeff_Mul()[0] for term in terms if term.has(sympy.log)]
-    else:
-        exponents = []
     if any(e.is_Rational and abs(e) > MAX_EXPONENT for e in exponents):
         raise _problem(shown, f"makes an exponent beyond ±{MAX_EXPONENT}")
     constant = isinstance(node, sympy.Function) and not arguments[0].free_symbols

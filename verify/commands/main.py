@@ -51,11 +51,12 @@ def main(arguments: list[str] | None = None) -> None:
     0 done, 1 a check failed, 2 bad input, workers lost, or output that cannot be written,
     130 interrupted, 141 nobody reads, 143 terminated.
     """
-    with printable_streams(), heard_signals():
+    with printable_streams():
         try:
             if sys.stdout is None:
                 raise OSError(errno.EBADF, "is closed")
-            cli.main(args=arguments, prog_name="verify", standalone_mode=False)
+            with heard_signals():
+                cli.main(args=arguments, prog_name="verify", standalone_mode=False)
             sys.stdout.flush()
         except (InputError, PlaceError) as error:
             _fail(str(error))

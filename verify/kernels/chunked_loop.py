@@ -162,7 +162,8 @@ class ChunkedLoop:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
     def _unscaled(self, name: str, value: Fraction) -> Fraction:
-        return value / (1 << self.shift * _SCALED.get(name, 0))
+        scale = self.shift * _SCALED.get(name, 0)
+        return value / (1 << scale) if scale else value
 
     def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
         """p, q and the observables after the steps done, as the exact rationals that they are."""
@@ -173,7 +174,7 @@ class ChunkedLoop:
 
     def _observed(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
         """The same of what is carried, or of its radii; Π det J as it is."""
-        total = {n: x + raw.get(f"{n}_rest", 0) for n, x in raw.items()}
+        total = {n: x + raw[rest] if (rest := f"{n}_rest") in raw else x for n, x in raw.items()}
         result = {"p": total["p"], "q": total["q"]}
         for name in self.run.observables & set(_ACCUMULATORS):
             carried = _ACCUMULATORS[name]

@@ -2,14 +2,18 @@
 
 Python raises what a signal's handler raises wherever the program happens to be. Where that is a
 callback of the garbage collector (hypothesis has one), a finaliser or a callback from C, Python
-prints it and goes on: the signal would be lost. Such a one is sent again.
+prints it and goes on: the signal would be lost, and is sent again. Where it is the import of a
+library in C, that may become an ImportError: whatever ends the command after a signal is that
+signal.
 """
 
 import contextlib
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from types import FrameType
+from typing import NoReturn
 
 TERMINATED = 143
 _AGAIN_AFTER = 0.01  # seconds: by then the callback is left
@@ -17,9 +21,44 @@ _AGAIN_AFTER = 0.01  # seconds: by then the callback is left
 
 @contextlib.contextmanager
 def heard_signals() -> Iterator[None]:
-    """SIGTERM is SystemExit with status 143, and no such exit, nor KeyboardInterrupt, is lost."""
-    with contextlib.suppress(ValueError):  # not in the main thread, which alone is signalled
-        signal.signal(signal.SIGTERM, _terminated)
+    """SIGINT is KeyboardInterrupt and SIGTERM SystemExit with status 143, and neither is lost."""
+    heard: list[int] = []
+
+    def interrupted(number: int, frame: FrameType | None) -> NoReturn:
+        heard.append(number)
+        signal.default_int_handler(number, frame)
+
+    def terminated(number: int, _: FrameType | None) -> NoReturn:
+        heard.append(number)
+        sys.exit(TERMINATED)
+
+    with _handlers({signal.SIGINT: interrupted, signal.SIGTERM: terminated}), _sent_again():
+        try:
+            yield
+        except Exception as error:
+            if not heard:
+                raise
+            ended = KeyboardInterrupt() if heard[-1] == signal.SIGINT else SystemExit(TERMINATED)
+            raise ended from error
+
+
+@contextlib.contextmanager
+def _handlers(chosen: Mapping[signal.Signals, Callable[..., NoReturn]]) -> Iterator[None]:
+    """Those handlers, for a while; no others where this is not the thread that is signalled."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, handler) for number, handler in chosen.items()}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def _sent_again() -> Iterator[None]:
+    """A signal whose exception Python prints and forgets comes a second time."""
     before, here = sys.unraisablehook, threading.get_ident()
 
     def hear(ignored: "sys.UnraisableHookArgs") -> None:
@@ -36,11 +75,6 @@ def heard_signals() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = before
-
-
-def _terminated(*_: object) -> None:
-    """As an interruption: worker processes are ended, and what is finished is kept."""
-    sys.exit(TERMINATED)
 
 
 def _signal(error: BaseException | None) -> signal.Signals | None:

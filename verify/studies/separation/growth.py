@@ -75,8 +75,8 @@ def envelope(values: Sequence[Fraction]) -> list[Fraction]:
 
 def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> Growth:
     """The fit for values at equidistant numbers of steps, each known to within `noise`."""
-    tops = envelope(values)
-    usable = [k for k, top in enumerate(tops) if k + 1 >= _FIRST and top > _ABOVE * noise]
+    tops, least = envelope(values), _ABOVE * noise
+    usable = [k for k, top in enumerate(tops) if k + 1 >= _FIRST and top > least]
     chosen = log_spaced(usable, [marks[k] for k in usable], _MOST)
     first, last = (marks[chosen[0]], marks[chosen[-1]]) if chosen else (0, 0)
     reach = math.log(last / first) if chosen else 0.0

@@ -4,7 +4,6 @@ import gc
 import signal
 import sys
 import time
-from collections.abc import Iterator
 
 import pytest
 
@@ -29,13 +28,6 @@ def signalled_in_a_callback(number: signal.Signals) -> None:
             time.sleep(0.01)
 
 
-@pytest.fixture(autouse=True)
-def handler() -> Iterator[None]:
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
-
-
 def test_an_interruption_in_a_callback_is_heard(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(KeyboardInterrupt):
         signalled_in_a_callback(signal.SIGINT)
@@ -47,6 +39,36 @@ def test_and_so_is_a_termination(capsys: pytest.CaptureFixture[str]) -> None:
         signalled_in_a_callback(signal.SIGTERM)
     assert ended.value.code == TERMINATED
     assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)]
+)
+def test_what_a_library_makes_of_a_signal_while_it_is_imported_is_that_signal(
+    number: signal.Signals, raised: type[BaseException]
+) -> None:
+    """As pybind11 does: "ImportError: initialization failed"."""
+
+    def import_library() -> None:
+        try:
+            signal.raise_signal(number)
+        except BaseException as error:
+            raise ImportError("initialization failed") from error
+
+    with pytest.raises(raised), heard_signals():
+        import_library()
+
+
+def test_an_error_without_a_signal_stays_that_error() -> None:
+    with pytest.raises(ImportError), heard_signals():
+        raise ImportError
+
+
+def test_handlers_are_given_back() -> None:
+    before = [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)]
+    with heard_signals():
+        pass
+    assert [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)] == before
 
 
 def test_what_else_is_raised_there_is_told_as_before(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -378,3 +378,13 @@ def test_the_checker_is_small_and_imports_nothing_of_the_provers() -> None:
     own = {f"verify.proof.certificates.{name}" for name in ("entries", "balls")}
     assert lines <= 600
     assert {x.partition(".")[0] for x in imported - own} <= set(sys.stdlib_module_names)
+
+
+def test_the_oracle_has_digits_enough_for_coefficients_of_any_length() -> None:
+    """A shear by 10¹²⁰·H_q preserves area; 100 digits cannot tell after two powers of it."""
+    data = as_read(of_every(prove_every("stormer-verlet", separable=True)))
+    data["stages"][0][0] = str(10**120)
+    said = asdict(established(check(data)))
+    assert is_true(said, points=1)
+    wrong = said | {"q_next": said["q_next"].replace("q1 = q", "q1 = q + h*p*q", 1)}
+    assert not is_true(wrong, points=1)
