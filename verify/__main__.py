@@ -4,35 +4,19 @@ Python itself puts the current folder first on the path, and has imported `verif
 `-m` needs by the time that this is read; the command `verify` never looks there.
 """
 
-import contextlib
 import os
 import sys
 
-INTERRUPTED, TERMINATED = 130, 143
+_INTERRUPTED = 130
 
 
 def main() -> None:
-    """Run the command line and exit; an interruption while it is imported is one, too.
-
-    After a signal nothing of Python is taken down: a library may be half imported.
-    """
+    """Run the command line and exit; an interruption while it is imported is one, too."""
     try:
         from verify.commands.main import main as run
-
-        run()
     except KeyboardInterrupt:
-        _leave(INTERRUPTED)
-    except SystemExit as ended:
-        if ended.code in (INTERRUPTED, TERMINATED):
-            _leave(ended.code)
-        raise
-
-
-def _leave(status: int) -> None:
-    for stream in (sys.stdout, sys.stderr):
-        with contextlib.suppress(OSError, ValueError, AttributeError):
-            stream.flush()
-    os._exit(status)
+        sys.exit(_INTERRUPTED)
+    run()
 
 
 if __name__ == "__main__":
