@@ -23,6 +23,13 @@ class InputError(ValueError):
         return type(self), (self.name, _short(self.value), self.problem)
 
 
+class LimitError(InputError):
+    """Beyond what is handled exactly: too large, or of a function that is not known.
+
+    A claim that prints it is no mistake of the file; it is left undecided.
+    """
+
+
 class PlaceError(RuntimeError):
     """The place where tasks run fails them: workers lost, a scheduler gone, other code there.
 

@@ -116,9 +116,8 @@ def test_json_is_one_object_with_the_claims(
     found = json_of(out)["claims"]
     assert [c["id"] for c in found] == ["map", "first-term", "order", "convergence", "area"]
     assert [c["verdict"] for c in found] == ["PROVED", "PROVED", "REFUTED", "PROVED", "PROVED"]
-    assert all(
-        set(c) == {"id", "kind", "source", "statement", "verdict", "evidence"} for c in found
-    )
+    keys = {"id", "kind", "source", "statement", "verdict", "evidence", "domain"}
+    assert all(set(c) == keys for c in found)
     assert (found[0]["source"], found[0]["statement"]) == ("Eq. 19", "The scheme is this map.")
     assert all(c["evidence"] for c in found)
 

@@ -5,9 +5,9 @@ import random
 from tests.mutants.mutate import ROOT, Mutant, mutants
 
 PATTERNS = (
-    "algebra/jets.py",
+    "algebra/series/jets.py",
     "algebra/linear_combination.py",
-    "algebra/quotient_series.py",
+    "algebra/series/quotient_series.py",
     "arithmetic/*.py",
     "arithmetic/systems/*.py",
     "flows/closed_orbit.py",

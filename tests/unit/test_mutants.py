@@ -154,7 +154,7 @@ if {index} >= 0:
     planted({module!r}, {index})
 import {module} as there
 from verify.execution.keeping import fingerprint
-import verify.algebra.jets as beside
+import verify.algebra.series.jets as beside
 print(type(beside.__loader__).__name__, type(there.__loader__).__name__, fingerprint(), sep=";")
 """
 

@@ -23,7 +23,7 @@ from verify.algebra.functions_used import (
 from verify.algebra.lattice import lattice
 from verify.algebra.monomials import exponents
 from verify.algebra.ring import Poly, Ring, RingFullError
-from verify.errors import InputError
+from verify.errors import LimitError
 
 MAX_TERMS = 20000
 _MOST_BITS = 12  # of a number under a root, before it is scaled
@@ -53,7 +53,7 @@ def embed(
             return builder.ring, [builder.element(e) for e in expressions]
         except RingFullError as error:
             problem = f"is too involved: {error}"
-    raise InputError("formula", str(expressions[0]), problem)
+    raise LimitError("formula", str(expressions[0]), problem)
 
 
 def _root_degrees(powers: set[sympy.Pow]) -> dict[sympy.Expr, int]:
@@ -216,7 +216,7 @@ class _Builder:
             return total
         if node.is_Pow and node.exp.is_Rational:
             return self.power(node)
-        raise InputError("formula", str(node), f"{type(node).__name__} cannot be handled exactly")
+        raise LimitError("formula", str(node), f"{type(node).__name__} cannot be handled exactly")
 
     def sum(self, node: sympy.Add) -> Poly:
         ring, plain = self.ring, dict[tuple[int, ...], flint.fmpq]()
@@ -255,7 +255,7 @@ class _Builder:
             return same
         _, factors = u.factor()
         if math.gcd(degree, *(int(n) for _, n in factors)) > 1 and factors:
-            raise InputError("formula", str(node), "is not smooth: the root of a power is |x|")
+            raise LimitError("formula", str(node), "is not smooth: the root of a power is |x|")
         inverse = self.inverse(u, node)
         root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
         ring.relate(root, degree, root**degree - u)
@@ -270,7 +270,7 @@ class _Builder:
 
     def limited(self, x: Poly, node: sympy.Expr) -> Poly:
         if len(x) > self.most_terms:
-            raise InputError("formula", str(node), f"expands to more than {self.most_terms} terms")
+            raise LimitError("formula", str(node), f"expands to more than {self.most_terms} terms")
         return x
 
     def inverse(self, u: Poly, node: sympy.Expr) -> Poly:
@@ -278,4 +278,4 @@ class _Builder:
             return self.ring.inverse(u)
         except ZeroDivisionError:
             problem = "division by zero, or by what cannot be shown not to vanish"
-            raise InputError("formula", str(node), problem) from None
+            raise LimitError("formula", str(node), problem) from None

@@ -19,8 +19,9 @@ from sympy.printing.str import StrPrinter
 from verify.algebra.constant_size import FUNCTIONS as NAMES
 from verify.algebra.constant_size import within_reach
 from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
+from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.arithmetic.exact import rational
-from verify.errors import InputError
+from verify.errors import InputError, LimitError
 
 MAX_LENGTH = 4000
 MAX_DEPTH = 60
@@ -44,6 +45,7 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Div: operator.truediv,
 }
 _SHORT = 18  # digits of a number that is surely within the limits
+_DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 
 
@@ -88,12 +90,19 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
     `names`: the names that may occur; None allows p, q and any parameter name. `source` is the
     name under which an error speaks of the text. Raises InputError, never anything else.
     """
+    return read(text, names, source=source)[0]
+
+
+def read(
+    text: str, names: Iterable[str] | None = None, *, source: str = "formula"
+) -> tuple[sympy.Expr, list[Requirement]]:
+    """As `parse`, with all that what is written asks for to be defined, simplified away or not."""
     if not isinstance(text, str):
         raise InputError(source, text, "is not text; write a formula such as 'p**2/2 + q**2/2'")
     if not text.strip():
         raise InputError(source, text, "empty; write a formula such as p**2/2 + q**2/2")
     if len(text) > MAX_LENGTH:
-        raise InputError(source, text, f"longer than {MAX_LENGTH} characters")
+        raise LimitError(source, text, f"longer than {MAX_LENGTH} characters")
     if not text.isascii():
         raise InputError(source, text, "has a character outside ASCII; write delta for δ")
     line = " ".join(text.replace("^", "**").split())
@@ -106,8 +115,11 @@ def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formu
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise InputError(source, text, "not a formula; allowed: + - * / ** and functions") from None
     known = None if names is None else frozenset(names)
-    result = _Reader(source, text, line, known).read(tree, 0)
-    return result if isinstance(tree, ast.BinOp) else checked(result, source, text)
+    reader = _Reader(source, text, line, known)
+    result = reader.read(tree, 0)
+    if not isinstance(tree, ast.BinOp):
+        checked(result, source, text)
+    return result, reader.required
 
 
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
@@ -116,10 +128,10 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
     if any(isinstance(node, _NOT_SMOOTH_NODES) for node in others):
-        raise InputError(source, text, "is not smooth: the root of an even power is |x|")
+        raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
     for number in numbers:
         if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
-            raise InputError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
+            raise LimitError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
     for power in powers:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             check_power(power.base, power.exp, source, text)
@@ -149,11 +161,11 @@ def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr]
 def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
     """InputError where that rational power is not real, or may be too large for sympy."""
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
-        raise InputError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
+        raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
     if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
         raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
     if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
-        raise InputError(source, text, "a root of a number in it has too many digits")
+        raise LimitError(source, text, "a root of a number in it has too many digits")
 
 
 def _root_bits(base: sympy.Expr) -> int:
@@ -169,13 +181,17 @@ class _Reader:
 
     def __init__(self, source: str, text: str, line: str, names: frozenset[str] | None) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
+        self.required: list[Requirement] = []
 
     def fail(self, problem: str) -> InputError:
         return InputError(self.source, self.text, problem)
 
+    def beyond(self, problem: str) -> LimitError:
+        return LimitError(self.source, self.text, problem)
+
     def read(self, node: ast.expr, depth: int) -> sympy.Expr:
         if depth > MAX_DEPTH:
-            raise self.fail(f"nested deeper than {MAX_DEPTH}")
+            raise self.beyond(f"nested deeper than {MAX_DEPTH}")
         match node:
             case ast.Constant():
                 return self.number(node)
@@ -199,7 +215,11 @@ class _Reader:
             raise self.fail(f"{written!r} is not a number")
         if written.isdecimal() and len(written) <= _SHORT:
             return sympy.Integer(int(written))
-        value = rational(written, self.source)
+        try:
+            value = rational(written, self.source)
+        except InputError as error:
+            known = LimitError if _DECIMAL.fullmatch(written) else InputError
+            raise known(error.name, error.value, error.problem) from None
         return sympy.Rational(value.numerator, value.denominator)
 
     def name(self, name: str) -> sympy.Expr:
@@ -218,19 +238,22 @@ class _Reader:
     def call(self, node: ast.Call, depth: int) -> sympy.Expr:
         name = node.func.id if isinstance(node.func, ast.Name) else "?"
         if name in NOT_SMOOTH:
-            raise self.fail(f"{name} is not smooth")
+            raise self.beyond(f"{name} is not smooth")
         if name not in FUNCTIONS:
-            raise self.fail(f"unknown function {name!r}; allowed: {', '.join(sorted(FUNCTIONS))}")
+            known = hasattr(math, name) or isinstance(getattr(sympy, name, None), type(sympy.sin))
+            problem = f"unknown function {name!r}; allowed: {', '.join(sorted(FUNCTIONS))}"
+            raise self.beyond(problem) if known else self.fail(problem)
         if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):
             raise self.fail(f"{name} takes one argument")
         argument = self.read(node.args[0], depth + 1)
+        self.required += of_function(name, argument)
         # sympy sums and simplifies as it builds: infinities must not get into it.
         if name == "sqrt":
             return self.power(argument, sympy.S.Half)
         if name == "exp" and argument.has(sympy.log):
             return self.finite(self.exponential(argument))
         if not argument.free_symbols and not within_reach(argument):
-            raise self.fail(f"{name} of a constant that is too large, or not defined")
+            raise self.beyond(f"{name} of a constant that is too large, or not defined")
         value = self.finite(self.apply(FUNCTIONS[name], argument, shown=f"{name} of that argument"))
         # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
@@ -275,6 +298,7 @@ class _Reader:
         for op, right in factors:
             if op is ast.Div and right.is_zero:
                 raise self.fail("division by zero")
+            self.required += of_divisor(right) if op is ast.Div else ()
             value = self.apply(_APPLY[op], value, right, shown="a product or quotient in it")
         return self.finite(-value if minus else value)
 
@@ -290,12 +314,13 @@ class _Reader:
 
     def power(self, base: sympy.Expr, exponent: sympy.Expr) -> sympy.Expr:
         if not exponent.is_Rational:
-            raise self.fail(f"exponent {exponent} must be a rational number; or exp(x*log(y))")
+            raise self.beyond(f"exponent {exponent} must be a rational number; or exp(x*log(y))")
         check_power(base, exponent, self.source, self.text)
         if exponent.q != 1 and not base.free_symbols and not within_reach(base):
-            raise self.fail("a root of a constant that is too large, or not defined")
+            raise self.beyond("a root of a constant that is too large, or not defined")
         if base.is_zero and exponent <= 0:
             raise self.fail("division by zero" if exponent < 0 else "0**0 is not defined")
+        self.required += of_power(base, exponent)
         return self.finite(self.apply(operator.pow, base, exponent, shown="a power in it"))
 
     def apply(
@@ -305,7 +330,7 @@ class _Reader:
         try:
             return operation(*operands)
         except (ArithmeticError, AttributeError, TypeError, ValueError, RecursionError):
-            raise self.fail(f"{shown} cannot be handled exactly") from None
+            raise self.beyond(f"{shown} cannot be handled exactly") from None
 
     def finite(self, value: sympy.Expr) -> sympy.Expr:
         return checked(value, self.source, self.text)

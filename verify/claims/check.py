@@ -8,7 +8,7 @@ from operator import not_
 
 from verify.claims.claim import Claim
 from verify.claims.file import ClaimsFile
-from verify.claims.findings import Findings
+from verify.claims.judging import judged
 from verify.claims.plan import add_claims
 from verify.errors import InputError
 from verify.execution.execute import OnResult, Store, execute
@@ -37,15 +37,17 @@ class Check:
         found: dict[str, ClaimResult] = {}
         exact = [claim.exact for claim in self.claims]
         for claim in compress(self.claims, exact):
-            found[claim.id] = self._judge(claim, {})
+            found[claim.id] = self._judge(claim, {}, store, where)
         results = execute(self.plan, store, where=where, done=done)
         for claim in compress(self.claims, map(not_, exact)):
-            found[claim.id] = self._judge(claim, {**self.known, **results})
+            found[claim.id] = self._judge(claim, {**self.known, **results}, store, where)
         return [found[claim.id] for claim in self.claims]
 
-    def _judge(self, claim: Claim, results: Mapping[str, Frozen]) -> ClaimResult:
+    def _judge(
+        self, claim: Claim, results: Mapping[str, Frozen], store: Store, where: Placement
+    ) -> ClaimResult:
         try:
-            return claim.judge(Findings(self.file.scenes, results))
+            return judged(claim, self.file.scenes, results, store, where)
         except InputError as error:
             index = self.file.claims.index(claim)
             raise self.file.located(index, claim.id, error) from None

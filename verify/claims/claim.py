@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field
 
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.errors import InputError
 from verify.execution.task import Task
@@ -73,6 +74,11 @@ class Claim(Frozen):
         """What is to be computed before the claim can be judged."""
         return ()
 
+    def closer(self, scene: Scene) -> Scene | None:
+        """The scene with runs that may decide what those of this one leave open; None: there are
+        none."""
+        return None
+
     @abstractmethod
     def judge(self, findings: Findings) -> ClaimResult:
         """The verdict with its evidence. Raises InputError where a scene or a run is missing."""
@@ -83,6 +89,7 @@ class Claim(Frozen):
         evidence: str,
         details: Sequence[Sequence[str]] = (),
         proof: str = "",
+        domain: Domain = EVERYWHERE,
     ) -> ClaimResult:
         """The result for the claim; `details` is a table whose first row is its head."""
         return ClaimResult(
@@ -94,6 +101,7 @@ class Claim(Frozen):
             scene=self.scene,
             verdict=verdict,
             evidence=prose(evidence),
+            domain=domain.texts,
             details=tuple(tuple(map(prose, row)) for row in details),
             proof=prose(proof),
         )

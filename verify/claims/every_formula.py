@@ -4,7 +4,9 @@ import re
 
 import sympy
 
-from verify.algebra.formula import parse, symbol, to_text
+from verify.algebra.domain import Domain
+from verify.algebra.formula import read as read_formula
+from verify.algebra.formula import symbol, to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -12,14 +14,16 @@ _NAME = re.compile(r"[A-Za-z]\w*")
 _DERIVATIVE = re.compile(r"H_([pq]+|\d\d)")  # ∂²H/∂p∂q is H_pq, H_qp or H_11
 
 
-def read(formula: str, claim: str) -> sympy.Expr:
-    """The formula of that claim as an expression; InputError where it names more than derivatives
-    of H.
+def read(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
+    """The formula of that claim as an expression, and where it is defined.
+
+    InputError where it names more than derivatives of H.
     """
     derivatives = {name for name in _NAME.findall(formula) if _DERIVATIVE.fullmatch(name)}
     key = f"claim {claim}: formula"
     try:
-        return parse(formula, ("p", "q", "h", *derivatives), source=key)
+        found, asked = read_formula(formula, ("p", "q", "h", *derivatives), source=key)
+        return found, Domain.of(asked)
     except InputError as error:
         if "unknown name" not in error.problem:
             raise
@@ -27,13 +31,13 @@ def read(formula: str, claim: str) -> sympy.Expr:
         raise InputError(key, formula, problem) from None
 
 
-def normal(formula: sympy.Expr, *, separable: bool) -> sympy.Expr:
+def normal(formula: sympy.Expr, domain: Domain, *, separable: bool) -> tuple[sympy.Expr, Domain]:
     """The same with one name for each derivative; of a separable H the mixed ones are zero."""
     put = {}
     for s, (p_times, q_times) in _derivatives(formula).items():
         zero = separable and p_times and q_times
         put[s] = sympy.S.Zero if zero else symbol("H_" + "p" * p_times + "q" * q_times)
-    return formula.xreplace(put)
+    return formula.xreplace(put), domain.replaced(put)
 
 
 def of_hamiltonian(formula: sympy.Expr, hamiltonian: Hamiltonian) -> str:

@@ -30,10 +30,11 @@ from pydantic import ValidationError
 from verify.claims.claim import Claim
 from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
+from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
 from verify.claims.toml_lines import Lines, lines_of
-from verify.errors import InputError
+from verify.errors import InputError, LimitError
 from verify.files import read_text
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_from
@@ -74,7 +75,7 @@ class ClaimsFile:
             shared = [k for k in keys if lines.has("defaults", 0, k)]
             line = lines.of("defaults", 0, *shared) if shared else line
         where = f"{self.name}:{line}: claim {claim}"
-        return InputError(f"{where}: {said}" if said else where, error.value, error.problem)
+        return type(error)(f"{where}: {said}" if said else where, error.value, error.problem)
 
 
 def load_claims(path: Path) -> ClaimsFile:
@@ -99,10 +100,12 @@ def load_claims(path: Path) -> ClaimsFile:
         name = name if isinstance(name, str) and name else f"number {index + 1}"
         try:
             _add(found, table, defaults, scenes)
-        except ValidationError as error:
-            raise found.located(index, name, one_line(error, f"claim {name}")) from None
-        except InputError as error:
-            raise found.located(index, name, error) from None
+        except (ValidationError, InputError) as error:
+            said = error if isinstance(error, InputError) else one_line(error, f"claim {name}")
+            told = found.located(index, name, said)
+            if not isinstance(told, LimitError):
+                raise told from None
+            _append(found, outside({**defaults, **table}, str(told)))
     _add_figures(found, data.get("figure", []), scenes)
     return found
 

@@ -10,12 +10,15 @@ from zero.
 import re
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
 import sympy
 
-from verify.algebra.formula import parse, to_text
+from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.formula import read, symbol, to_text
+from verify.algebra.requirement import Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
@@ -42,54 +45,80 @@ class FormulaClaim(Claim):
     def check_scene(self, scene: Scene) -> None:
         self.read_formulas(scene.exact_hamiltonian().parameters)
 
-    def read_formulas(self, parameters: Sequence[str]) -> dict[str, sympy.Expr]:
-        """The formulas as expressions in p, q, h and the parameters; InputError names which."""
-        found = {}
+    def read_formulas(
+        self, parameters: Sequence[str]
+    ) -> tuple[dict[str, sympy.Expr], list[Requirement]]:
+        """The formulas as expressions in p, q, h and the parameters, and what they ask for.
+
+        InputError names which is none.
+        """
+        found, asked = {}, list[Requirement]()
         for key, written in self.formulas().items():
             more = ["p_next"] if key == "q_next" else []
             names = ("p", "q", "h", *parameters, *more)
-            found[key] = parse(written, names, source=f"claim {self.id}: {key}")
-        return found
+            found[key], required = read(written, names, source=f"claim {self.id}: {key}")
+            asked += required
+        return found, asked
 
-    def read(self, findings: Findings) -> tuple[StepMap, dict[str, sympy.Expr]]:
+    def read(self, findings: Findings) -> "Printed":
         """The scheme's exact map, and the formulas with the same parameters as symbols."""
         given = findings.scene_of(self).exact_hamiltonian()
-        read = self.read_formulas(given.parameters)
+        formulas, asked = self.read_formulas(given.parameters)
         named = set(re.findall(r"[A-Za-z]\w*", " ".join(self.formulas().values())))
         values = tuple((name, value) for name, value in given.values if name not in named)
         try:
-            step_map = step_map_of(Hamiltonian(given.expression, values), self.scheme)
+            step_map = step_map_of(replace(given, values=values), self.scheme)
         except InputError:  # a scheme may take H for the given values only
             step_map = step_map_of(given, self.scheme)
-        put_in = step_map.hamiltonian.put_in
-        return step_map, {key: put_in(expression) for key, expression in read.items()}
+        h = step_map.hamiltonian
+        first = {symbol("p_next"): formulas["p_next"]} if "p_next" in formulas else {}
+        domain = Domain.of(asked).replaced(first).replaced(h.put)
+        put = {key: h.put_in(expression) for key, expression in formulas.items()}
+        return Printed(step_map, put, step_map.domain & domain)
 
-    def from_gaps(self, gaps: Sequence["Gap"], holds: str) -> ClaimResult:
+    def from_gaps(self, gaps: Sequence["Gap"], holds: str, domain: Domain) -> ClaimResult:
         """PROVED where all differences vanish, else what the first one that does not is."""
         wrong = [gap for gap in gaps if gap.decision.zero is not True]
         wrong.sort(key=lambda gap: gap.decision.zero is None)  # a refutation before a doubt
         if not wrong:
-            return self.result(Verdict.PROVED, holds)
+            return self.result(Verdict.PROVED, holds, domain=domain)
         what, ring, x, decision = wrong[0]
         shown = ring.factored(x) if h_inside(ring, x) else grouped(ring, x)
-        return self._refuted_or_not(what, to_text(shown), decision)
+        return self._refuted_or_not(what, to_text(shown), decision, domain)
 
-    def differs_below(self, what: str, ring: Ring, x: Poly, power: int) -> ClaimResult | None:
+    def differs_below(
+        self, what: str, ring: Ring, x: Poly, power: int, domain: Domain = EVERYWHERE
+    ) -> ClaimResult | None:
         """The claim's result where printed − computed = x is not shown to be O(h^power)."""
         expansion = Expansion(ring, x)
         for n in range(power):
             own, coefficient = expansion.coefficient(n)
-            decision = own.decide(coefficient)
+            decision = domain.decide(own, coefficient)
             if decision.zero is not True:
                 term = H_STEP**n * own.factored(coefficient)
-                return self._refuted_or_not(what, to_text(term), decision)
+                return self._refuted_or_not(what, to_text(term), decision, domain)
         return None
 
-    def _refuted_or_not(self, what: str, difference: str, decision: Decision) -> ClaimResult:
+    def _refuted_or_not(
+        self, what: str, difference: str, decision: Decision, domain: Domain
+    ) -> ClaimResult:
         begun = prose(what, ": printed − computed = ", Formula(difference))
+        if decision.zero is None and difference == "0":
+            nowhere = begun + ", but no point is found with " + domain.prose
+            return self.result(Verdict.UNDECIDED, nowhere, domain=domain)
         if decision.zero is None:
-            return self.result(Verdict.UNDECIDED, begun + ", neither shown to vanish nor not to")
-        return self.result(Verdict.REFUTED, begun + ", not zero" + witness_of(decision, "it is"))
+            doubt = begun + ", neither shown to vanish nor not to" + within(domain)
+            return self.result(Verdict.UNDECIDED, doubt, domain=domain)
+        refuted = begun + ", not zero" + witness_of(decision, "it is")
+        return self.result(Verdict.REFUTED, refuted, domain=domain)
+
+
+class Printed(NamedTuple):
+    """The formulas of a claim by their keys, beside the exact map, and where all are defined."""
+
+    step_map: StepMap
+    formulas: dict[str, sympy.Expr]
+    domain: Domain
 
 
 class Gap(NamedTuple):
@@ -101,14 +130,22 @@ class Gap(NamedTuple):
     decision: Decision
 
 
-def gaps(step_map: StepMap, pairs: Sequence[tuple[str, sympy.Expr, sympy.Expr]]) -> list[Gap]:
-    """printed − computed for each (what, printed, computed), decided in one ring."""
+def gaps(
+    step_map: StepMap, pairs: Sequence[tuple[str, sympy.Expr, sympy.Expr]], domain: Domain
+) -> list[Gap]:
+    """printed − computed for each (what, printed, computed), decided in one ring, in the domain."""
     differences = [printed - computed for _, printed, computed in pairs]
     field, elements = step_map.hamiltonian.field(*differences)
     ring = field.ring
     return [
-        Gap(what, ring, x, ring.decide(x)) for (what, _, _), x in zip(pairs, elements, strict=True)
+        Gap(what, ring, x, domain.decide(ring, x))
+        for (what, _, _), x in zip(pairs, elements, strict=True)
     ]
+
+
+def within(domain: Domain) -> Prose:
+    """`, where q ≥ 0`; nothing where that is everywhere."""
+    return prose(", where ", domain.prose) if domain else prose("")
 
 
 @lru_cache(maxsize=64)

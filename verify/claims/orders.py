@@ -6,10 +6,11 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.formula import to_text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.formulas import step_map_of, witness_of
+from verify.claims.formulas import step_map_of, within, witness_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
@@ -34,7 +35,9 @@ class OrderedClaim(QuantifiedClaim):
 
     def judge_known(self, known: "ProvedOrder") -> ClaimResult:
         """Whether what is proved is as claimed."""
-        return self.result(known.verdict(self.claimed, at_least=self.at_least), known.evidence)
+        verdict = known.verdict(self.claimed, at_least=self.at_least)
+        domain = known.holds_in(self.claimed, at_least=self.at_least)
+        return self.result(verdict, known.evidence + within(domain), domain=domain)
 
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         """An order that is not passed for all H together may well be passed for one."""
@@ -46,13 +49,21 @@ class ProvedOrder:
     """What is proved of an order: it is at least `least`, and no more than that where `exact`.
 
     `vanishes`: whether it is that of the zero function, which has every order; None where that is
-    not decided. `evidence` says so in one line.
+    not decided. `evidence` says so in one line. `domain`: where the map is defined; `exact_for`:
+    the parameters for which it is no more than `least`.
     """
 
     least: int
     exact: bool
     vanishes: bool | None
     evidence: str
+    domain: Domain = EVERYWHERE
+    exact_for: Domain = EVERYWHERE
+
+    def holds_in(self, order: int, *, at_least: bool) -> Domain:
+        """Where the verdict holds: it need not depend on that the order is no higher."""
+        known = self.vanishes or order < self.least or (at_least and order == self.least)
+        return self.domain if known else self.domain & self.exact_for
 
     def verdict(self, order: int, *, at_least: bool) -> Verdict:
         """Whether the order is this one, or with `at_least` no lower one."""
@@ -75,19 +86,20 @@ def delta_j_order(step_map: StepMap) -> ProvedOrder:
     leading = leading_of(step_map)
     beyond, decision = MOST_ORDERS + 1, leading.decision
     if decision.zero is True:
-        return ProvedOrder(beyond, False, True, "ΔJ is the zero function: det J ≡ 1")
+        evidence = prose("ΔJ is the zero function: det J ≡ 1")
+        return ProvedOrder(beyond, False, True, evidence, step_map.domain)
     power = beyond if leading.power is None else leading.power
     if decision.zero is None or leading.power is None:
         evidence = prose(
             "ΔJ = O(", Formula(f"h^{power}"), "), and whether of higher order is not decided",
             "; ΔJ is not the zero function" if decision.zero is False else "",
         )  # fmt: skip
-        return ProvedOrder(power, False, decision.zero, evidence)
+        return ProvedOrder(power, False, decision.zero, evidence, step_map.domain)
     evidence = prose(
         "ΔJ = (", Formula(to_text(leading.coefficient)), ")·", Formula(f"h^{power}"), " + O(",
         Formula(f"h^{power + 1}"), ")", witness_of(decision, "the coefficient is"),
     )  # fmt: skip
-    return ProvedOrder(power, True, False, evidence)
+    return ProvedOrder(power, True, False, evidence, step_map.domain, leading.domain)
 
 
 def convergence_order(step_map: StepMap) -> ProvedOrder:
@@ -95,9 +107,10 @@ def convergence_order(step_map: StepMap) -> ProvedOrder:
     found = convergence_of(step_map)
     if found.order is None:
         evidence = f"the map agrees with the exact flow in all orders looked at, {MOST_ORDERS}"
-        return ProvedOrder(MOST_ORDERS, False, None, evidence)
+        return ProvedOrder(MOST_ORDERS, False, None, evidence, step_map.domain)
     agrees = prose("the map agrees with the exact flow up to ", Formula(f"h^{found.order}"))
     if found.order < 0:
         agrees = prose("the map does not agree with the exact flow even at h = 0")
     more = " and no further" if found.decided else "; whether further is not decided"
-    return ProvedOrder(found.order, found.decided, False, agrees + more)
+    exact_for = found.exact_for() if found.decided else EVERYWHERE
+    return ProvedOrder(found.order, found.decided, False, agrees + more, step_map.domain, exact_for)

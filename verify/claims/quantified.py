@@ -25,12 +25,18 @@ class QuantifiedClaim(Claim):
 
     every: Literal["hamiltonian", "separable hamiltonian"] | None = None
 
+    @property
+    def looked_at(self) -> int:
+        """The order of the map that a proof is to look at, at least."""
+        return 0
+
     def judge(self, findings: Findings) -> ClaimResult:
         if self.every is None:
             return self.judge_one(findings)
         from verify.proof.every import prove_every
 
-        return self.judge_every(prove_every(self.scheme, separable=self.every == EVERY_SEPARABLE))
+        separable = self.every == EVERY_SEPARABLE
+        return self.judge_every(prove_every(self.scheme, separable, self.looked_at))
 
     @abstractmethod
     def judge_one(self, findings: Findings) -> ClaimResult:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
+from verify.claims.judging import all_judged
 from verify.claims.plan import add_claims
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
@@ -47,10 +48,9 @@ def make_report(
     kept = store.taken - before
     computed = len(plan.tasks) - kept
     findings = Findings(own, results)
-    of_claims = Findings(spoken_of, {**known, **results})
     return Report(
         title=title,
-        claims=tuple(claim.judge(of_claims) for claim in claims),
+        claims=all_judged(claims, spoken_of, {**known, **results}, store, where),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         figures=tuple(figures),
         left_out=tuple(plan.left_out),

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.results.claim import ClaimResult
 
-_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence")
+_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "domain")
 
 
 @click.command()

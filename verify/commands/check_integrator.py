@@ -109,7 +109,7 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
             **{name: text(value) for name, value in picked(example, "p", "q", "h").items()},
             **picked(example, "quantity", "found", "expected"),
         },
-        **picked(found, "faults", "notes"),
+        **picked(found, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 

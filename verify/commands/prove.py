@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from verify.proof.every import EveryProof
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
+    from verify.proof.special_values import SpecialValue
     from verify.schemes.scheme import Scheme
 _WIDTH = 88
 
@@ -53,7 +54,8 @@ def prove(
 ) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
-    A parameter without a value stays a symbol, and the proof holds for all its values.
+    A parameter without a value stays a symbol, and the proof holds for all its values but those
+    that it names: ΔJ may be smaller where one is 0.
 
     \b
     verify prove --system duffing --scheme lie2
@@ -84,20 +86,45 @@ def prove(
 def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
     from verify.proof.order import prove as prove_order
     from verify.proof.potential import potential_of
+    from verify.proof.special_values import special_values
     from verify.schemes import get
 
     begun = time.perf_counter()
     chosen = get(scheme)
     proof = prove_order(chosen.step_map(exact), chosen)
     potential = potential_of(proof, chosen)
+    special = special_values(proof, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
         _write(_certificate(proof, potential, chosen), certificate)
     return Answer(
-        lambda: show.proof_json(exact, chosen.name, proof, potential, seconds),
-        lambda: show.print_proof(exact, chosen.name, proof, potential),
+        lambda: {
+            **show.proof_json(exact, chosen.name, proof, potential, seconds),
+            "special_values": list(map(_special_json, special)),
+        },
+        lambda: _print_one(exact, chosen.name, proof, potential, special),
         failed=proof.verdict == "REFUTED",
     )
+
+
+def _special_json(special: "SpecialValue") -> dict[str, Any]:
+    from verify.arithmetic.exact import text
+
+    keys = ("verdict", "reason", "order", "area_preserving")
+    return {"parameter": special.parameter, "value": text(special.value),
+            **picked(special.proof, *keys), "domain": special.proof.domain.texts}  # fmt: skip
+
+
+def _print_one(
+    exact: "Hamiltonian",
+    scheme: str,
+    proof: "Proof",
+    potential: "Potential",
+    special: "list[SpecialValue]",
+) -> None:
+    show.print_proof(exact, scheme, proof, potential)
+    for each in special:
+        click.echo(f"  but at   {each.parameter} = {each.value}: {each.proof.reason}")
 
 
 def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> dict[str, Any]:
@@ -141,6 +168,8 @@ def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
         **picked(proof, "area_preserving", "convergence_order", "telescopes", "potential"),
         **picked(proof, "why", "checked"),
         "conditions": [asdict(condition) for condition in proof.conditions],
+        "domain": proof.domain.texts,
+        "special_values": [],
         "seconds": seconds,
     }
 
@@ -157,6 +186,8 @@ def _print_every(proof: "EveryProof") -> None:
         _line("G", f"{cut(proof.potential or '')}, the leading coefficient is X·G")
     if proof.telescopes is not None:
         _line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
+    if proof.domain:
+        _line("where", proof.domain.prose)
     _line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
     for identity in proof.checked:
         _line("checked", identity)

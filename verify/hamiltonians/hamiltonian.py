@@ -1,20 +1,23 @@
 """A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy
 
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import MAX_TERMS, embed
-from verify.algebra.formula import MAX_DEPTH, parameter_name, parse, symbol, to_text
+from verify.algebra.formula import MAX_DEPTH, parameter_name, parse, read, symbol, to_text
+from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
 from verify.errors import InputError
+from verify.hamiltonians.coordinates import check_coordinates
 from verify.hamiltonians.lie_derivatives import LieDerivatives
 
 
@@ -26,19 +29,22 @@ def _of_formula(formula: str) -> "Hamiltonian":
     It can be much longer than the formula, and sympy multiplies a number into a sum one level
     deeper each time that it is read.
     """
-    read = parse(formula, source="hamiltonian")
+    found, required = read(formula, source="hamiltonian")
     for _ in range(MAX_DEPTH):
-        again = parse(to_text(read), source="hamiltonian, written out")
-        if again == read:
-            return Hamiltonian(read)
-        read = again
+        again = parse(to_text(found), source="hamiltonian, written out")
+        if again == found:
+            made = Hamiltonian(found)
+            written = Domain.of(required) if required else EVERYWHERE
+            known = made.domain & written == made.domain
+            return made if known else replace(made, written=written)
+        found = again
     raise InputError("hamiltonian", formula, "is read otherwise each time that it is written out")
 
 
 @lru_cache(maxsize=64)
-def _with_values(expression: sympy.Expr, values: tuple[tuple[str, Fraction], ...]) -> "Hamiltonian":
-    result = Hamiltonian(expression, values)
-    result.exact  # noqa: B018 - refuses values for which H is not defined
+def _with_values(made: "Hamiltonian", values: tuple[tuple[str, Fraction], ...]) -> "Hamiltonian":
+    result = replace(made, values=values)
+    result.domain  # noqa: B018 - refuses values for which H is not defined
     return result
 
 
@@ -48,11 +54,13 @@ class Hamiltonian:
     """H(p, q) as an exact expression, with the values of those parameters that have one.
 
     A parameter without a value stays a symbol. `expression` holds all parameters as symbols;
-    `exact` has the values put in.
+    `exact` has the values put in. `written`: what the text it was read from asks for, where that
+    is more than the expression does: √q·√q is q.
     """
 
     expression: sympy.Expr
     values: tuple[tuple[str, Fraction], ...] = ()
+    written: Domain = EVERYWHERE
 
     @classmethod
     def parse(
@@ -60,14 +68,17 @@ class Hamiltonian:
     ) -> "Hamiltonian":
         """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
 
-        Raises InputError for a bad formula, a bad value, or a parameter that H does not have.
+        Raises InputError for a bad formula, a bad value, a parameter that H does not have, or a
+        name that is likely meant for a p or q that is missing.
         """
         if not isinstance(formula, str):  # the parser says so
             parse(formula, source="hamiltonian")
         made = _of_formula(formula)
         if parameters is not None and not isinstance(parameters, Mapping):
             raise InputError("parameters", parameters, "is not a mapping of names to values")
-        return made.with_values(parameters or {})
+        result = made.with_values(parameters or {})
+        check_coordinates(formula, made.expression, result.symbols)
+        return result
 
     def with_values(self, parameters: Mapping[str, Exact | None]) -> "Hamiltonian":
         """The same H with these parameter values instead of its present ones."""
@@ -80,7 +91,7 @@ class Hamiltonian:
                 given[name] = rational(value, f"parameter {name}")
         if not given and not self.values:
             return self
-        return _with_values(self.expression, tuple(sorted(given.items())))
+        return _with_values(self, tuple(sorted(given.items())))
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
@@ -100,11 +111,20 @@ class Hamiltonian:
         """H with the values put in; InputError where it is not defined for them."""
         return self.put_in(self.expression)
 
+    @cached_property
+    def domain(self) -> Domain:
+        """Where `exact` is smooth, and what was written is defined."""
+        return Domain.of(of_expression(self.exact, smooth=True)) & self.written.replaced(self.put)
+
+    @property
+    def put(self) -> dict[sympy.Symbol, sympy.Rational]:
+        """The parameters' values by their symbols."""
+        return {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
+
     def put_in(self, expression: sympy.Expr) -> sympy.Expr:
         """Any expression with H's parameter values put in, under the parser's limits."""
-        put = {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}
         shown = ", ".join(f"{n}={text(v)}" for n, v in self.values)
-        return substitute(expression, put, shown)
+        return substitute(expression, self.put, shown)
 
     @cached_property
     def formula(self) -> str:

@@ -16,6 +16,7 @@ from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
+from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.step_map import TracedMap, traced_map
@@ -144,6 +145,7 @@ def _proved(trial: Trial) -> Finding:
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
         proof=proof,
+        domain=(proof.domain & domain_of(tape)).texts,
     ).noting(f"traced with symbols; the map {traced.how}", *_readings(tape))
     found = _but_for_rounding(found, traced, tape)
     return _measured_area(found, trial)

@@ -7,7 +7,7 @@ from verify.arithmetic.exact import plain
 from verify.integrators.fitted_order import Fitted
 from verify.integrators.probe import Measured, Trial, measured
 from verify.integrators.results import Finding
-from verify.prose import Prose, prose, read_prose
+from verify.prose import Number, Prose, prose, read_prose
 from verify.verdict import Verdict
 
 _SEEN = 1e-6  # a ΔJ that no tolerance makes
@@ -48,6 +48,7 @@ def _as_it_stands(found: Measured) -> Finding:
         order_decided=exact or (order is not None and sure),
         largest=abs(found.largest.delta_j),
         probe_error=found.noise,
+        domain=(str(_where(found)),),
     )
     return finding.noting(*_notes(found))
 
@@ -98,13 +99,7 @@ def _consistent(found: Finding) -> Finding:
 
 
 def _notes(found: Measured) -> list[Prose]:
-    notes = []
-    first, last = found.rows[0].h, found.rows[-1].h
-    most = [max(abs(point[i]) for point in found.points) for i in (0, 1)]
-    where = f"{len(found.points)} points, |p| ≤ {most[0]}, |q| ≤ {most[1]}"
-    notes.append(
-        f"measured at {where}, for h from {first} to `{float(last):.1e}`, and nowhere else"
-    )
+    notes: list[str] = [prose("measured at ", _where(found), ", and nowhere else")]
     if found.how == "floats":
         unseen = f"`{found.unseen:.0e}`"
         notes.append(
@@ -120,6 +115,16 @@ def _notes(found: Measured) -> list[Prose]:
             f"`h^{tail.power}` only, as the tolerance of a loop or a small mistake makes it"
         )
     return list(map(read_prose, notes))
+
+
+def _where(found: Measured) -> Prose:
+    """The points and steps that were looked at."""
+    first, last = found.rows[0].h, found.rows[-1].h
+    most = [max(abs(point[i]) for point in found.points) for i in (0, 1)]
+    return prose(
+        f"{len(found.points)} points, |p| ≤ {most[0]}, |q| ≤ {most[1]}, for h from {first} to ",
+        Number(f"{float(last):.1e}"),
+    )  # fmt: skip
 
 
 def _with_floats(found: Finding, trial: Trial) -> Finding:

@@ -49,6 +49,7 @@ class Finding:
     """`verdict` with its `reason`; `how`: "proof", "duals", "floats", or "calls" where the function
     was only called.
 
+    `domain`: where the verdict holds, one condition a text.
     `order`: ΔJ = O(h^order) and no better, None where det J ≡ 1 or it is not known.
     `area_at_least`: then ΔJ = O(h^area_at_least) may be known. `convergence_order`: None where no
     difference from the exact flow is found, or, with `order_decided` False, where it is not known.
@@ -69,6 +70,7 @@ class Finding:
     proof: Proof | None = field(default=None, repr=False)
     largest: float | None = None
     probe_error: float | None = None
+    domain: tuple[str, ...] = ()
     notes: tuple[Prose, ...] = ()
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None

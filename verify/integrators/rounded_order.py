@@ -9,8 +9,8 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.algebra.power_series import Series, delta_j
 from verify.algebra.ring import Poly
+from verify.algebra.series.power_series import Series, delta_j
 from verify.hamiltonians.hamiltonian import VectorField
 
 _ROUNDING = Fraction(1, 2**44)

@@ -15,14 +15,14 @@ from verify.verdict import Verdict
 _MORE = 2  # orders beyond the claimed one that are looked at
 
 
-def prove_by_conditions(scheme: Scheme, every_h: ByConditions) -> EveryProof:
+def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -> EveryProof:
     """The order of the map and whether det J ≡ 1, for every H that the scheme takes.
 
     `conditions` of the result has those up to the claimed order, and those on area. REFUTED where
     one of the former fails, with the first that does; UNDECIDED where one is not decided, or where
     det J is not; `order` (of ΔJ) is always None.
     """
-    agreed, end = _agreed(every_h, scheme.order)
+    agreed, wrong = _agreed(every_h, max(scheme.order, least))
     asked = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
     area = every_h.area_conditions()
     preserved = bool(area) and all(condition.holds for condition in area)
@@ -35,22 +35,29 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions) -> EveryProof:
         order=None,
         area_preserving=True if preserved else None,
         convergence_order=agreed,
-        checked=(prose(f"order {agreed}, {_count(every_h, agreed)}"), *end),
+        convergence_decided=wrong is not None and wrong.holds is False,
+        checked=(prose(f"order {agreed}, {_count(every_h, agreed)}"), *_no_further(wrong)),
         conditions=(*asked, *area),
     )
 
 
-def _agreed(every_h: ByConditions, claimed: int) -> tuple[int, tuple[Prose, ...]]:
+def _agreed(every_h: ByConditions, least: int) -> tuple[int, Condition | None]:
     """The order of the map, as far as it is looked at, and what ends it."""
-    most = min(claimed + _MORE, every_h.most_order)
+    most = min(least + _MORE, every_h.most_order)
     for order in range(1, most + 1):
         here = [c for c in every_h.order_conditions(order) if c.order == order]
         wrong = first_wrong(here)
         if wrong is not None:
-            word = "does not hold" if wrong.holds is False else "is not decided"
-            power = Formula(f"h^{order}")
-            return order - 1, (prose("no further: of ", power, ", ", shown(wrong), f" {word}"),)
-    return most, ()
+            return order - 1, wrong
+    return most, None
+
+
+def _no_further(wrong: Condition | None) -> tuple[Prose, ...]:
+    if wrong is None:
+        return ()
+    word = "does not hold" if wrong.holds is False else "is not decided"
+    power = Formula(f"h^{wrong.order}")
+    return (prose("no further: of ", power, ", ", shown(wrong), f" {word}"),)
 
 
 def _count(every_h: ByConditions, order: int) -> str:

@@ -24,7 +24,7 @@ import math
 from dataclasses import replace
 
 from verify.algebra.conditions import ByConditions
-from verify.algebra.jets import Jets, Poly, shown
+from verify.algebra.series.jets import Jets, Poly, shown
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
@@ -42,11 +42,12 @@ _MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s
 _MORE = 4  # orders beyond the claimed one that are looked at
 
 
-def prove_every(name: str, separable: bool = False) -> EveryProof:
+def prove_every(name: str, separable: bool = False, least: int = 0) -> EveryProof:
     """The order of ΔJ and of the map of the scheme of that name, for every H that it takes.
 
-    `separable`: only for every H = T(p) + V(q), of which more may be true. Raises InputError for a
-    scheme that is known for one H at a time only, or of an order above 14.
+    `separable`: only for every H = T(p) + V(q), of which more may be true. `least`: as far as that
+    the map's order is looked at, of a scheme that is given by coefficients and may state none.
+    Raises InputError for a scheme that is known for one H at a time only, or of an order above 14.
     """
     scheme = get(name)
     if scheme.every_h is None:
@@ -56,17 +57,19 @@ def prove_every(name: str, separable: bool = False) -> EveryProof:
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
     separable = separable or scheme.every_h.separable
     if isinstance(scheme.every_h, ByConditions):
-        return _of_conditions(scheme, scheme.every_h, separable)
+        return _of_conditions(scheme, scheme.every_h, separable, least)
     if isinstance(scheme.every_h, StageEquations):
         return _of_stages(scheme, scheme.every_h, separable)
     return _of_series(scheme, scheme.every_h, separable)
 
 
-def _of_conditions(scheme: Scheme, every_h: ByConditions, separable: bool) -> EveryProof:
+def _of_conditions(
+    scheme: Scheme, every_h: ByConditions, separable: bool, least: int
+) -> EveryProof:
     """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
     if separable and isinstance(every_h, TreeConditions):
         every_h = replace(every_h, separable=True)
-    proof = prove_by_conditions(scheme, every_h)
+    proof = prove_by_conditions(scheme, every_h, least)
     if separable and not every_h.separable:
         proof = replace(proof, separable=True)
         if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
@@ -117,6 +120,7 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
         order=None,
         area_preserving=True,
         convergence_order=agreed,
+        convergence_decided=agreed < most,
         checked=(prose("A J = B with det A = det B = ", ratios, names),),
     )
 
@@ -138,7 +142,9 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         )
         if agreed < scheme.order:
             verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
-        return EveryProof(scheme.name, separable, verdict, reason, None, None, agreed)
+        return EveryProof(
+            scheme.name, separable, verdict, reason, None, None, agreed, agreed < most
+        )
     leading = coefficients[order - 1]
     verdict, reason = _verdict(scheme, order, agreed)
     found, formula, checked = _telescoping(jets, every_h, leading, order)
@@ -150,6 +156,7 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         order=order,
         area_preserving=False,
         convergence_order=agreed,
+        convergence_decided=agreed < most,
         leading=shown(leading),
         formula=formula,
         telescopes=found.holds,

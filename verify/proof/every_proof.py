@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 
 from verify.algebra.conditions import Condition
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.prose import Prose, read_prose
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.step_map import SOLVABLE
 from verify.verdict import Verdict
 
 NONE = Prose()
@@ -29,10 +31,11 @@ class EveryProof:
     """What is proved of one scheme for every H (`separable`: every H = T(p) + V(q)).
 
     `order`, `area_preserving`, `convergence_order` as in `verify.proof.order.Proof`, for a generic
-    H; `leading` is the coefficient of h^order, a polynomial in H_p, H_q, H_pp, …, and `formula`
-    what it is in closed form, where that is known. `telescopes`: whether it is X·`potential` for
-    every H, `why` says how that is known. `checked` names the identities that were checked,
-    `conditions` those on the coefficients, of a scheme that is given by them.
+    H, and `convergence_decided`: of some H it is no higher; `leading` is the coefficient of
+    h^order, a polynomial in H_p, H_q, H_pp, …, and `formula` what it is in closed form, where that
+    is known. `telescopes`: whether it is X·`potential` for every H, `why` says how that is known.
+    `checked` names the identities that were checked, `conditions` those on the coefficients, of a
+    scheme that is given by them.
     """
 
     scheme: str
@@ -42,6 +45,7 @@ class EveryProof:
     order: int | None
     area_preserving: bool | None
     convergence_order: int | None
+    convergence_decided: bool
     leading: str = "0"
     formula: str = ""
     telescopes: bool | None = None
@@ -56,6 +60,11 @@ class EveryProof:
         if isinstance(get(self.scheme).every_h, TaylorSeries):
             return ARGUMENT
         return NONE
+
+    @property
+    def domain(self) -> Domain:
+        """Where it holds, beside where H is smooth."""
+        return EVERYWHERE if get(self.scheme).explicit else Domain.of((), SOLVABLE)
 
     @property
     def quantifier(self) -> str:

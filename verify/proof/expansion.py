@@ -7,12 +7,14 @@ from functools import cached_property
 
 import sympy
 
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import checked
-from verify.algebra.power_series import Series
-from verify.algebra.quotient_series import QuotientSeries
 from verify.algebra.ring import Decision, Poly, Ring
-from verify.errors import InputError
+from verify.algebra.series.power_series import Series
+from verify.algebra.series.quotient_series import QuotientSeries
+from verify.errors import InputError, LimitError
+from verify.proof.parameters import not_zero_for
 from verify.schemes.step_map import H_STEP
 from verify.schemes.substep import h_inside
 
@@ -39,6 +41,13 @@ class Leading:
             return sympy.S.Zero
         ring, x = self.element
         return ring.factored(x)
+
+    @cached_property
+    def domain(self) -> Domain:
+        """The parameters for which the coefficient is not the zero function of p and q."""
+        if self.decision.zero is not False or self.element is None:
+            return EVERYWHERE
+        return not_zero_for(*self.element, f"the coefficient of h^{self.power}")
 
     @property
     def text(self) -> str:
@@ -83,7 +92,7 @@ class Expansion:
         try:
             checked(value, "map", str(value))
         except InputError as error:
-            raise InputError("map", error.value, "is not smooth in h at h = 0") from None
+            raise LimitError("map", error.value, "is not smooth in h at h = 0") from None
         ring, (x,) = embed([value / math.factorial(n)], self.ring.variables)
         return ring, x
 

@@ -6,16 +6,18 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 
 from verify.algebra.conditions import Condition
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
-from verify.algebra.power_series import delta_j
 from verify.algebra.ring import Decision, Poly, Ring
+from verify.algebra.series.power_series import delta_j
 from verify.hamiltonians.hamiltonian import VectorField
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
+from verify.proof.parameters import not_zero_for
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import Expanded, StepMap, Substep
@@ -34,6 +36,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     reason = read_prose(said)
     if leading.decision.zero is True and step_map.conditions:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
+    if verdict is Verdict.PROVED and leading.domain:
+        reason = prose(reason, ", where ", leading.domain.prose)
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -131,11 +135,13 @@ def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
 class Convergence:
     """p', q' agree with the exact flow up to h^order, shown by algebra; None: in all looked at.
 
-    `decided`: the next coefficient is shown to differ (or there is none). −1: they differ at h⁰.
+    `decided`: the next coefficient is shown to differ (or there is none), for the parameters in
+    `exact_for`. −1: they differ at h⁰.
     """
 
     order: int | None
     decided: bool
+    exact_for: Callable[[], Domain] = field(default=lambda: EVERYWHERE, repr=False)
 
     def misses(self, claimed: int) -> bool:
         return self.order is not None and self.order < claimed
@@ -145,15 +151,20 @@ def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Conver
     """The order to which the map agrees with the exact flow."""
     known = step_map.known_order()
     if known is not None:
-        return Convergence(known, decided=True)
+        # Shown at a point, without its coefficient.
+        almost = f"what differs at h^{known + 1} does not vanish identically in p and q"
+        of_all = not step_map.hamiltonian.symbols
+        return Convergence(known, True, lambda: EVERYWHERE if of_all else Domain.of((), almost))
     series = series or _BySeries(step_map)
     by_series: tuple[_Coefficient, int] = series.coefficient, MOST_ORDERS
     coefficient, most = by_series if series.usable else _by_expansions(step_map.flat)
     for n in range(most + 1):
         for name in ("p", "q"):
-            agrees = _agrees(*coefficient(name, n), name, n)
+            ring, gap = _gap(*coefficient(name, n), name, n)
+            agrees = ring.vanishes(gap)
             if agrees is not True:
-                return Convergence(n - 1, agrees is False)
+                what = f"what differs at h^{n}"
+                return Convergence(n - 1, agrees is False, partial(not_zero_for, ring, gap, what))
     return Convergence(None, True)
 
 
@@ -168,14 +179,14 @@ def _by_expansions(step: Substep) -> tuple[_Coefficient, int]:
     return coefficient, max(MOST_ORDERS, p.length, q.length)
 
 
-def _agrees(field: VectorField, own: Ring, x: Poly, name: str, n: int) -> bool | None:
-    """Whether x is the coefficient of hⁿ in the exact flow; None where that is not decided."""
+def _gap(field: VectorField, own: Ring, x: Poly, name: str, n: int) -> tuple[Ring, Poly]:
+    """x less the coefficient of hⁿ in the exact flow, with the ring that it is an element of."""
     ring, flow = field.ring, field.power(name, n)
     if own is ring:
-        return ring.vanishes(x - flow / math.factorial(n))
+        return ring, x - flow / math.factorial(n)
     gap = own.expression(x) - ring.expression(flow) / math.factorial(n)
     common, (difference,) = embed([gap], ring.variables)
-    return common.vanishes(difference)
+    return common, difference
 
 
 def _called(scheme: Scheme) -> str:

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import sympy
 
+from verify.algebra.domain import Domain
 from verify.arithmetic.exact import text
 from verify.notebook import aligned_latex, cut, html_table, short_latex
 from verify.proof.expansion import Leading
@@ -46,6 +47,11 @@ class Proof:
     def delta_j(self) -> sympy.Expr | None:
         """ΔJ in closed form, written out when it is asked for; None where it is too large."""
         return self.step_map.delta_j if self.step_map.has_closed_form else None
+
+    @property
+    def domain(self) -> Domain:
+        """Where it holds: where the map is defined, and `leading` is not zero for all p and q."""
+        return self.step_map.domain & self.first.domain
 
     @property
     def consistent(self) -> bool:

@@ -12,8 +12,8 @@ shows nothing; the verdict is UNDECIDED then.
 from dataclasses import dataclass
 
 from verify.algebra.conditions import Condition, WithSymmetry
-from verify.algebra.power_series import Series, at_point, partials
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.power_series import Series, at_point, partials
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import first_wrong, shown

@@ -22,8 +22,8 @@ from typing import Protocol
 import flint
 
 from verify.algebra.generator import terms_of
-from verify.algebra.jets import Jets, Poly, shown
 from verify.algebra.linear_combination import combination
+from verify.algebra.series.jets import Jets, Poly, shown
 from verify.prose import Formula, Prose, prose, read_prose
 
 

@@ -307,7 +307,7 @@ def one_line(error: ValidationError, source: str) -> InputError:
     where = ".".join(str(part) for part in first["loc"])
     if isinstance(cause, InputError):
         prefix = f"{source}: {where}: " if where else f"{source}: "
-        return InputError(prefix + cause.name, cause.value, cause.problem)
+        return type(cause)(prefix + cause.name, cause.value, cause.problem)
     if first["type"] == "extra_forbidden":
         missing = [str(e["loc"][-1]) for e in errors if e["type"] == "missing"]
         meant = f"; is one of these meant: {', '.join(missing)}?" if missing else ""

@@ -14,7 +14,7 @@ import flint
 import sympy
 
 from verify.algebra.conditions import Condition
-from verify.algebra.jets import Jets, Poly, Series
+from verify.algebra.series.jets import Jets, Poly, Series
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")

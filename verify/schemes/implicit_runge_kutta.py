@@ -15,8 +15,8 @@ import sympy
 
 from verify.algebra.conditions import ByConditions
 from verify.algebra.implicit_unknowns import Matrix, define, unknowns
-from verify.algebra.power_series import Series, at_point, partials
 from verify.algebra.ring import Poly
+from verify.algebra.series.power_series import Series, at_point, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.implicit_tableau import ImplicitTableau

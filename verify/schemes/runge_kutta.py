@@ -7,7 +7,7 @@ stage by stage, and with power series in h its Taylor series.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.algebra.power_series import Series, at_point, partials
+from verify.algebra.series.power_series import Series, at_point, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.scheme import Scheme

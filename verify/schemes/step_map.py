@@ -6,16 +6,18 @@ Runge–Kutta scheme; see `verify.schemes.substep`. 1 + ΔJ of the composition i
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import sympy
 
 from verify.algebra.conditions import Condition
-from verify.algebra.formula import parse, symbol, to_text
-from verify.algebra.power_series import Series
+from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.formula import read, symbol, to_text
+from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
-from verify.errors import InputError
+from verify.algebra.series.power_series import Series
+from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial
 from verify.schemes.stages import chained
@@ -28,6 +30,9 @@ P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 # those of its ΔJ.
 _MOST_IN_PARTS = 150
 _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
+# Of an implicit scheme, for one H and for every one.
+SOLVABLE = "the stages have a solution that depends smoothly on (p, q)"
+_AT_STAGES = "H is smooth at the stages"
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 _MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
@@ -41,13 +46,23 @@ class StepMap:
 
     `expansion(most)` is `taylor` of a map whose substeps have stages, which it does not look into.
     `known_order()`: up to which power of h it agrees with the exact flow and no further, where that
-    is known without the series; else None.
+    is known without the series; else None. `asked`: what its own operations ask for to be defined,
+    beside H.
     """
 
     hamiltonian: Hamiltonian
     substeps: tuple[Substep, ...]
     expansion: Callable[[int], Expanded] | None = field(default=None, repr=False)
     known_order: Callable[[], int | None] = field(default=lambda: None, repr=False)
+    asked: Domain = field(default=EVERYWHERE, repr=False)
+
+    @cached_property
+    def domain(self) -> Domain:
+        """Where the map is smooth: where H is, and is so at the stages, if there are any."""
+        words = [SOLVABLE] if self.implicit else []
+        if (self.of_parts or self.implicit) and self.hamiltonian.domain.names & {"p", "q"}:
+            words.append(_AT_STAGES)
+        return Domain.of((), *words) & self.hamiltonian.domain & self.asked
 
     @cached_property
     def implicit(self) -> bool:
@@ -89,7 +104,8 @@ class StepMap:
     ) -> "StepMap":
         """A map from p' and q' as expressions in p, q, h; InputError where they are not smooth."""
         whole, (p1, q1) = hamiltonian.field(p_next, q_next)
-        return cls(hamiltonian, (Substep(whole, p1, q1),))
+        asked = Domain.of(r for x in (p_next, q_next) for r in of_expression(x, smooth=True))
+        return cls(hamiltonian, (Substep(whole, p1, q1),), asked=asked)
 
     @classmethod
     def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
@@ -100,15 +116,19 @@ class StepMap:
         names = ("p", "q", "h", *hamiltonian.parameters)
         if "p_next" in names:
             raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
-        p1 = parse(p_next, names, source="p_next")
-        q1 = parse(q_next, (*names, "p_next"), source="q_next").subs(symbol("p_next"), p1)
-        return cls.from_expressions(hamiltonian, hamiltonian.put_in(p1), hamiltonian.put_in(q1))
+        p1, asked = read(p_next, names, source="p_next")
+        q1, more = read(q_next, (*names, "p_next"), source="q_next")
+        put = {symbol("p_next"): p1}
+        written = Domain.of([*asked, *more]).replaced(put)
+        pair = [hamiltonian.put_in(x) for x in (p1, q1.subs(put))]
+        made = cls.from_expressions(hamiltonian, *pair)
+        return replace(made, asked=made.asked & written.replaced(hamiltonian.put))
 
     @cached_property
     def composed(self) -> tuple[sympy.Expr, sympy.Expr]:
         """p' and q' in closed form. Raises InputError for a map that is given by equations."""
         if self.implicit:
-            raise InputError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
+            raise LimitError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
         p1, q1 = P, Q
         for step in self.substeps:
             put = {P: p1, Q: q1}
@@ -164,7 +184,7 @@ class StepMap:
         if self.closed is None:
             shown = str(self.hamiltonian.expression)
             large = "its closed form, all substeps composed, is too large"
-            raise InputError("map", shown, _NOT_WRITTEN if self.implicit else large)
+            raise LimitError("map", shown, _NOT_WRITTEN if self.implicit else large)
         return self.closed
 
     @property

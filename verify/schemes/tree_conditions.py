@@ -11,8 +11,8 @@ That each of them is needed is shown there with vector fields of high dimension.
 fields in the plane fewer are, from five vertices on: f'f' is −det Hess H there, so that f''(f,
 f'f'f) is f'f'f''(f, f), and of the conditions of two trees only one combination counts. So where
 conditions of n vertices fail, the difference of the two maps' terms with hⁿ, Σ (b·Φ(t) − 1/γ(t))
-F(t)/σ(t), is looked at as a polynomial in the derivatives of H (`verify.algebra.jets`); where it
-vanishes that is one condition, which holds, in place of those that fail.
+F(t)/σ(t), is looked at as a polynomial in the derivatives of H (`verify.algebra.series.jets`);
+where it vanishes that is one condition, which holds, in place of those that fail.
 
 A condition is written with the vectors c = A 1 and b, products of vectors by component: that of
 [τ, [τ]] is b·(c A(c)) = 1/8.
@@ -28,8 +28,8 @@ from typing import ClassVar, Generic, Protocol, TypeVar
 
 from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
-from verify.algebra.jets import Jets
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.jets import Jets
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers

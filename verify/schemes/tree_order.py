@@ -14,7 +14,7 @@ from itertools import islice
 import flint
 
 from verify.algebra.enclosure import enclose, enclosed, points
-from verify.algebra.power_series import partials
+from verify.algebra.series.power_series import partials
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import VectorField
 from verify.schemes.implicit_tableau import ImplicitTableau

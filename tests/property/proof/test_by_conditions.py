@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions, made_of, proof_of
 from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
-from verify.algebra.jets import Jets, Series
+from verify.algebra.series.jets import Jets, Series
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import counterexample

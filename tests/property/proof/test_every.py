@@ -23,7 +23,7 @@ from tests.helpers.sampled.formulas import (
     polynomials,
     trigonometric,
 )
-from verify.algebra.jets import Jets
+from verify.algebra.series.jets import Jets
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.every_hamiltonian import TaylorSeries
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import proof_of
 from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
-from verify.algebra.jets import Jets
+from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import plain, polynomials
-from verify.algebra.jets import Jets
+from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get

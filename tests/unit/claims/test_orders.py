@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.kinds.area_preserving import AreaClaim
 from verify.claims.kinds.convergence_order import ConvergenceOrderClaim
@@ -171,6 +172,8 @@ class Stub:
     area_preserving: bool | None = False
     convergence_order: int | None = 2
     leading: str = "H_p*H_ppq - 2*H_q*H_ppp"
+    domain: Domain = EVERYWHERE
+    convergence_decided: bool = True
 
 
 EULER = Stub(order=None, area_preserving=True, convergence_order=1, leading="0")
@@ -183,7 +186,7 @@ def proofs(monkeypatch: pytest.MonkeyPatch) -> dict[tuple[str, bool], Stub]:
     known = {("lie2", False): Stub(), ("lie2", True): Stub(),
              ("symplectic-euler", True): EULER, ("lie3", False): OPEN}  # fmt: skip
     module = ModuleType("verify.proof.every")
-    module.prove_every = lambda name, separable=False: known[name, separable]  # type: ignore[attr-defined]
+    module.prove_every = lambda name, separable=False, least=0: known[name, separable]  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "verify.proof.every", module)
     return known
 
@@ -221,7 +224,7 @@ def test_a_claim_of_every_h_is_held_against_the_proof(claim: Any, expected: Verd
 
 
 def test_a_map_that_reached_all_that_was_looked_at_may_be_of_higher_order(proofs: Any) -> None:
-    proofs["lie2", False] = Stub(convergence_order=3)
+    proofs["lie2", False] = Stub(convergence_order=3, convergence_decided=False)
     found = {k: convergence(k, "lie2", **EVERY).judge(Findings({})).verdict
              for k in (2, 3, 4)}  # fmt: skip
     assert found == {2: REFUTED, 3: UNDECIDED, 4: UNDECIDED}

@@ -124,7 +124,7 @@ BAD: dict[str, tuple[str, int, str]] = {
     "system": ('kind = "order"\norder = 3\nsystem = "lorenz"\n', 16, "system=lorenz: unknown"),
     "two-subjects": ('kind = "order"\norder = 3\nsystem = "duffing"\nhamiltonian = "p**2"\n', 16,
                      "give one of"),
-    "hamiltonian": ('kind = "order"\norder = 3\nhamiltonian = "abs(q)"\n', 16, "not smooth"),
+    "hamiltonian": ('kind = "order"\norder = 3\nhamiltonian = "q/0"\n', 16, "by zero"),
     "parameter": ('kind = "order"\norder = 3\nparameters = { eps = 1 }\nsystem = "duffing"\n', 16,
                   "parameter=eps"),
     "parameter-nan": (

@@ -11,7 +11,7 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
-from verify.algebra.jets import Jets, multiplied
+from verify.algebra.series.jets import Jets, multiplied
 from verify.errors import InputError
 from verify.proof import every
 from verify.proof.every import prove_every

@@ -22,7 +22,7 @@ from tests.helpers.planted_errors import (
 )
 from verify import schemes
 from verify.algebra.embedding import embed
-from verify.algebra.jets import Jets
+from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every

@@ -12,7 +12,7 @@ import sympy
 from tests.helpers.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from verify import schemes
 from verify.algebra.conditions import ByConditions, Condition
-from verify.algebra.jets import Jets
+from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every

@@ -4,7 +4,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
+from verify.claims.formulas import within
 from verify.claims.orders import delta_j_order, map_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.scenes.results.claim import ClaimResult
@@ -22,17 +24,21 @@ class AreaClaim(QuantifiedClaim):
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         known = delta_j_order(map_of(self, findings))
-        return self.judge_known(known.vanishes, known.evidence)
+        domain = known.domain & known.exact_for
+        return self.judge_known(known.vanishes, known.evidence + within(domain), domain)
 
     def judge_every(self, proof: "EveryProof") -> ClaimResult:
-        return self.judge_known(proof.area_preserving, proof.reason)
+        return self.judge_known(proof.area_preserving, proof.reason, proof.domain)
 
-    def judge_known(self, vanishes: bool | None, evidence: str) -> ClaimResult:
+    def judge_known(
+        self, vanishes: bool | None, evidence: str, domain: Domain = EVERYWHERE
+    ) -> ClaimResult:
         """Whether ΔJ ≡ 0 is as claimed."""
         if vanishes is None:
-            return self.result(Verdict.UNDECIDED, evidence)
+            return self.result(Verdict.UNDECIDED, evidence, domain=domain)
         holds = vanishes == self.area_preserving
-        return self.result(Verdict.PROVED if holds else Verdict.REFUTED, evidence)
+        verdict = Verdict.PROVED if holds else Verdict.REFUTED
+        return self.result(verdict, evidence, domain=domain)
 
     def why_only_here(self) -> str:
         if self.every and not self.area_preserving:

@@ -4,14 +4,17 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.arithmetic.arb import rational_ball, shown
+from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, all_hold, sign, start_of
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
+from verify.scenes.scene import Scene
 from verify.scenes.values import Number as ExactNumber
+
+_MOST_DIGITS = 200  # of runs that are made again
 
 
 class BoundedClaim(RunClaim):
@@ -25,6 +28,14 @@ class BoundedClaim(RunClaim):
     def quantities(self) -> tuple[str, ...]:
         return ("lambda_max",)
 
+    def closer(self, scene: Scene) -> Scene | None:
+        """Twice as many digits, where max |Λ| and the bound share all that are known."""
+        grid = scene.grid
+        if grid is None or grid.digits is None or grid.digits > _MOST_DIGITS // 2:
+            return None
+        more = grid.model_copy(update={"digits": 2 * grid.digits})
+        return scene.model_copy(update={"grid": more})
+
     def compare(self, findings: Findings) -> ClaimResult:
         runs = [run for row in self.run_rows(findings) for run in row]
         largest = [QUANTITIES["lambda_max"](run) for run in runs]
@@ -37,11 +48,17 @@ class BoundedClaim(RunClaim):
             among = f", the greatest of {len(runs)} runs"
             among = f", the first of {len(wrong)} beyond it" if wrong else among
         evidence = prose(
-            "max |Λ| = ", number(shown(largest[at])), f" over {run.steps} steps of ",
+            "max |Λ| = ", number(_told(largest[at], bound)), f" over {run.steps} steps of ",
             Number(run.step_size), " from ", start_of(run), among, "; bound ",
             Number(text(self.bound)),
         )  # fmt: skip
         return self.result(all_hold(holds), evidence)
+
+
+def _told(x: Ball, bound: Ball) -> str:
+    """x with six digits, or with so many that it is seen to differ from the bound."""
+    texts = ((shown(x, n), shown(bound, n)) for n in (6, 12, 25, 50, 100, _MOST_DIGITS))
+    return next((x for x, other in texts if x != other), shown(x))
 
 
 CLAIM = BoundedClaim

@@ -9,7 +9,6 @@ from verify.claims.findings import Findings
 from verify.claims.orders import Order, OrderedClaim, ProvedOrder, convergence_order, map_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes import get
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -26,6 +25,10 @@ class ConvergenceOrderClaim(OrderedClaim):
     def claimed(self) -> int:
         return self.convergence_order
 
+    @property
+    def looked_at(self) -> int:
+        return self.claimed
+
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self.judge_known(convergence_order(map_of(self, findings)))
 
@@ -33,13 +36,12 @@ class ConvergenceOrderClaim(OrderedClaim):
         found = proof.convergence_order
         if found is None:
             return self.result(Verdict.UNDECIDED, proof.reason)
-        # The proof looks one order beyond the scheme's own; what reaches that may reach further.
-        exact = found <= get(self.scheme).order
+        exact = proof.convergence_decided
         evidence = prose(
             "the map agrees with the exact flow of every H up to ", Formula(f"h^{found}"),
             " and, of some, no further" if exact else "; whether further is not decided",
         )  # fmt: skip
-        return self.judge_known(ProvedOrder(found, exact, False, evidence))
+        return self.judge_known(ProvedOrder(found, exact, False, evidence, proof.domain))
 
 
 CLAIM = ConvergenceOrderClaim

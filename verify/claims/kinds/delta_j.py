@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Literal, Self
 
 import sympy
 
+from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import to_text
 from verify.claims import every_formula
 from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, gaps
+from verify.claims.formulas import FormulaClaim, gaps, within
 from verify.claims.orders import Order
 from verify.claims.quantified import EVERY_SEPARABLE, QuantifiedClaim
 from verify.errors import InputError
@@ -54,19 +55,19 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     # -- of one H ---------------------------------------------------------------------------------
 
     def judge_one(self, findings: Findings) -> ClaimResult:
-        step_map, read = self.read(findings)
-        printed = self._delta_j(read["formula"])
-        gap = gaps(step_map, [(self._what, printed, step_map.delta_j)])[0]
+        step_map, formulas, domain = self.read(findings)
+        printed = self._delta_j(formulas["formula"])
+        gap = gaps(step_map, [(self._what, printed, step_map.delta_j)], domain)[0]
         if self.up_to is None:
             holds = "as printed, agrees with det J − 1 exactly, for all p, q, h and parameters"
-            return self.from_gaps([gap], f"{self._what}, {holds}")
-        wrong = self.differs_below(self._what, gap.ring, gap.difference, self.up_to)
+            return self.from_gaps([gap], f"{self._what}, {holds}" + within(domain), domain)
+        wrong = self.differs_below(self._what, gap.ring, gap.difference, self.up_to, domain)
         difference = to_text(-grouped(gap.ring, gap.difference))
         evidence = prose(
             f"{self._what} as printed differs from det J − 1 by O(", Formula(f"h^{self.up_to}"),
-            "): the difference is ", Formula(difference),
+            "): the difference is ", Formula(difference), within(domain),
         )  # fmt: skip
-        return wrong or self.result(Verdict.PROVED, evidence)
+        return wrong or self.result(Verdict.PROVED, evidence, domain=domain)
 
     # -- of every H -------------------------------------------------------------------------------
 
@@ -83,11 +84,13 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         up_to = self.up_to or 0
         computed, beyond = sympy.S.Zero, up_to
         if proof.area_preserving is not True and proof.order is not None:
-            computed, beyond = H_STEP**proof.order * self._every(proof.leading), proof.order + 1
-        difference = self._delta_j(self._every(self.formula)) - computed
+            leading, _ = self._every(proof.leading)
+            computed, beyond = H_STEP**proof.order * leading, proof.order + 1
+        formula, domain = self._every(self.formula)
+        difference, domain = self._delta_j(formula) - computed, proof.domain & domain
         names = {s.name for s in difference.free_symbols} | {"p", "q", "h"}
         ring, (x,) = embed([difference], sorted(names))
-        wrong = self.differs_below(self._what, ring, x, min(up_to, beyond))
+        wrong = self.differs_below(self._what, ring, x, min(up_to, beyond), domain)
         if wrong is not None:
             return wrong
         if up_to > beyond:
@@ -95,18 +98,19 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
                 f"{self._what}: for every H it is known up to O(", Formula(f"h^{beyond}"),
                 "), and so far is as printed",
             )  # fmt: skip
-            return self.result(Verdict.UNDECIDED, evidence)
-        holds = prose(f"{self._what} is as printed for every H: ", proof.reason)
-        return self.result(Verdict.PROVED, holds)
+            return self.result(Verdict.UNDECIDED, evidence, domain=domain)
+        holds = prose(f"{self._what} is as printed for every H: ", proof.reason, within(domain))
+        return self.result(Verdict.PROVED, holds, domain=domain)
 
-    def _every(self, formula: str) -> sympy.Expr:
+    def _every(self, formula: str) -> tuple[sympy.Expr, Domain]:
         separable = self.every == EVERY_SEPARABLE
-        return every_formula.normal(every_formula.read(formula, self.id), separable=separable)
+        return every_formula.normal(*every_formula.read(formula, self.id), separable=separable)
 
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         if self.every is None:
             return self
-        own = every_formula.of_hamiltonian(every_formula.read(self.formula, self.id), hamiltonian)
+        read, _ = every_formula.read(self.formula, self.id)
+        own = every_formula.of_hamiltonian(read, hamiltonian)
         return self.model_copy(update={"every": None, "formula": own})
 
 

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, gaps
+from verify.claims.formulas import FormulaClaim, gaps, within
 from verify.scenes.results.claim import ClaimResult
 
 _NAMES = (("∂p′/∂p", "∂p′/∂q"), ("∂q′/∂p", "∂q′/∂q"))
@@ -20,11 +20,11 @@ class JacobianClaim(FormulaClaim):
         return {f"entries.{i}.{j}": self.entries[i][j] for i, j in _CELLS}
 
     def judge(self, findings: Findings) -> ClaimResult:
-        step_map, read = self.read(findings)
+        step_map, read, domain = self.read(findings)
         computed = step_map.jacobian
         pairs = [(_NAMES[i][j], read[f"entries.{i}.{j}"], computed[i, j]) for i, j in _CELLS]
-        holds = "all four entries are those of the exact Jacobian"
-        return self.from_gaps(gaps(step_map, pairs), holds)
+        holds = "all four entries are those of the exact Jacobian" + within(domain)
+        return self.from_gaps(gaps(step_map, pairs, domain), holds, domain)
 
 
 CLAIM = JacobianClaim

@@ -28,7 +28,7 @@ class OrderClaim(OrderedClaim):
         preserves, order = proof.area_preserving, proof.order
         if preserves is None and order is None:
             return self.result(Verdict.UNDECIDED, proof.reason)
-        known = ProvedOrder(order or 0, order is not None, preserves, proof.reason)
+        known = ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
         return self.judge_known(known)
 
 

@@ -4,7 +4,7 @@ from typing import Literal
 
 from verify.algebra.formula import symbol
 from verify.claims.findings import Findings
-from verify.claims.formulas import FormulaClaim, gaps
+from verify.claims.formulas import FormulaClaim, gaps, within
 from verify.proof.order import convergence_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
@@ -21,18 +21,19 @@ class StepMapClaim(FormulaClaim):
         return {"p_next": self.p_next, "q_next": self.q_next}
 
     def judge(self, findings: Findings) -> ClaimResult:
-        step_map, read = self.read(findings)
+        step_map, read, domain = self.read(findings)
         q_next = read["q_next"].subs(symbol("p_next"), read["p_next"])
         pairs = [("p′", read["p_next"], step_map.p_next), ("q′", q_next, step_map.q_next)]
-        found = gaps(step_map, pairs)
+        found = gaps(step_map, pairs, domain)
         if any(gap.decision.zero is not True for gap in found):
-            return self.from_gaps(found, "")
+            return self.from_gaps(found, "", domain)
         order = convergence_of(step_map).order
         holds = prose(
             f"p′ and q′ are those of {self.scheme}, term by term, and agree with the exact flow up "
             "to ", "every order looked at" if order is None else Formula(f"h^{order}"),
+            within(domain),
         )  # fmt: skip
-        return self.from_gaps(found, holds)
+        return self.from_gaps(found, holds, domain)
 
 
 CLAIM = StepMapClaim

@@ -57,6 +57,7 @@ def proof_json(
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": potential.holds,
         "potential": potential.text,
+        "domain": proof.domain.texts,
         "seconds": seconds,
     }
 
@@ -87,6 +88,8 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
         )
     elif potential.holds is False:
         click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")
+    if proof.domain:
+        click.echo(f"  where    {proof.domain.prose}")
     order = proof.convergence_order
     agreement = "to every order looked at" if order is None else f"up to h^{order}"
     click.echo(f"  the map  agrees with the exact flow {agreement}")

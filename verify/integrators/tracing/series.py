@@ -11,8 +11,8 @@ from fractions import Fraction
 import sympy
 
 from verify.algebra.formula import checked
-from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.power_series import Series
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.integrators.tracing.number import OPERATORS

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from verify.algebra.formula import checked
-from verify.algebra.power_series import Series
 from verify.algebra.ring import Ring
+from verify.algebra.series.power_series import Series
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.integrators.tracing.series import TracedSeries

@@ -51,6 +51,11 @@ class Tape(Kind):
     def pi(self) -> "Traced":
         return Traced(self, self.node("pi", (), None))
 
+    @property
+    def nodes(self) -> Iterable[Node]:
+        """All that were made, in their order."""
+        return self._nodes.values()
+
     def node(self, operation: str, inputs: tuple[Node, ...], value: Any = None) -> Node:
         key = (operation, *(x.number for x in inputs), value)
         if key not in self._nodes:

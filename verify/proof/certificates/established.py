@@ -11,6 +11,7 @@ from fractions import Fraction
 from verify.proof.certificates.entries import Expansion, Monomial, Poly, Stages, need
 
 _LONGEST = 1_000_000  # characters of a formula with its functions written out
+_ALMOST = "L does not vanish identically in p and q"
 _ONE_H, _EVERY, _SEPARABLE = "this H", "every smooth H", "every smooth H = T(p) + V(q)"
 
 
@@ -98,8 +99,10 @@ def _of_expansion(entries: Expansion) -> Established:
         leading=None if order is None else written.poly(entries.leading),
         potential=None if entries.potential is None else written.poly(entries.potential),
         convergence_order=agreed,
-        domain=tuple(
-            f"{written.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"
+        domain=(
+            *(f"{written.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"),
+            # L is not zero as a polynomial in the parameters, too; for some of them it may be.
+            *([_ALMOST] if order is not None and entries.parameters else []),
         ),
     )
 

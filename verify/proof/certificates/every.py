@@ -25,8 +25,8 @@ number is a text such as "-3/2".
 from collections.abc import Mapping
 
 from verify.algebra.generator import terms_of
-from verify.algebra.jets import Jets, Series
 from verify.algebra.ring import Poly
+from verify.algebra.series.jets import Jets, Series
 from verify.errors import InputError
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.every import EveryProof, telescoping_of

@@ -19,6 +19,8 @@ class ClaimResult(WithProse):
 
     `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
     such as "4.1 The Duffing system"; a report groups its claims by it.
+    `domain`: conditions on p, q, h and the parameters under which the verdict holds, one a text,
+    beyond what the claim itself says; none where that is everywhere.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
     `reproduction`: a few lines of code that show what is said of someone else's code.
     """
@@ -31,6 +33,7 @@ class ClaimResult(WithProse):
     scene: str
     verdict: Verdict
     evidence: Said
+    domain: tuple[str, ...] = ()
     details: tuple[tuple[Said, ...], ...] = ()
     proof: Said = Prose("")
     reproduction: str = ""

@@ -1,12 +1,16 @@
 """What was proved of a scheme, for one H and for every H."""
 
 from verify.algebra.conditions import Condition
+from verify.prose import Prose
 from verify.scenes.frozen import OfScheme, Said, Seconds, WithProse
 from verify.verdict import Verdict
 
 
 class ProofResult(OfScheme, WithProse):
-    """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for."""
+    """A `verify.proof.order.Proof`; closed forms are None where too large, or not asked for.
+
+    `domain`: where it holds, one condition a text, and `where` in words; none where everywhere.
+    """
 
     verdict: Verdict
     reason: Said
@@ -17,6 +21,8 @@ class ProofResult(OfScheme, WithProse):
     convergence_order: int | None
     witness: dict[str, str]
     enclosure: str
+    domain: tuple[str, ...] = ()
+    where: Said = Prose("")
     p_next: str | None
     q_next: str | None
     jacobian: tuple[tuple[str, str], tuple[str, str]] | None

@@ -46,6 +46,8 @@ class ProofTask(SchemeTask):
             convergence_order=proof.convergence_order,
             witness={name: text(value) for name, value in proof.witness.items()},
             enclosure=proof.enclosure,
+            domain=proof.domain.texts,
+            where=proof.domain.prose,
             p_next=p_next,
             q_next=q_next,
             jacobian=jacobian,

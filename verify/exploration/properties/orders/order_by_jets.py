@@ -10,7 +10,7 @@ import flint
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.generator import terms_of
-from verify.algebra.jets import Jets, Poly
+from verify.algebra.series.jets import Jets, Poly
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike

@@ -7,8 +7,8 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.algebra.embedding import embed
-from verify.algebra.power_series import Series, at_point, delta_j, partials
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.power_series import Series, at_point, delta_j, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
 

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
-from verify.algebra.jets import Jets, multiplied, shown
 from verify.algebra.linear_combination import combination
+from verify.algebra.series.jets import Jets, multiplied, shown
 from verify.proof.telescoping import potential_of_lie, telescopes, telescopes_of_lie
 
 ORDER = 3

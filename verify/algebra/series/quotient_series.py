@@ -5,8 +5,8 @@ series r₀ + r₁ h + … of 1/D is r₀ = 1/d₀, r_n = −(d₁ r_{n−1} + �
 quotient is made, which would have more terms with each order.
 """
 
-from verify.algebra.power_series import Series
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.power_series import Series
 
 
 class QuotientSeries:

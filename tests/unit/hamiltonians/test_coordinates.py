@@ -1,0 +1,38 @@
+"""A name that is likely meant for a p or q that is missing."""
+
+import pytest
+
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+
+@pytest.mark.parametrize(
+    ("formula", "named"),
+    [
+        ("v**2/2 + x**2/2", "has no p and no q, and v, x would be"),
+        ("p**2/2 + x**2/2", "has no q, and x would be"),
+        ("p1**2/2 + p2**2/2 + q1**2*q2", "p1, p2, q1, q2 would be"),
+        ("P**2/2 + Q**2/2", "P, Q would be"),
+        ("p**2/2 - cos(theta)", "has no q, and theta"),
+        ("vx*q", "has no p, and vx"),
+        ("y**2/2 + q**2/2", "has no p, and y"),
+    ],
+)
+def test_it_is_refused_with_that_meaning(formula: str, named: str) -> None:
+    with pytest.raises(InputError, match=named):
+        Hamiltonian.parse(formula)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    ["p**2/2", "p**2/(2*m)", "m*g*q", "omega**2*q**2", "a + b", "3", "p*v", "phi*q",
+     "alpha*p**2", "M*g*q", "p**2/2 + q**2/2 + x*q + v*p", "p**2/2 + q0", "V*q"],
+)  # fmt: skip
+def test_what_may_well_be_a_parameter_is_one(formula: str) -> None:
+    assert Hamiltonian.parse(formula).parameters is not None
+
+
+def test_a_name_with_a_value_is_a_parameter() -> None:
+    assert Hamiltonian.parse("p**2/2 + x", {"x": 2}).parameters == ("x",)
+    with pytest.raises(InputError, match="x would be"):
+        Hamiltonian.parse("p**2/2 + x", {"x": None})

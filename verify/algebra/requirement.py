@@ -1,0 +1,51 @@
+"""What an operation asks of its operand to be defined, as it is written.
+
+sympy simplifies as it builds: √q·√q becomes q, δ²/δ becomes δ, and what they ask for would be lost.
+"""
+
+from typing import Literal, NamedTuple
+
+import sympy
+
+Relation = Literal["!=", ">=", ">"]
+
+
+class Requirement(NamedTuple):
+    """`expression` ≠ 0, ≥ 0 or > 0."""
+
+    expression: sympy.Expr
+    relation: Relation
+
+
+def of_power(base: sympy.Expr, exponent: sympy.Rational) -> list[Requirement]:
+    """What base^exponent asks for: a root's base is not negative, nor any divisor 0."""
+    if exponent.q == 1:
+        return of_divisor(base) if exponent < 0 else []
+    return [] if base.is_number else [Requirement(base, ">" if exponent < 0 else ">=")]
+
+
+def of_divisor(divisor: sympy.Expr) -> list[Requirement]:
+    """What a division by it asks for."""
+    return [] if divisor.is_number else [Requirement(divisor, "!=")]
+
+
+def of_function(name: str, argument: sympy.Expr) -> list[Requirement]:
+    """What the function of that name asks of its argument."""
+    if argument.is_number or name not in ("log", "tan"):
+        return []
+    return [Requirement(argument, ">") if name == "log" else Requirement(sympy.cos(argument), "!=")]
+
+
+def of_expression(expression: sympy.Expr, *, smooth: bool = False) -> list[Requirement]:
+    """What an expression asks for as it stands; `smooth`: also to be smooth, as no root is at 0."""
+    found = []
+    for node in sympy.preorder_traversal(expression):
+        if node.is_Pow and node.exp.is_Rational:
+            for expected in of_power(node.base, node.exp):
+                root = smooth and expected.relation == ">="
+                found.append(Requirement(expected.expression, ">") if root else expected)
+        elif node.is_Pow and not node.base.is_number:  # exp(x·log(y)), as sympy writes it
+            found.append(Requirement(node.base, ">"))
+        elif isinstance(node, sympy.log | sympy.tan):
+            found += of_function(node.func.__name__, node.args[0])
+    return found

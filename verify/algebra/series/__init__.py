@@ -1,0 +1,1 @@
+"""Series in h, and the derivatives of every H as variables."""

@@ -1,0 +1,131 @@
+"""For which values of the parameters a coefficient is not the zero function of p and q.
+
+That it is not zero at some point says nothing of a single value of δ: 12 δ p q is zero at δ = 0.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import reduce
+
+import flint
+import sympy
+
+from verify.algebra.domain import Domain
+from verify.algebra.embedding import embed
+from verify.algebra.formula import symbol
+from verify.algebra.generator import terms_of
+from verify.algebra.requirement import Requirement
+from verify.algebra.ring import Poly, Ring
+from verify.algebra.zero_test import clear_inverses
+from verify.errors import InputError
+
+_COORDINATES = ("p", "q", "h")
+_AT = (0, 1, 2)  # where functions of p and q have simple values
+_MOST_PARTS = 12  # coefficients that are said not to vanish all together
+
+
+def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
+    """Where x, which is not the zero function, is not that of p and q for fixed parameters.
+
+    `what` names x where nothing more is known than that it is so for almost all parameters.
+    """
+    parameters = [name for name in ring.variables if name not in _COORDINATES]
+    if not any(ring.depends(x, name) for name in parameters):
+        return Domain()
+    x = clear_inverses(ring, x)  # a denominator is not 0 where x is defined
+    inner = _depending(ring, x)
+    parts = _coefficients(ring, x, inner)
+    common = reduce(lambda a, b: a.gcd(b), parts)
+    factors = [factor for factor, _ in common.factor()[1]]
+    needed = [Requirement(ring.expression(f), "!=") for f in factors]
+    if all(index in ring.places.values() for index in inner):  # a polynomial in p and q
+        rests = _without_multiples([_radical(part / common, factors) for part in parts])
+        if len(rests) <= _MOST_PARTS:
+            return Domain.of([*needed, *_not_all_zero([ring.expression(r) for r in rests])])
+    if any(_is_product(ring, x, factors, point) for point in _points(ring, x, factors)):
+        return Domain.of(needed)
+    return Domain.of(needed, f"{what} does not vanish identically in p and q")
+
+
+def _depending(ring: Ring, x: Poly) -> list[int]:
+    """The places of what depends on p or q and is in x."""
+    degrees, found = x.degrees(), []
+    for g in ring.generators_in(x):
+        inside = ring.variable(g.name) if g.kind == "variable" else g.argument
+        depends = inside is not None and any(ring.depends(inside, n) for n in _COORDINATES)
+        if depends and degrees[g.index] > 0:
+            found.append(g.index)
+    return found
+
+
+def _coefficients(ring: Ring, x: Poly, inner: Sequence[int]) -> list[Poly]:
+    """Those of x over the monomials in what depends on p and q."""
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], flint.fmpq]] = {}
+    for powers, c in terms_of(x):
+        rest = list(powers)
+        for index in inner:
+            rest[index] = 0
+        parts.setdefault(tuple(powers[i] for i in inner), {})[tuple(rest)] = c
+    return [ring.context.from_dict(terms) for terms in parts.values()]
+
+
+# -- of a polynomial in p and q -------------------------------------------------------------------
+
+
+def _radical(x: Poly, factors: Sequence[Poly]) -> Poly:
+    """The product of x's irreducible factors but for those that are known not to vanish."""
+    found = [factor for factor, _ in x.factor()[1] if factor not in factors]
+    return reduce(lambda a, b: a * b, found, x.context().constant(1))
+
+
+def _without_multiples(parts: Sequence[Poly]) -> list[Poly]:
+    """Those that no other one divides: all vanish where these do."""
+    kept: list[Poly] = []
+    for part in sorted(parts, key=lambda x: x.total_degree()):
+        if all(divmod(part, other)[1] for other in kept):
+            kept.append(part)
+    return kept
+
+
+def _not_all_zero(rests: Sequence[sympy.Expr]) -> list[Requirement]:
+    """That they do not vanish together, as a sum of squares."""
+    together = rests[0] if len(rests) == 1 else sympy.Add(*(rest**2 for rest in rests))
+    return [Requirement(together, "!=")]
+
+
+# -- of functions ---------------------------------------------------------------------------------
+
+_Point = tuple[sympy.Expr, sympy.Expr]
+
+
+def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
+    """Values of p and q, and such as make the argument of a function 1: q = 1/a for sin(a q)."""
+    simple = [sympy.Integer(n) for n in _AT]
+    yield from ((p, q) for p in simple for q in simple)
+    for g in ring.generators_in(x):
+        for name in ("p", "q"):
+            if g.kind == "variable" or g.argument is None:
+                continue
+            slope = ring.diff(g.argument, name)
+            if slope.is_zero() or any(ring.depends(slope, n) for n in _COORDINATES):
+                continue
+            cleared = clear_inverses(ring, slope)
+            if all(f in factors for f, _ in cleared.factor()[1]):
+                at = 1 / ring.expression(slope)
+                yield from ((at, n) if name == "p" else (n, at) for n in simple)
+
+
+def _is_product(ring: Ring, x: Poly, factors: Sequence[Poly], point: _Point) -> bool:
+    """Whether at the point nothing of x is left but some of the factors, and a number not 0."""
+    put = dict(zip((symbol("p"), symbol("q")), point, strict=True))
+    value = ring.expression(x).xreplace(put)
+    names = [name for name in ring.variables if name not in ("p", "q")]
+    try:
+        own, (left, *known) = embed([value, *map(ring.expression, factors)], names)
+    except InputError:
+        return False
+    left = clear_inverses(own, left)
+    for factor in known:
+        while left and not divmod(left, factor)[1]:
+            left = divmod(left, factor)[0]
+    free = not any(own.depends(left, name) for name in names)
+    return free and own.decide(left).zero is False
