@@ -54,7 +54,8 @@ def test_what_is_beyond_the_limits_costs_one_claim(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "keys",
     ['formula = "3*h**3*detla*p*q"', 'formula = "sni(q)*h"', 'formula = "open(1)"',
-     'formula = "3*h**3*("', 'formula = "h/0"', 'formula = "log(-1)*h"', 'formula = "h"\nup_to = 99', 'formul = "h"'],
+     'formula = "3*h**3*("', 'formula = "h/0"', 'formula = "log(-1)*h"',
+     'formula = "h"\nup_to = 99', 'formul = "h"'],
 )  # fmt: skip
 def test_a_mistake_in_the_file_is_one_all_the_same(tmp_path: Path, keys: str) -> None:
     path = tmp_path / "claims.toml"
