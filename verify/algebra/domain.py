@@ -1,6 +1,6 @@
 """Where a formula is defined: conditions on p, q, h and the parameters, in few and simple ones."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -103,15 +103,28 @@ class Domain:
         if decision.zero is None or not self.requirements:
             return decision
         own = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
-        for point in points(list(dict.fromkeys((*own, *sorted(self.names))))):
-            if point.get("h", 1) <= 0 or not self.contains(point):
-                continue
+        for point in self._points(list(dict.fromkeys((*own, *sorted(self.names))))):
             if decision.zero:
                 return decision
             value = enclose(ring, x, point, _PRECISION)
             if value is not None and not value.contains(0):
                 return Decision(False, point, value.str(12))
         return Decision(None)
+
+    def _points(self, names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
+        """Points of the domain: small ones, and such as lie about the ends of its conditions."""
+        ends = {
+            symbol.name: Fraction(int(root.p), int(root.q))
+            for r in self.requirements
+            for symbol in r.expression.free_symbols
+            if r.expression.free_symbols == {symbol}
+            for root in _root_of_linear(r.expression, symbol)
+        }
+        for about in ({}, ends) if ends else ({},):
+            for point in points(names):
+                moved = {name: x + about.get(name, 0) for name, x in point.items()}
+                if moved.get("h", 1) > 0 and self.contains(moved):
+                    yield moved
 
 
 EVERYWHERE = Domain()
@@ -163,6 +176,12 @@ def _signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
             yield from _simplified(base, "!=" if exponent.is_Integer else ">")
     elif not (_small(rest) and (rest.is_positive if relation == ">" else rest.is_nonnegative)):
         yield Requirement(rest, relation)
+
+
+def _root_of_linear(u: sympy.Expr, symbol: sympy.Symbol) -> list[sympy.Rational]:
+    slope = u.diff(symbol)
+    root = -u.subs(symbol, 0) / slope if slope.is_Rational and slope else None
+    return [root] if root is not None and root.is_Rational else []
 
 
 def _small(u: sympy.Expr) -> bool:

@@ -83,7 +83,7 @@ def map_of(claim: Claim, findings: Findings) -> StepMap:
 
 def delta_j_order(step_map: StepMap) -> ProvedOrder:
     """The order of ΔJ in h."""
-    leading = leading_of(step_map)
+    leading = leading_of(step_map).within(step_map.domain)
     beyond, decision = MOST_ORDERS + 1, leading.decision
     if decision.zero is True:
         evidence = prose("ΔJ is the zero function: det J ≡ 1")

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import sympy
@@ -49,6 +49,13 @@ class Leading:
             return EVERYWHERE
         return not_zero_for(*self.element, f"the coefficient of h^{self.power}")
 
+    def within(self, domain: Domain) -> "Leading":
+        """As it is in the domain: the witness lies there, and without a point nothing is said."""
+        if self.decision.zero is None or not domain.requirements:
+            return self
+        ring, x = self.element or _ZERO
+        return replace(self, decision=domain.decide(ring, x))
+
     @property
     def text(self) -> str:
         """As a formula."""
@@ -58,6 +65,8 @@ class Leading:
         return ring.text(x)
 
 
+_NOWHERE = Ring((), 0, spare=0)
+_ZERO = _NOWHERE, _NOWHERE.zero
 VANISHES = Leading(None, Decision(True))
 
 

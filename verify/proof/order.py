@@ -31,9 +31,13 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """The order of ΔJ and of the map by exact algebra, and whether `scheme`'s claims hold."""
     series = _BySeries(step_map, scheme.order + 1 if scheme else _FIRST_ORDERS)
     convergence = convergence_of(step_map, series)
-    leading = leading_of(step_map, series)
-    verdict, said = _verdict(convergence, leading, scheme)
+    leading, domain = leading_of(step_map, series), step_map.domain
+    inside = leading.within(domain)
+    verdict, said = _verdict(convergence, inside, scheme)
     reason = read_prose(said)
+    if inside.decision.zero is None and leading.decision.zero is not None:
+        reason = prose("no point is found where all is defined: ", domain.prose)
+    leading = inside
     if leading.decision.zero is True and step_map.conditions:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     if verdict is Verdict.PROVED and leading.domain:

@@ -92,3 +92,14 @@ def test_what_holds_at_a_value_that_is_left_out(formula: str, found: list[Any]) 
     for each, (_, _, order) in zip(special, found, strict=True):
         assert order is None or each.proof.order == order
         assert order is not None or (each.proof.order or 99) > 3
+
+
+def test_a_proof_speaks_of_points_where_all_is_defined() -> None:
+    """As it is written: √(q − 10⁶) twice, and √a with √−a, which has no point."""
+    far = proof("p**2/2 + sqrt(q - 1000000)**2*q", "lie2")
+    assert (far.verdict, far.order) == ("PROVED", 4)
+    assert far.witness["q"] > 10**6
+    for formula in ("p**2/2 + sqrt(a)*sqrt(-a)*q**3", "p**2/2 + 0*sqrt(q)*sqrt(-q - 1)"):
+        nowhere = proof(formula, "lie2")
+        assert nowhere.verdict == "UNDECIDED"
+        assert "no point is found" in nowhere.reason
