@@ -1,6 +1,8 @@
 """The errors that a user is told in one line: of input, and of where the work is done."""
 
 import re
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 
 # What a terminal acts on, or turns the order of, instead of showing it; tabs and ends of lines not.
 CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -35,6 +37,35 @@ class PlaceError(RuntimeError):
 
     One line. The command line turns it into exit status 2; what was finished is kept.
     """
+
+
+def unknown(
+    source: str,
+    name: object,
+    allowed: Iterable[str],
+    more: str = "",
+    aliases: Mapping[str, str] = MappingProxyType({}),
+) -> InputError:
+    """The error for a name that is none of those allowed; the nearest of them is asked for.
+
+    `more` is said after them; `aliases` are other names, with those that they stand for.
+    """
+    from difflib import get_close_matches
+
+    names = list(allowed)
+    plain = {**aliases, **{plain_name(each): each for each in reversed(names)}}
+    near = get_close_matches(plain_name(str(name)), plain, n=1, cutoff=0.6)
+    meant = f"is {plain[near[0]]} meant? " if near else ""
+    return InputError(source, name, f"unknown; {meant}allowed: {', '.join(names)}{more}")
+
+
+def plain_name(name: str) -> str:
+    """The name in small letters, a dash in place of spaces, dashes and underscores.
+
+    >>> plain_name(" Double_Well ")
+    'double-well'
+    """
+    return re.sub(r"[\s_-]+", "-", name.strip().lower())
 
 
 def without_controls(text: str) -> str:

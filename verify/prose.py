@@ -105,6 +105,15 @@ def number(text: str) -> str:
     return Number(text) if _NUMBER.fullmatch(text) else text
 
 
+def count(n: int, one: str) -> str:
+    """So many of a thing, in the singular or the plural.
+
+    >>> count(1, "stage"), count(2, "stage")
+    ('1 stage', '2 stages')
+    """
+    return f"{n} {one}{'' if n == 1 else 's'}"
+
+
 def joined(between: str, parts: Iterable[str]) -> Prose:
     """The parts with `between` between each two of them."""
     return Prose(between).join(parts)

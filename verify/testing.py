@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from verify.arithmetic.exact import Exact, rational
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
 from verify.integrators.loading import step_from
@@ -97,7 +97,7 @@ def _asserted(
     known = {"parameters", "arguments", "p", "q", "time_limit"}
     for name in options:
         if name not in known:
-            raise InputError(name, options[name], f"unknown; allowed: {', '.join(sorted(known))}")
+            raise unknown(name, options[name], sorted(known))
     if not callable(step):
         raise InputError("step", step, "is no function")
     exact = _hamiltonian(hamiltonian, options.get("parameters"))

@@ -9,8 +9,10 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+import click
 import pytest
 
+from verify import schemes
 from verify.commands.main import main
 
 RUN = {"--system": "pendulum", "--scheme": "lie2", "--step-size": "0.01", "--steps": "10",
@@ -95,7 +97,7 @@ BAD = {
     "digits-huge": (arguments("run", RUN, digits="1000000"), "digits=1000000"),
     "digits-word": (arguments("run", RUN, digits="many"), "--digits"),
     "arithmetic": (arguments("run", RUN, arithmetic="float32"), "arithmetic=float32"),
-    "scheme-unknown": (arguments("run", RUN, scheme="rk5"), "scheme=rk5: unknown; allowed: "),
+    "scheme-unknown": (arguments("run", RUN, scheme="rk5"), "scheme=rk5: unknown; is rk4 meant"),
     "scheme-lie0": (arguments("run", RUN, scheme="lie0"), "scheme=lie0"),
     "scheme-huge": (arguments("run", RUN, scheme="lie" + "9" * 50), "scheme=lie999"),
     "scheme-empty": (arguments("run", RUN, scheme=""), "scheme="),
@@ -250,6 +252,36 @@ def test_run_says_where_an_orbit_left_the_range(capsys: pytest.CaptureFixture[st
              "--json")[1])["failed_step"]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("command", "keys", "name"),
+    [
+        ("schemes", {"name", "order", "symplectic", "cost", "aliases", "hamiltonian"}, "lie2"),
+        ("systems", {"name", "hamiltonian", "regimes", "exact_flow"}, "duffing"),
+    ],
+)
+def test_what_there_is_is_listed(
+    capsys: pytest.CaptureFixture[str], command: str, keys: set[str], name: str
+) -> None:
+    status, out, err = here(capsys, command, "--json")
+    found = {row["name"]: row for row in json_of(out)[command]}
+    assert (status, err) == (0, "")
+    assert keys <= set(found[name])
+    status, out, err = here(capsys, command)
+    assert (status, err) == (0, "")
+    assert all(f"{each} " in out for each in found)
+
+
+def test_a_shell_completes_schemes_and_systems() -> None:
+    from verify.commands.shared.input import hamiltonian_options, scheme_option
+
+    command = click.command()(hamiltonian_options(scheme_option(lambda: None)))
+    by_name = {parameter.name: parameter for parameter in command.params}
+    context = click.Context(command)
+    found = by_name["scheme"].shell_complete(context, "lie")
+    assert {"lie1", "lie2"} <= {item.value for item in found} <= set(schemes.names())
+    assert [x.value for x in by_name["system"].shell_complete(context, "duf")] == ["duffing"]
+
+
 def test_plan_prints_its_json_keys(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(SCENE)
     status, out, err = here(capsys, "plan", str(tmp_path / "mine.toml"), "--json")
@@ -275,6 +307,7 @@ def test_people_are_shown_text(capsys: pytest.CaptureFixture[str], given: list[s
 
 IMPORTED = """
 import sys
+from verify import schemes
 from verify.commands.main import main
 try:
     main(sys.argv[1:])

@@ -7,7 +7,7 @@ is its library imported. Adding a number system is adding one file.
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import InputError
+from verify.errors import unknown
 
 if TYPE_CHECKING:
     from verify.arithmetic.number_system import Arithmetic, NumberSystem
@@ -38,7 +38,7 @@ def about(name: str) -> "NumberSystem":
     (17, None)
     """
     if name not in _FILES:
-        raise InputError("arithmetic", name, f"unknown; allowed: {', '.join(names())}")
+        raise unknown("arithmetic", name, names())
     system: NumberSystem = _FILES.module(name).NUMBER_SYSTEM
     return system
 

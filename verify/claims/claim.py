@@ -21,6 +21,7 @@ from verify.prose import prose, read_prose
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
+from verify.scenes.values import SchemeName
 from verify.verdict import Verdict
 
 
@@ -45,7 +46,7 @@ class Claim(Frozen):
     section: str = ""
     statement: str = ""
     scene: str = ""
-    scheme: str
+    scheme: SchemeName
 
     # -- of which scene it speaks -----------------------------------------------------------------
 

@@ -34,7 +34,7 @@ from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
 from verify.claims.toml_lines import Lines, lines_of
-from verify.errors import InputError, LimitError
+from verify.errors import InputError, LimitError, unknown
 from verify.files import read_text
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_from
@@ -147,7 +147,7 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: "_Sc
         raise InputError("", table, "is not a table")
     kind = table.get("kind", defaults.get("kind", ""))
     if not isinstance(kind, str) or kind not in models():
-        raise InputError("kind", kind, f"unknown; allowed: {', '.join(models())}")
+        raise unknown("kind", kind, models())
     model = models()[kind]
     if not model.on_scene:
         _append(file, model.model_validate(table))

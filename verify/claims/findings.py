@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import CriterionResult
 from verify.scenes.results.proof import ProofResult
@@ -32,7 +32,7 @@ class Findings:
     def scene(self, name: str) -> Scene:
         """The scene of that name. InputError where there is none."""
         if name not in self.scenes:
-            raise InputError("claim.scene", name, f"unknown; allowed: {', '.join(self.scenes)}")
+            raise unknown("claim.scene", name, self.scenes)
         return self.scenes[name]
 
     def scene_of(self, claim: _Speaking) -> Scene:

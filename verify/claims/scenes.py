@@ -13,7 +13,7 @@ from verify.claims.claim import Claim
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
-from verify.scenes.values import Number
+from verify.scenes.values import Number, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
 HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters")
@@ -22,7 +22,7 @@ HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters")
 class ClaimedHamiltonian(Frozen):
     """Of which H; `parameters` are of `system` or `hamiltonian`."""
 
-    system: str | None = None
+    system: SystemName | None = None
     hamiltonian: str | None = None
     parameters: dict[str, Number] = Field(default_factory=dict)
 

@@ -8,7 +8,7 @@ import click
 
 from verify.commands.hunt import STEPS, hunt
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import PATH, writable_later
+from verify.commands.shared.input import PATH, SCHEME, writable_later
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
 
@@ -30,7 +30,14 @@ _SEEDS = 2**32
 )
 @click.option("--examples", type=int, default=1000, metavar="N", help="Scenes; 1000.")
 @click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
-@click.option("--scheme", "schemes", multiple=True, metavar="NAME", help="Only this; repeatable.")
+@click.option(
+    "--scheme",
+    "schemes",
+    type=SCHEME,
+    multiple=True,
+    metavar="NAME",
+    help="Only this; repeatable.",
+)
 @click.option(
     "--kind",
     "kinds",

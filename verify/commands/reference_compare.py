@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.input import PATH
+from verify.commands.shared.input import PATH, SCHEME
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ _KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 @click.option("--data", type=PATH, metavar="DIR",
               help="The reference data; without it, the committed set.")  # fmt: skip
 @click.option("--scene", metavar="NAME", help="The scene of all rows, such as duffing.")
-@click.option("--scheme", metavar="NAME", help="The scheme of all rows.")
+@click.option("--scheme", type=SCHEME, metavar="NAME", help="The scheme of all rows.")
 @click.option("--step-size", metavar="H", help="Their step size.")
 @click.option("--q", "q0", metavar="X", help="Their initial q.")
 @click.option("--p", "p0", metavar="X", help="Their initial p.")

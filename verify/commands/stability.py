@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import target
+from verify.commands.shared.input import SCHEME, target
 from verify.commands.shared.tasks import perform, with_tasks
 from verify.errors import InputError
 
@@ -23,7 +23,12 @@ _WIDTH, _IN = 100, " " * 6
 @click.command()
 @click.argument("scene", required=False, metavar="[SCENE]")
 @click.option("--linear", is_flag=True, help="On the harmonic oscillator, by exact algebra.")
-@click.option("--scheme", help="With --linear: lie1, lie2, …, stormer-verlet, rk4, …")
+@click.option(
+    "--scheme",
+    type=SCHEME,
+    metavar="NAME",
+    help="With --linear: lie1, lie2, …, stormer-verlet, rk4, …",
+)
 @with_tasks
 def stability(
     scene: str | None,

@@ -7,7 +7,7 @@ H, so that ten of them are not ten times the same.
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
@@ -43,7 +43,7 @@ class Hunt:
 
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
-            raise InputError("maximise", self.measure, f"unknown; allowed: {', '.join(MEASURES)}")
+            raise unknown("maximise", self.measure, MEASURES)
         if not 1 <= self.examples <= MOST_EXAMPLES:
             raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
         if self.seed < 0:

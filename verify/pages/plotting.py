@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 from matplotlib.figure import Figure
 
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.pages.figures import (
     crossover_figure,
     figures,
@@ -50,7 +50,7 @@ def plot_runs(
     A grey guide stands above the points for each of `slopes`, powers of h.
     """
     if quantity not in QUANTITIES:
-        raise InputError("quantity", quantity, f"unknown; allowed: {', '.join(QUANTITIES)}")
+        raise unknown("quantity", quantity, QUANTITIES)
     schemes = dict.fromkeys(run.scheme for run in runs)
     lines = [
         figures.Line(f"{scheme}, {line.label}" if len(schemes) > 1 else line.label, line.points)

@@ -16,7 +16,7 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import Exact, positive, rational, text, whole
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.systems import ball, float64
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import Progress
@@ -29,6 +29,7 @@ from verify.runs.float64 import bounded
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
+from verify.schemes import canonical
 from verify.schemes.step_map import StepMap
 
 
@@ -55,6 +56,7 @@ def run(
     `keeper` keeps checkpoints, from which an interrupted run goes on. Raises InputError for h ≤ 0,
     N < 1, a parameter without a value, unknown names.
     """
+    scheme = canonical(scheme)
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, observables)
     whole("points", points, 0)
@@ -144,7 +146,7 @@ def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequen
         whole(name, value, 1, most)
     for name in observables:
         if name not in OBSERVABLES:
-            raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
+            raise unknown("observable", name, OBSERVABLES)
 
 
 def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:

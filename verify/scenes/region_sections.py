@@ -32,6 +32,7 @@ from verify.scenes.values import (
     Digits,
     InitialValue,
     Number,
+    SchemeName,
     Steps,
     StepSize,
     Time,
@@ -113,7 +114,7 @@ class Flow(PlacedShape):
     step_size: StepSize
     steps: Annotated[tuple[Steps, ...], Field(max_length=100)] = ()
     times: Annotated[tuple[Time, ...], Field(max_length=100)] = ()
-    schemes: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
     exact: Annotated[bool, Field(strict=True)] = True
     mean_lambda: Annotated[bool, Field(strict=True)] = True
     digits: Digits = 17

@@ -56,7 +56,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.drawable import drawn_by
-from verify.errors import CONTROL, InputError, without_controls
+from verify.errors import CONTROL, InputError, unknown, without_controls
 from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -71,8 +71,10 @@ from verify.scenes.values import (
     Digits,
     InitialValue,
     Number,
+    SchemeName,
     Steps,
     StepSize,
+    SystemName,
     Time,
     distinct,
     steps_of,
@@ -101,7 +103,7 @@ class Grid(Frozen):
             raise InputError("grid", "time, steps", "give one of the two")
         for name in self.observables:
             if name not in OBSERVABLES:
-                raise InputError("observable", name, f"unknown; allowed: {', '.join(OBSERVABLES)}")
+                raise unknown("observable", name, OBSERVABLES)
         if self.growth and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")
         distinct("step_sizes", self.step_sizes)
@@ -175,10 +177,10 @@ class Scene(Frozen):
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", max_length=80)] = ""
     title: str = ""
-    system: str | None = None
+    system: SystemName | None = None
     hamiltonian: str | None = None
     parameters: dict[str, Number] = Field(default_factory=dict)
-    schemes: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+    schemes: Annotated[tuple[SchemeName, ...], Field(min_length=1, max_length=100)]
     every_hamiltonian: bool = False
     criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
     grid: Grid | None = None

@@ -35,6 +35,7 @@ from verify.scenes.values import (
     ArithmeticName,
     Digits,
     InitialValue,
+    SchemeName,
     StepSize,
     Time,
     distinct,
@@ -49,11 +50,11 @@ class WorkPrecision(Frozen):
     time: Time
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=100)]
     initial_value: InitialValue
-    schemes: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
     repeats: Annotated[int, Field(ge=1, le=1000, strict=True)] = 5
     number_systems: tuple[ArithmeticName, ...] = ()
     digits: Annotated[tuple[Digits, ...], Field(max_length=100)] = ()
-    number_systems_scheme: str | None = None
+    number_systems_scheme: SchemeName | None = None
     number_systems_step_size: StepSize | None = None
     peers: bool | None = None
 
@@ -96,7 +97,7 @@ class Reference(Frozen):
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
     steps: Annotated[tuple[Chosen, ...], Field(min_length=1, max_length=1000)]
     digits: Annotated[int, Field(ge=1, le=_MOST_DIGITS, strict=True)] = 30
-    schemes: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
     flow: Annotated[bool, Field(strict=True)] = True
 
     @model_validator(mode="after")

@@ -30,7 +30,16 @@ from verify.arithmetic.exact import decimal, positive, whole
 from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
 from verify.scenes.frozen import Frozen
-from verify.scenes.values import InitialValue, Number, Steps, StepSize, Time, distinct, steps_of
+from verify.scenes.values import (
+    InitialValue,
+    Number,
+    SchemeName,
+    Steps,
+    StepSize,
+    Time,
+    distinct,
+    steps_of,
+)
 
 _MOST_STEPS = 10**9  # of a run that is judged: minutes
 _MOST_MAP_STEPS = 100_000
@@ -68,7 +77,7 @@ Values = Annotated[
 StepSizes = Annotated[
     tuple[StepSize, ...], BeforeValidator(_spread), Field(min_length=1, max_length=200)
 ]
-Schemes = Annotated[tuple[str, ...], Field(max_length=100)]
+Schemes = Annotated[tuple[SchemeName, ...], Field(max_length=100)]
 
 
 class OfSchemes(Frozen):

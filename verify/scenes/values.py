@@ -7,9 +7,11 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 from verify import arithmetic as number_systems
+from verify import schemes
 from verify.arithmetic.exact import positive, rational, text
 from verify.drawable import drawn_by
-from verify.errors import InputError
+from verify.errors import InputError, unknown
+from verify.hamiltonians import systems
 from verify.scenes.frozen import Frozen
 
 MAX_STEPS = 10**12
@@ -26,14 +28,15 @@ StepSize = Annotated[
     Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
 ]
 Time = Annotated[Fraction, BeforeValidator(lambda x: positive(x, "time")), PlainSerializer(text)]
+SchemeName = Annotated[str, AfterValidator(schemes.canonical)]
+SystemName = Annotated[str, AfterValidator(systems.canonical)]
 Digits = Annotated[int, Field(ge=1, le=MAX_DIGITS, strict=True)]
 Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
 
 
 def _known_arithmetic(name: str) -> str:
     if name != AUTO and name not in number_systems.names():
-        allowed = ", ".join((AUTO, *number_systems.names()))
-        raise InputError("arithmetic", name, f"unknown; allowed: {allowed}")
+        raise unknown("arithmetic", name, (AUTO, *number_systems.names()))
     return name
 
 

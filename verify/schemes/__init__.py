@@ -3,16 +3,19 @@
 A file of `methods/` defines `SCHEME`, its one Scheme, whose name is the file's; or, for a family,
 `EXAMPLES`, some of the names it answers to, and `make(name)`, which returns the Scheme of that name
 or None. The name of a file is the beginning of the names it answers to; those in `methods/user/`
-answer to texts of the users' own. Adding a scheme is adding one file.
+answer to texts of the users' own. `ALIASES` are other names that the scheme goes by. Adding a
+scheme is adding one file.
 """
 
 from functools import cache
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import InputError
+from verify.errors import InputError, plain_name, unknown
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from verify.schemes.scheme import Scheme
 
 _FILES = Catalogue(f"{__name__}.methods", [f"{folder}/methods" for folder in __path__])
@@ -29,20 +32,56 @@ def names() -> tuple[str, ...]:
 
 @cache
 def get(name: str) -> "Scheme":
-    """The scheme of that name; InputError where there is none."""
+    """The scheme of that name, as `canonical` reads it; InputError where there is none."""
     if not isinstance(name, str):
         raise InputError("scheme", name, "is not a name")
-    for file in _candidates(name):
-        scheme = _made(file, name)
+    for file in _candidates(canonical(name)):
+        scheme = _made(file, canonical(name))
         if scheme is not None:
             return scheme
-    raise InputError("scheme", name, f"unknown; allowed: {', '.join(names())}, …")
+    raise unknown("scheme", name, names(), ", …", aliases())
+
+
+@cache
+def aliases() -> "Mapping[str, str]":
+    """Other names that schemes go by, each with the name of its scheme."""
+    ours = filter(_is_ours, _FILES.names)
+    return {a: file for file in ours for a in getattr(_FILES.module(file), "ALIASES", ())}
+
+
+@cache
+def canonical(name: str) -> str:
+    """The name of the scheme that goes by this one: in any case, with spaces, an alias.
+
+    The name itself where there is none, and of a text of the users' own.
+
+    >>> canonical("RK4"), canonical("leapfrog"), canonical("kick 1; drift 1")
+    ('rk4', 'stormer-verlet', 'kick 1; drift 1')
+    """
+    if not isinstance(name, str):  # `get` says so
+        return name
+    plain = plain_name(name)
+    own = [file for file in _FILES.names if plain.startswith(file) and _is_ours(file)]
+    if any(_answers(file, plain) for file in own):
+        return plain
+    return aliases().get(plain, name)
+
+
+def _is_ours(file: str) -> bool:
+    return _FILES.folder(file) != _USERS
+
+
+def _answers(file: str, name: str) -> bool:
+    try:
+        return _made(file, name) is not None
+    except InputError:  # a member of the family that it cannot make; it will say so
+        return True
 
 
 def _candidates(name: str) -> list[str]:
     """The files that may answer to the name: `lie2` imports `lie.py` and no other."""
-    users = [file for file in _FILES.names if _FILES.folder(file) == _USERS]
-    return [*(f for f in _FILES.names if name.startswith(f) and f not in users), *users]
+    users = [file for file in _FILES.names if not _is_ours(file)]
+    return [*(f for f in _FILES.names if name.startswith(f) and _is_ours(f)), *users]
 
 
 def _made(file: str, name: str) -> "Scheme | None":

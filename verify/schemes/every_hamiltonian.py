@@ -15,6 +15,7 @@ import sympy
 
 from verify.algebra.conditions import Condition
 from verify.algebra.series.jets import Jets, Poly, Series
+from verify.prose import count
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")
@@ -39,6 +40,11 @@ class TaylorSeries:
 
     eta: int
     separable: bool = False
+
+    @property
+    def a_step(self) -> str:
+        """What it costs, in words."""
+        return f"derivatives of p and q along the flow, up to X^{self.eta}"
 
     def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
         """p' and q' as series up to h^most; see `BySeries`."""
@@ -68,6 +74,16 @@ class RungeKutta:
             raise ValueError("row i of an explicit tableau has i entries, one row for each weight")
         if sum(self.weights) != 1:
             raise ValueError("the weights do not add up to 1")
+
+    @property
+    def evaluations(self) -> dict[str, int]:
+        """Those of H_p and of H_q in a step."""
+        return dict.fromkeys(("H_p", "H_q"), len(self.weights))
+
+    @property
+    def a_step(self) -> str:
+        """What it costs, in words."""
+        return count(len(self.weights), "stage")
 
     def step(
         self,
@@ -121,6 +137,11 @@ class StageEquations:
 
     stages: tuple[Stage, ...]
     separable: bool = False
+
+    @property
+    def a_step(self) -> str:
+        """What it costs, in words."""
+        return f"{count(len(self.stages), 'stage')}, solved by Newton's method"
 
     @classmethod
     def of_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> "StageEquations":

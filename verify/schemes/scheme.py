@@ -37,6 +37,11 @@ class Scheme:
         """Whether it is known to be for H = T(p) + V(q) only."""
         return bool(getattr(self.every_h, "separable", False))
 
+    @property
+    def evaluations(self) -> dict[str, int] | None:
+        """Evaluations of H_p and of H_q in a step, of a scheme that is made of such."""
+        return getattr(self.every_h, "evaluations", None)
+
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
         """The scheme's map for H. Raises InputError for an H that it does not take."""
         return _step_map(self.build, hamiltonian)

@@ -19,6 +19,7 @@ letters are independent over all V and T up to n = 8 (a test has their rank; of 
 letters there are 54), so that some H has another map.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -33,6 +34,7 @@ from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
+from verify.prose import count
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.free_lie_words import lyndon
 from verify.schemes.residue import condition_of
@@ -53,6 +55,18 @@ class Splitting:
     parts: tuple[Part, ...]
     separable: bool = True
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
+
+    @property
+    def evaluations(self) -> dict[str, int]:
+        """Those of H_p and of H_q in a step."""
+        kinds = Counter(kind for kind, _ in self.parts)
+        return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
+
+    @property
+    def a_step(self) -> str:
+        """What it costs, in words."""
+        found = self.evaluations
+        return f"{count(found['H_q'], 'kick')}, {count(found['H_p'], 'drift')}"
 
     @cached_property
     def _exact(self) -> tuple[Ring, list[tuple[str, Poly]]]:

@@ -32,6 +32,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Jets
 from verify.arithmetic.number import E
 from verify.errors import InputError
+from verify.prose import count
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
 
 Tree = tuple["Tree", ...]  # the trees that are left without the root, in descending order
@@ -121,6 +122,12 @@ class TreeConditions:
     tableau: ImplicitTableau
     separable: bool = False
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
+
+    @property
+    def a_step(self) -> str:
+        """What it costs, in words."""
+        stages = count(self.tableau.stages, "stage")
+        return f"{stages} together, solved by Newton's method"
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those that the trees of 1 … `order` vertices give; see the module's text.

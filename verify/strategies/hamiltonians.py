@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from hypothesis import strategies as st
 
 from verify.algebra.formula import MAX_EXPONENT
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import whole, yes_no_either
 from verify.strategies.formulas import KINDS as KINDS
@@ -53,7 +53,7 @@ def hamiltonians(
         raise InputError("kinds", kinds, f"is not a list of some of: {', '.join(KINDS)}")
     for kind in kinds:
         if kind not in KINDS:
-            raise InputError("kinds", kind, f"unknown; allowed: {', '.join(KINDS)}")
+            raise unknown("kinds", kind, KINDS)
     limits = Limits(
         whole("degree", degree, 1, MAX_EXPONENT),
         whole("terms", terms, 1, _MOST_TERMS),

@@ -117,7 +117,7 @@ BAD: dict[str, tuple[str, int, str]] = {
     "three-entries": ('kind = "jacobian"\nentries = [["1", "0"], ["0"]]\n', 15, "entries"),
     "q-next": ('kind = "step_map"\np_next = "p"\nq_next = "q + r"\n', 16, "q_next=q + r"),
     "p-next-in-itself": ('kind = "step_map"\np_next = "p_next"\nq_next = "q"\n', 15, "p_next"),
-    "scheme": ('kind = "order"\norder = 3\nscheme = "rk5"\n', 16, "scheme=rk5: unknown; allowed"),
+    "scheme": ('kind = "order"\norder = 3\nscheme = "rk5"\n', 16, "scheme=rk5: unknown; is rk4"),
     "not-separable": (
         'kind = "order"\norder = 3\nscheme = "symplectic-euler"\nhamiltonian = "p*q**2"\n', 17,
         "explicit only for"),

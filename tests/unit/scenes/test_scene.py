@@ -82,7 +82,7 @@ BAD: dict[str, tuple[str | bytes, str]] = {
     "series-too-many-steps": (HEAD + SERIES.replace("0.1", "1e-300"), "steps"),
     "series-one-point": (HEAD + SERIES + "points = 1\n", "series.0.points=1"),
     "series-a-table": (HEAD + SERIES.replace("[[series]]", "[series]"), "series="),
-    "unknown-scheme": (HEAD.replace("lie2", "rk5"), "scheme=rk5: unknown; allowed: "),
+    "unknown-scheme": (HEAD.replace("lie2", "rk5"), "scheme=rk5: unknown; is rk4 meant"),
     "scheme-lie0": (HEAD.replace("lie2", "lie0"), "scheme=lie0: η must be 1 … 100"),
     "scheme-not-a-list": (HEAD.replace('["lie2"]', '"lie2"'), "schemes=lie2"),
     "no-scheme": (HEAD.replace('["lie2"]', "[]"), "schemes=[]"),

@@ -7,7 +7,7 @@ from pydantic import model_validator
 from verify.claims import theorems
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.errors import InputError
+from verify.errors import unknown
 from verify.scenes.results.claim import ClaimResult
 
 
@@ -23,8 +23,7 @@ class TheoremClaim(Claim):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if self.name not in theorems.names():
-            allowed = ", ".join(theorems.names())
-            raise InputError("name", self.name, f"unknown; allowed: {allowed}")
+            raise unknown("name", self.name, theorems.names())
         return self
 
     def judge(self, findings: Findings) -> ClaimResult:

@@ -9,7 +9,7 @@ from functools import cache
 
 from verify.claims.theorems.argument import Argument
 from verify.discovery import Catalogue
-from verify.errors import InputError
+from verify.errors import unknown
 
 __all__ = ["Argument", "check_theorem", "names"]
 
@@ -33,5 +33,5 @@ def names() -> tuple[str, ...]:
 def check_theorem(name: str) -> Argument:
     """The argument for the theorem of that name; InputError where there is none."""
     if name not in _functions():
-        raise InputError("theorem", name, f"unknown; allowed: {', '.join(names())}")
+        raise unknown("theorem", name, names())
     return _functions()[name]()

@@ -12,6 +12,8 @@ from verify.content import content
 from verify.errors import InputError
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from verify.claims.file import ClaimsFile
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.scenes.scene import Scene
@@ -26,9 +28,44 @@ class _GivenPath(click.Path):
         return super().convert(value, param, ctx)
 
 
+class _Named(click.ParamType[str]):
+    """A name of a catalogue, in any case or an alias; a shell completes it."""
+
+    def __init__(self, name: str, catalogue: Callable[[], Any]) -> None:
+        self.name, self.catalogue = name, catalogue
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        return self.catalogue().canonical(str(value))
+
+    def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> "list[CompletionItem]":
+        from click.shell_completion import CompletionItem
+
+        names = self.catalogue().names()
+        return [CompletionItem(name) for name in names if name.startswith(incomplete)]
+
+
+def _schemes() -> Any:
+    from verify import schemes
+
+    return schemes
+
+
+def _systems() -> Any:
+    from verify.hamiltonians import systems
+
+    return systems
+
+
 PATH = _GivenPath(path_type=Path)
+SCHEME = _Named("scheme", _schemes)
+_SYSTEM = _Named("system", _systems)
 _HAMILTONIAN_OPTIONS = (
-    click.option("--system", help="A named system, such as duffing; a wrong name lists them."),
+    click.option(
+        "--system",
+        type=_SYSTEM,
+        metavar="NAME",
+        help="A named system, such as duffing; `verify systems` lists them.",
+    ),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
     click.option(
         "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
@@ -37,8 +74,11 @@ _HAMILTONIAN_OPTIONS = (
 _KEPT = "kept"  # the folder of what is finished
 scheme_option = click.option(
     "--scheme",
+    type=SCHEME,
+    metavar="NAME",
     required=True,
-    help="lie1, lie2, …, stormer-verlet, rk4, gauss4, … or 'p_next = …; q_next = …'.",
+    help="lie1, lie2, …, stormer-verlet, rk4, gauss4, …: `verify schemes` lists them; or"
+    " 'p_next = …; q_next = …'.",
 )
 
 

@@ -8,7 +8,7 @@ file.
 from functools import cache
 
 from verify.discovery import Catalogue
-from verify.errors import InputError
+from verify.errors import unknown
 from verify.exploration.property import Property
 
 _FILES = Catalogue(__name__, __path__)
@@ -27,7 +27,7 @@ def get(name: str) -> Property:
     The step of −h undoes the step of h, for a scheme that claims to be symmetric.
     """
     if name not in _FILES:
-        raise InputError("property", name, f"unknown; allowed: {', '.join(names())}")
+        raise unknown("property", name, names())
     module = _FILES.module(name)
     sentence = (module.__doc__ or "").strip().splitlines()[0]
     return Property(name, sentence, module.holds)

@@ -6,7 +6,7 @@
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import InputError
+from verify.errors import plain_name, unknown
 
 if TYPE_CHECKING:
     from verify.hamiltonians.named_system import System
@@ -24,9 +24,16 @@ def all_systems() -> "dict[str, System]":
     return {name: get(name) for name in names()}
 
 
+def canonical(name: str) -> str:
+    """The system's name, given in any case and with spaces; the name itself where there is none."""
+    plain = plain_name(name) if isinstance(name, str) else name
+    return plain if plain in _FILES else name
+
+
 def get(name: str) -> "System":
     """The system of that name; InputError where there is none."""
+    name = canonical(name)
     if name not in _FILES:
-        raise InputError("system", name, f"unknown; allowed: {', '.join(names())}")
+        raise unknown("system", name, names())
     system: System = _FILES.module(name).SYSTEM
     return system

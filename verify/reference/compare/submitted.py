@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from verify.arithmetic.exact import rational
-from verify.errors import InputError, without_controls
+from verify.errors import InputError, unknown, without_controls
 from verify.kernels.tangent_map import nearest_double
 from verify.reference.compare.published import KEYS, Published, PublishedRun
 from verify.reference.compare.table import Table, opened
@@ -103,7 +103,7 @@ def _header(lines: Table, names: Mapping[str, str], found: Theirs) -> dict[str, 
     known |= {name: name for name in COLUMNS}
     for name, theirs in names.items():
         if name not in COLUMNS:
-            raise InputError("--column", name, f"unknown; allowed: {', '.join(COLUMNS)}")
+            raise unknown("--column", name, COLUMNS)
         if theirs not in lines.header:
             has = ", ".join(lines.header)
             raise InputError("--column", theirs, f"is no column of the table; it has: {has}")

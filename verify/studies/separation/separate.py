@@ -52,6 +52,7 @@ from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationResult,
 )
+from verify.schemes import canonical
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
 from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
 from verify.studies.separation.working import Stopped
@@ -81,6 +82,7 @@ def separate(
     `auto` takes the fastest that can. Raises InputError for h ≤ 0, N < 1, a parameter without a
     value, unknown names, and for float64, which is what is examined.
     """
+    scheme = canonical(scheme)
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
     check(hamiltonian, steps, digits, ())
     _check_reference(arithmetic)

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from verify.kernels.kernel import Kernel
 from verify.kernels.lowering import Lowering
 from verify.scenes.results.work_precision import CostResult
-from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import Splitting
 
 _CALL = "call "  # before a function's name, among the kinds of operations
 
@@ -23,7 +21,7 @@ def cost(kernel: Kernel, scheme: Scheme) -> CostResult:
     for loop in lowering.loops(lowering.live(roots)):
         turn += _counted(lowering.inner(loop), loop.updates) + Counter(add=len(loop.updates))
     counted = _counted(lowering, roots) + Counter(add=2)
-    return _result(counted, gradient(scheme), _result(turn, None, None) if turn else None)
+    return _result(counted, scheme.evaluations, _result(turn, None, None) if turn else None)
 
 
 def _counted(lowering: Lowering, roots: Sequence[int]) -> "Counter[str]":
@@ -46,14 +44,3 @@ def _result(
         gradient=gradient,
         turn=turn,
     )
-
-
-def gradient(scheme: Scheme) -> dict[str, int] | None:
-    """Evaluations of H_p and of H_q in a step, for schemes that are made of such."""
-    every_h = scheme.every_h
-    if isinstance(every_h, RungeKutta):
-        return dict.fromkeys(("H_p", "H_q"), len(every_h.weights))
-    if isinstance(every_h, Splitting):
-        kinds = Counter(kind for kind, _ in every_h.parts)
-        return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
-    return None

@@ -94,7 +94,7 @@ def test_columns_may_have_other_names(table: Callable[..., Theirs]) -> None:
     assert table(renamed.replace("velocity", "p")).ignored == ("position",)
     with pytest.raises(InputError, match="momentum: is no column"):
         table(GOOD, {"p": "momentum"})
-    with pytest.raises(InputError, match="pp: unknown; allowed: scene"):
+    with pytest.raises(InputError, match=r"pp: unknown; is p meant\? allowed: scene"):
         table(GOOD, {"pp": "p"})
 
 

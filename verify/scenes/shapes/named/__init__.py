@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import InputError
+from verify.errors import unknown
 
 if TYPE_CHECKING:
     from verify.scenes.shapes.outline import Shape
@@ -19,6 +19,6 @@ def names() -> tuple[str, ...]:
 def get(name: str) -> "Shape":
     """The shape of that name; InputError where there is none."""
     if name not in _FILES:
-        raise InputError("shape", name, f"unknown; allowed: {', '.join(names())}")
+        raise unknown("shape", name, names())
     shape: Shape = _FILES.module(name).SHAPE
     return shape

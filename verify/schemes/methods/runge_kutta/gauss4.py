@@ -11,6 +11,7 @@ TABLEAU = ImplicitTableau.of(
     rows=((_QUARTER, _QUARTER - _ROOT / 6), (_QUARTER + _ROOT / 6, _QUARTER)),
     weights=(_HALF, _HALF),
 )
+ALIASES = ("gauss-legendre4", "gauss-legendre-4")
 SCHEME = implicit(
     "gauss4",
     TABLEAU,

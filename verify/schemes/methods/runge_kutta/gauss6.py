@@ -15,6 +15,7 @@ TABLEAU = ImplicitTableau.of(
     ),
     weights=(2 * _OUTER, 2 * _INNER, 2 * _OUTER),
 )
+ALIASES = ("gauss-legendre6", "gauss-legendre-6")
 SCHEME = implicit(
     "gauss6",
     TABLEAU,

@@ -13,6 +13,7 @@ from verify.schemes.implicit_tableau import ImplicitTableau
 
 TABLEAU = ImplicitTableau.of(rows=((sympy.Rational(1, 2),),), weights=(1,))
 _ONE = Fraction(1)
+ALIASES = ("gauss2",)
 SCHEME = implicit(
     "implicit-midpoint",
     TABLEAU,

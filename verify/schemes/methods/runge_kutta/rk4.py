@@ -10,6 +10,7 @@ _TABLEAU = RungeKutta(
     rows=((), (_HALF,), (_ZERO, _HALF), (_ZERO, _ZERO, _ONE)),
     weights=(_ONE / 6, _ONE / 3, _ONE / 3, _ONE / 6),
 )
+ALIASES = ("runge-kutta", "runge-kutta4", "runge-kutta-4")
 SCHEME = explicit(
     "rk4",
     _TABLEAU,

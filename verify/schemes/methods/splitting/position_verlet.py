@@ -8,6 +8,7 @@ import sympy
 from verify.schemes.splitting import palindrome, splitting
 
 _HALF = (sympy.S.Half, sympy.S.One)
+ALIASES = ("drift-kick-drift",)
 SCHEME = splitting(
     "position-verlet",
     palindrome("drift", _HALF),

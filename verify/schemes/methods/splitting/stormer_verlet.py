@@ -8,6 +8,7 @@ import sympy
 from verify.schemes.splitting import palindrome, splitting
 
 _HALF = (sympy.S.Half, sympy.S.One)
+ALIASES = ("verlet", "leapfrog", "leap-frog", "velocity-verlet", "kick-drift-kick", "strang")
 SCHEME = splitting(
     "stormer-verlet",
     palindrome("kick", _HALF),

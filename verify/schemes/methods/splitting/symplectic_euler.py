@@ -9,6 +9,7 @@ import sympy
 from verify.schemes.splitting import alternating, splitting
 
 PARTS = alternating("kick", (sympy.S.One, sympy.S.One))
+ALIASES = ("semi-implicit-euler", "euler-cromer")
 SCHEME = splitting(
     "symplectic-euler",
     PARTS,

@@ -12,6 +12,7 @@ from verify.schemes.splitting import composed, splitting
 _R = sympy.cbrt(2)
 _OUTER = (4 + 2 * _R + _R**2) / 6
 STEPS = (_OUTER, 1 - 2 * _OUTER, _OUTER)
+ALIASES = ("yoshida", "triple-jump4")
 SCHEME = splitting(
     "yoshida4",
     composed("kick", STEPS),

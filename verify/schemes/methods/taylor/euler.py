@@ -2,6 +2,7 @@
 
 from verify.schemes.methods.taylor.lie import lie_series
 
+ALIASES = ("explicit-euler", "forward-euler")
 SCHEME = lie_series(
     "euler", 1, source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2"
 )

@@ -1,0 +1,57 @@
+"""The command `verify schemes`: what there is, with claims and cost."""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.answer import Answer, answering, picked
+
+if TYPE_CHECKING:
+    from verify.schemes.scheme import Scheme
+
+
+@click.command()
+@answering
+def schemes() -> Answer:
+    """List the schemes: order, whether symplectic, for which H, what a step costs.
+
+    What is listed are claims, which `verify prove` proves. lie1, lie2, … go on to lie100.
+
+    \b
+    verify schemes
+    verify schemes --json
+    """
+    from verify.schemes import aliases, get, names
+
+    found = [get(name) for name in names()]
+    others: dict[str, list[str]] = {}
+    for alias, name in aliases().items():
+        others.setdefault(name, []).append(alias)
+    rows = [_row(scheme, others.get(scheme.name, [])) for scheme in found]
+    return Answer(lambda: {"schemes": rows}, lambda: _print(rows))
+
+
+def _row(scheme: "Scheme", others: list[str]) -> dict[str, Any]:
+    return {
+        **picked(scheme, "name", "order"),
+        "symplectic": scheme.area_preserving,
+        **picked(scheme, "symmetric", "explicit"),
+        "hamiltonian": "H = T(p) + V(q)" if scheme.needs_separable else "every smooth H",
+        "cost": getattr(scheme.every_h, "a_step", ""),
+        "evaluations": scheme.evaluations,
+        "aliases": others,
+        "source": scheme.source,
+    }
+
+
+def _print(rows: list[dict[str, Any]]) -> None:
+    width = max(len(row["name"]) for row in rows)
+    for row in rows:
+        words = [word for word in ("symplectic", "symmetric") if row[word]]
+        words.append("explicit" if row["explicit"] else "implicit")
+        also = f" (also {', '.join(row['aliases'])})" if row["aliases"] else ""
+        click.echo(
+            f"{row['name']:{width}}  order {row['order']}, {', '.join(words)}, "
+            f"for {row['hamiltonian']}: {row['cost']}{also}"
+        )
+    click.echo("or your own: 'p_next = …; q_next = …', 'kick 1/2; drift 1; kick 1/2; order 2'")

@@ -1,0 +1,47 @@
+"""The command `verify systems`: the named Hamiltonians."""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.answer import Answer, answering, picked
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.named_system import System
+
+
+@click.command()
+@answering
+def systems() -> Answer:
+    """List the named systems: H, its parameters, regimes, whether the exact flow is known.
+
+    \b
+    verify systems
+    verify systems --json
+    """
+    from verify.hamiltonians.systems import all_systems
+
+    rows = [_row(system) for system in all_systems().values()]
+    return Answer(lambda: {"systems": rows}, lambda: _print(rows))
+
+
+def _row(system: "System") -> dict[str, Any]:
+    return {
+        **picked(system, "name", "title"),
+        "hamiltonian": system.formula,
+        "parameters": dict(system.parameters),
+        "regimes": {name: dict(values) for name, values in system.regimes.items()},
+        "exact_flow": system.flow is not None,
+        "source": system.source,
+    }
+
+
+def _print(rows: list[dict[str, Any]]) -> None:
+    width = max(len(row["name"]) for row in rows)
+    for row in rows:
+        flow = "exact flow in closed form" if row["exact_flow"] else "exact flow by numbers"
+        click.echo(f"{row['name']:{width}}  H = {row['hamiltonian']}; {flow}")
+        for name, meaning in row["parameters"].items():
+            click.echo(f"{'':{width}}  {name}: {meaning}")
+        if row["regimes"]:
+            click.echo(f"{'':{width}}  regimes: {', '.join(row['regimes'])}")
