@@ -3,7 +3,6 @@
 What it is for, and how zero is decided in it, is told in `verify.algebra.ring`.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -13,12 +12,9 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.algebra.generator import Generator, Poly, System
+from verify.algebra.identities.polynomials import occurring, split
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
-
-
-def _occurring(x: Poly) -> list[int]:
-    return [index for index, power in enumerate(x.degrees()) if power > 0]
 
 
 class RingFullError(Exception):
@@ -119,7 +115,7 @@ class DifferentialRing:
         `inside_equations`: those in the equations of unknowns, too.
         """
         seen: set[int] = set()
-        stack = [index for x in elements for index in _occurring(x)]
+        stack = [index for x in elements for index in occurring(x)]
         while stack:
             index = stack.pop()
             if index not in seen:
@@ -132,12 +128,12 @@ class DifferentialRing:
         """The generators in a generator's argument."""
         if index not in self._inside:
             argument = self._by_index[index].argument
-            self._inside[index] = [] if argument is None else _occurring(argument)
+            self._inside[index] = [] if argument is None else occurring(argument)
         return self._inside[index]
 
     def depends(self, x: Poly, name: str) -> bool:
         """Whether the variable is in x, or in an argument of its generators."""
-        place, seen, stack = self.places.get(name), set[int](), _occurring(x)
+        place, seen, stack = self.places.get(name), set[int](), occurring(x)
         while stack:
             index = stack.pop()
             if index == place:
@@ -155,17 +151,8 @@ class DifferentialRing:
         return self.split(x, self.places[name])
 
     def split(self, x: Poly, at: int) -> dict[int, Poly]:
-        """x as a polynomial in the generator of that index; `powers` for a variable.
-
-        By Taylor's theorem at 0, so that no term passes through Python.
-        """
-        found = {}
-        for power in range(x.degrees()[at] + 1):
-            part = x.subs({at: 0})
-            if not part.is_zero():
-                found[power] = part / math.factorial(power)
-            x = x.derivative(at)
-        return found
+        """x as a polynomial in the generator of that index; `powers` for a variable."""
+        return split(x, at)
 
     # -- generators ---------------------------------------------------------------------------
 

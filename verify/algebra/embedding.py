@@ -20,9 +20,11 @@ from verify.algebra.functions_used import (
     levels_of,
     subexpressions,
 )
-from verify.algebra.lattice import lattice
+from verify.algebra.identities.numbers import rational_root
+from verify.algebra.lattice import lattice, lattice_and_turns
 from verify.algebra.monomials import exponents
 from verify.algebra.ring import Poly, Ring, RingFullError
+from verify.algebra.where_positive import size_of_base
 from verify.errors import LimitError
 
 MAX_TERMS = 20000
@@ -92,9 +94,11 @@ class _Builder:
 
     def functions(self, level: Sequence[sympy.Expr]) -> None:
         """Generators for one level of functions, whose arguments are elements by now."""
-        self.family([f for f in level if isinstance(f, TRIGONOMETRIC)], self.circle)
+        self.family(
+            [f for f in level if isinstance(f, TRIGONOMETRIC)], self.circle, lattice_and_turns
+        )
         exponentials = [f for f in level if isinstance(f, EXPONENTIAL) or f.is_Pow]
-        self.family(exponentials, self.exponential)
+        self.family(exponentials, self.exponential, lattice)
         for function in level:
             if isinstance(function, OTHER):
                 self.other(function)
@@ -103,13 +107,14 @@ class _Builder:
         self,
         functions: Sequence[sympy.Expr],
         make: Callable[[Poly, list[sympy.Expr]], Callable[[int], tuple[Poly, Poly]]],
+        find: Callable[[Ring, Sequence[Poly]], tuple[list[Poly], list[list[int]]]],
     ) -> None:
         """Functions f(Σ kᵢ bᵢ) by their values at the basis bᵢ and the addition theorems."""
         if not functions:
             return
         ring = self.ring
         arguments = [self.element(_argument(f)) for f in functions]
-        basis, multiples = lattice(ring, arguments)
+        basis, multiples = find(ring, arguments)
         values = [
             make(b, [f for f, row in zip(functions, multiples, strict=True) if row[k]])
             for k, b in enumerate(basis)
@@ -254,13 +259,27 @@ class _Builder:
         if same is not None:
             return same
         _, factors = u.factor()
-        if math.gcd(degree, *(int(n) for _, n in factors)) > 1 and factors:
-            raise LimitError("formula", str(node), "is not smooth: the root of a power is |x|")
+        common = math.gcd(degree, *(int(n) for _, n in factors))
+        if common > 1 and factors:
+            return self.root_of_power(u, common, degree, node)
         inverse = self.inverse(u, node)
         root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
         ring.relate(root, degree, root**degree - u)
         ring.set_gradient(root, ring.multiply(root, inverse) / degree, u)
         return root
+
+    def root_of_power(self, u: Poly, common: int, degree: int, node: sympy.Expr) -> Poly:
+        """The root of u = c·v^common, |v| being v or −v everywhere: c^(1/n)·|v|^(common/n)."""
+        size = size_of_base(self.ring, u, common)
+        if size is None:
+            raise LimitError("formula", str(node), "is not smooth: the root of a power is |x|")
+        c, v = size
+        rest = degree // common
+        root = v if rest == 1 else self.root(v, rest, node)
+        exact = rational_root(c, degree)
+        number = self.ring.context.constant(c if exact is None else exact)
+        number = self.root(number, degree, node) if exact is None else number
+        return self.limited(self.ring.multiply(root, number), node)
 
     def repeated(self, base: Poly, n: int, node: sympy.Expr) -> Poly:
         total = self.ring.one

@@ -29,11 +29,8 @@ def enclose(
             at.append(flint.fmpq(value.numerator, value.denominator))
         with working_precision(precision):
             return flint.arb(x(*at))
-    with working_precision(precision):
-        exact = {
-            name: flint.arb(flint.fmpq(at.numerator, at.denominator)) for name, at in point.items()
-        }
-        return enclose_over(ring, x, exact)
+    found = Enclosures(ring, [x]).at(point, precision)
+    return None if found is None else found[0]
 
 
 def enclosed(
@@ -150,6 +147,16 @@ class Enclosures:
                 distinct.append(x)
             numbers.append(distinct.index(x))
         return [_terms(x) for x in distinct], numbers
+
+    def at(self, point: Mapping[str, Fraction], precision: int) -> list[Ball] | None:
+        """Balls that contain them at the point, or None where one is not defined there."""
+        with working_precision(precision):
+            return self.over(
+                {
+                    name: flint.arb(flint.fmpq(at.numerator, at.denominator))
+                    for name, at in point.items()
+                }
+            )
 
     def over(self, box: Mapping[str, Ball]) -> list[Ball] | None:
         """Balls that contain them at every point of the box, or None where one may be undefined.

@@ -18,6 +18,7 @@ from sympy.printing.str import StrPrinter
 
 from verify.algebra.constant_size import FUNCTIONS as NAMES
 from verify.algebra.constant_size import within_reach
+from verify.algebra.identities.absolute_values import without_absolute_values
 from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.arithmetic.exact import rational
@@ -125,6 +126,9 @@ def read(
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     """The expression itself, where it is finite, real, smooth and of bounded size."""
     numbers, powers, others = _by_kind(result)
+    if any(isinstance(node, sympy.Abs) for node in others):
+        result = without_absolute_values(result)
+        numbers, powers, others = _by_kind(result)
     if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
     if any(isinstance(node, _NOT_SMOOTH_NODES) for node in others):

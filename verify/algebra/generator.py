@@ -1,12 +1,14 @@
 """One generator of a ring: which function it is, of what, and how it is written."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import flint
 import sympy
 
-Poly = flint.fmpq_mpoly
+from verify.algebra.identities.polynomials import Poly as Poly
+from verify.algebra.identities.polynomials import terms_of as terms_of
+
 # Kinds that are functions of one argument, by the name that sympy and arb know them by.
 NAMED = ("sin", "cos", "exp", "sinh", "cosh", "log", "atan")
 
@@ -54,14 +56,6 @@ class System:
     added_to: tuple[Poly, ...]
     updates: tuple[Poly, ...]
     determinants: tuple[Poly, ...]
-
-
-def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
-    """Each monomial, as the powers of all generators, with its coefficient.
-
-    Far faster than by a dictionary of flint's own making.
-    """
-    return zip(x.monoms(), x.coeffs(), strict=True)
 
 
 def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:

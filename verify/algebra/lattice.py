@@ -9,6 +9,7 @@ from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
 
 MAX_MULTIPLE = 16  # sin(k b) is expanded in sin b, cos b up to this k
+_FEW = 2
 
 
 def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
@@ -40,6 +41,29 @@ def lattice(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[lis
         for vector in basis
     ]
     return elements, multiples
+
+
+def lattice_and_turns(ring: Ring, arguments: Sequence[Poly]) -> tuple[list[Poly], list[list[int]]]:
+    """As `lattice`, but with multiples of π as basis elements of their own where that is simpler.
+
+    Of 3 p − q + 9π/5, q + π/3 and 3 p any basis without them needs large multiples.
+    """
+    basis, multiples = lattice(ring, arguments)
+    pi = ring.find("pi", None)
+    if pi is None or max(abs(k) for row in multiples for k in row) <= _FEW:
+        return basis, multiples
+    turns = [pi * a[pi.monoms()[0]] for a in arguments]
+    rests = [a - turn for a, turn in zip(arguments, turns, strict=True)]
+    moving = [rest for rest in rests if not rest.is_zero()]
+    if not moving:
+        return basis, multiples
+    basis, coordinates = lattice(ring, moving)
+    own = iter(coordinates)
+    still = [turn for k, turn in enumerate(turns) if turn not in [*turns[:k], ring.zero]]
+    return [*basis, *still], [
+        [*([0] * len(basis) if rest.is_zero() else next(own)), *(int(turn == x) for x in still)]
+        for rest, turn in zip(rests, turns, strict=True)
+    ]
 
 
 def _coordinates(row: list[int], basis: list[list[int]]) -> list[int]:

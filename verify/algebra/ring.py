@@ -6,13 +6,15 @@ atan u, u^(1/n), 1/u and π. Relations hold between generators (sin² + cos² = 
 and each generator knows its derivative, so that the ring is closed under ∂/∂p, ∂/∂q and ∂/∂h.
 
 Contract. `decide(x)` answers
-- zero, when x with its denominators cleared reduces to 0 modulo the relations: exact algebra, and
-  every relation is an identity of functions;
+- zero, when x with its denominators cleared reduces to 0 modulo the relations, here or in a field
+  in which phases, factors under logarithms and roots, and algebraic numbers are told apart (see
+  `verify.algebra.zero_test`): exact algebra, and every relation is an identity of functions
+  wherever x is defined;
 - not zero, with a witness: a rational point at which an enclosure of x excludes 0 (Arb's ball
   arithmetic, so rounding is accounted for);
 - neither (None), when the relations do not show it zero and no point shows it non-zero.
 `simplify` plays no part in either. The third answer can occur only where generators hide an
-identity, as log(q²) and 2 log(q) do, or names of parts do; the callers report UNDECIDED.
+identity, as exp(q √(3 + 2 √2)) does, or names of parts do; the callers report UNDECIDED.
 
 Functions of sums are expanded over a basis of the lattice that their arguments span, so that
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.

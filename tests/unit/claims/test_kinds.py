@@ -15,6 +15,7 @@ import sympy
 
 from tests.helpers.mutation import mutants
 from tests.helpers.sampled.formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
+from tests.helpers.sampled.identities import HIDDEN
 from tests.paths import ROOT
 from verify.claims.claim import Claim
 from verify.claims.file import load_claims
@@ -201,10 +202,17 @@ def test_an_equation_written_in_another_way_is_proved(
     assert verdicts([claim], proved) == [Verdict.PROVED]
 
 
-def test_what_holds_for_positive_q_alone_is_neither_proved_nor_refuted(proved: Findings) -> None:
-    more = CLAIMS["eq-29"].formula + " + log(q**2) - 2*log(q)"
+def test_an_identity_that_is_not_seen_is_neither_proved_nor_refuted(proved: Findings) -> None:
+    more = CLAIMS["eq-29"].formula + " + " + HIDDEN
     claim = CLAIMS["eq-29"].model_copy(update={"formula": more})
     assert verdicts([claim], proved) == [Verdict.UNDECIDED]
+
+
+def test_what_holds_for_positive_q_alone_is_proved_there(proved: Findings) -> None:
+    more = CLAIMS["eq-29"].formula + " + log(q**2) - 2*log(q)"
+    claim = CLAIMS["eq-29"].model_copy(update={"formula": more})
+    found = claim.judge(proved)
+    assert (found.verdict, found.domain) == (Verdict.PROVED, ("q > 0",))
 
 
 @pytest.mark.parametrize("up_to", [3, 5, 6])

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.helpers.sampled.identities import HIDDEN
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.kinds.area_preserving import AreaClaim
@@ -101,9 +102,6 @@ def test_a_value_of_a_parameter_counts() -> None:
 
 
 # log(q²) − 2 log(q) is 0 where q > 0, and the ring does not know it.
-HIDDEN = "log(q**2) - 2*log(q)"
-
-
 def test_what_is_not_decided_in_the_ring_leaves_orders_undecided_from_there_on() -> None:
     scheme = f"p_next = p - h*sin(q) + h**5*p*({HIDDEN}); q_next = q + h*p_next"
     found = {r: judged(order(r, scheme), PENDULUM).verdict for r in range(1, 8)}

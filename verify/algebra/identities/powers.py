@@ -1,0 +1,225 @@
+"""Powers |f|^r and logarithms log |f|, by the factors of f.
+
+|·|^r and log |·| turn products into products and sums, whatever the signs of the factors are. So
+where u > 0, as it is wherever its root or its logarithm is defined, the root of u = c·Π fᵢ^nᵢ is
+|c|^r·Π |fᵢ|^(r nᵢ): no sign of a factor is assumed. |f| itself is σ f with σ² = 1, and σ is 1 or −1
+where the sign of f is shown, or follows from u > 0.
+"""
+
+from fractions import Fraction
+from math import lcm
+
+import flint
+
+from verify.algebra.identities.field import Field, Quotient, UndecidedError
+from verify.algebra.identities.numbers import number_sign, root_of
+from verify.algebra.identities.polynomials import Poly
+from verify.algebra.identities.signs import definite
+
+MAX_POWER = 256
+_MAX_DIVISOR = 120
+_MAX_NUMBER_BITS = 4000
+_SMALL_FACTOR = 16  # bits of the primes that are looked for in a large number
+_SMALL_NUMBER = 64
+
+
+class FinerError(Exception):
+    """A unit must be divided more finely: the field is to be built anew."""
+
+
+class Finer:
+    """By how much units are divided, by the order in which they are made; kept between attempts."""
+
+    def __init__(self) -> None:
+        self.divisors: dict[tuple[str, int], int] = {}
+
+    def divisor(self, kind: str, number: int, r: Fraction) -> int:
+        """Of the unit of that number; FinerError where r is no whole multiple of its share."""
+        found = self.divisors.get((kind, number), 1)
+        if found % r.denominator:
+            finer = lcm(found, r.denominator)
+            if finer > _MAX_DIVISOR:
+                raise UndecidedError("too fine a division")
+            self.divisors[kind, number] = finer
+            raise FinerError
+        return found
+
+
+class Powers:
+    """The powers, logarithms and exponentials of one field."""
+
+    def __init__(self, field: Field, finer: Finer) -> None:
+        self.field, self.finer = field, finer
+        self.signs: dict[str, Quotient] = {}
+        self.roots: dict[int, tuple[Poly, int]] = {}  # of ρ: its base and degree
+        self.exponents: dict[int, Quotient] = {}  # of E: its argument
+        self.logarithms: dict[int, Poly] = {}  # of L: its argument
+        self._numbers: dict[tuple[str, ...], int] = {}
+
+    # -- signs --------------------------------------------------------------------------------
+
+    def sign(self, f: Poly) -> Quotient:
+        """σ with σ f = |f|, as a number or a unit."""
+        field, key = self.field, str(f)
+        if key not in self.signs:
+            if field.is_number(f):
+                shown: int | None = number_sign(field, f)
+            else:
+                shown = definite(f, field)
+            if shown is None:
+                shown_unit = field.unit(("sign", key), lambda at: at.of(f).sgn())
+                field.relate(shown_unit, 2, shown_unit.above**2 - 1)
+                self.signs[key] = shown_unit
+            elif shown == 0:
+                raise UndecidedError("the root or logarithm of 0")
+            else:
+                self.signs[key] = field.number(shown)
+        return field.polynomial(self.signs[key].above)
+
+    def positive(self, u: Quotient) -> None:
+        """Takes note of u > 0: the product of its factors' signs is 1."""
+        field = self.field
+        c, factors = self.factors(u)
+        total = field.number(1 if c > 0 else -1)
+        for f, n in factors:
+            if n % 2 and self._signed(f):
+                total = total * self.sign(f)
+        if total.rational == -1:
+            raise UndecidedError("the root or logarithm of what is negative")
+        if total.rational is None:
+            newest = field.ring.gens[field.place(total)]  # newest units are first
+            unit = field.polynomial(newest)
+            field.relate(unit, 1, newest - (total * unit).above)
+
+    def _signed(self, f: Poly) -> bool:
+        place = self.field.single(f)
+        return place is None or not self.field.units[place].positive
+
+    # -- factors ------------------------------------------------------------------------------
+
+    def factors(self, u: Quotient) -> tuple[flint.fmpq, list[tuple[Poly, int]]]:
+        """u = c·Π f^n with irreducible polynomials f."""
+        if u.is_zero or not self.field.is_small(u.above, u.below):
+            raise UndecidedError("factors of what is 0, or too large")
+        (a, above), (b, below) = u.above.factor(), u.below.factor()
+        return a / b, [*((f, int(n)) for f, n in above), *((f, -int(n)) for f, n in below)]
+
+    def prime_factors(self, c: flint.fmpq) -> list[tuple[int, int]]:
+        """|c| as a product of powers of primes, or of numbers too large to be factored."""
+        found = []
+        for number, sign in ((abs(int(c.p)), 1), (int(c.q), -1)):
+            if number.bit_length() > _MAX_NUMBER_BITS:
+                raise UndecidedError("a number too large")
+            small = number.bit_length() <= _SMALL_NUMBER
+            whole = flint.fmpz(number)
+            parts = whole.factor() if small else whole.factor_smooth(_SMALL_FACTOR)
+            found += [(int(prime), sign * int(n)) for prime, n in parts if prime > 1]
+        return found
+
+    # -- powers -------------------------------------------------------------------------------
+
+    def power(self, u: Quotient, r: Fraction) -> Quotient:
+        """|u|^r."""
+        if abs(r) > MAX_POWER:
+            raise UndecidedError("too high a power")
+        c, factors = self.factors(u)
+        total = self.field.one
+        for prime, n in self.prime_factors(c):
+            total = total * self._of_base(self.field.ring.context.constant(prime), n * r)
+        for f, n in factors:
+            total = total * self._of_base(f, n * r)
+        return total
+
+    def _of_base(self, f: Poly, e: Fraction) -> Quotient:
+        """|f|^e of an irreducible f."""
+        field, place = self.field, self.field.single(f)
+        if place in self.roots:
+            base, degree = self.roots[place]
+            return self._of_base(base, e / degree)
+        if place in self.exponents:
+            return self.exponential(self.exponents[place].times(e))
+        if abs(e) > MAX_POWER:
+            raise UndecidedError("too high a power")
+        whole = e.numerator // e.denominator
+        rest = e - whole
+        total = field.polynomial(f)
+        if whole % 2 and (self._signed(f) or field.is_number(f)):
+            total = total**whole * self.sign(f)
+        else:
+            total = total**whole
+        if not rest:
+            return total
+        root, degree = self._root(f, rest)
+        return total * root ** int(rest * degree)
+
+    def _root(self, f: Poly, r: Fraction) -> tuple[Quotient, int]:
+        """ρ with ρ^n = |f|, and n, of which r is a multiple of 1/n."""
+        field, key = self.field, ("root", str(f))
+        degree = self.finer.divisor("root", self.number(key), r)
+        if key not in field.known:
+            sign = self.sign(f)
+            number = root_of(field, f, degree) if field.is_number(f) else None
+            made = field.unit(
+                key, lambda at: abs(at.of(f)).root(degree), positive=True, number=number
+            )
+            field.relate(made, degree, made.above**degree - (sign * field.polynomial(f)).above)
+            self.roots[field.place(made)] = f, degree
+        return field.known[key], degree
+
+    def number(self, key: tuple[str, ...]) -> int:
+        """The place of the key in the order of making."""
+        return self._numbers.setdefault(key, len(self._numbers))
+
+    # -- logarithms ---------------------------------------------------------------------------
+
+    def logarithm(self, u: Quotient) -> Quotient:
+        """log |u|."""
+        c, factors = self.factors(u)
+        total = self.field.zero
+        for prime, n in self.prime_factors(c):
+            total += self._log_of(self.field.ring.context.constant(prime)).times(n)
+        for f, n in factors:
+            total += self._log_of(f).times(n)
+        return total
+
+    def _log_of(self, f: Poly) -> Quotient:
+        field, place = self.field, self.field.single(f)
+        if place in self.roots:
+            base, degree = self.roots[place]
+            return self._log_of(base).times(Fraction(1, degree))
+        if place in self.exponents:
+            return self.exponents[place]
+        key = ("logarithm", str(f))
+        if key not in field.known:
+            if field.is_number(f) and number_sign(field, f) == 0:
+                raise UndecidedError("the logarithm of 0")
+            made = field.unit(key, lambda at: abs(at.of(f)).log())
+            self.logarithms[field.place(made)] = f
+        return field.known[key]
+
+    # -- exponentials -------------------------------------------------------------------------
+
+    def exponential(self, u: Quotient) -> Quotient:
+        """exp u, by its terms: exp(r log |f|) is |f|^r."""
+        field = self.field
+        total = field.one
+        for r, term in field.terms(u):
+            place = field.single(term.above) if term.below.is_one() else None
+            if place in self.logarithms:
+                total = total * self.power(field.polynomial(self.logarithms[place]), r)
+            else:
+                total = total * self._exponential_of(term, r)
+        return total
+
+    def _exponential_of(self, term: Quotient, r: Fraction) -> Quotient:
+        """exp(r·term)."""
+        field, key = self.field, ("exponential", term.key)
+        share = self.finer.divisor("exponential", self.number(key), r)
+        if key not in field.known:
+            part = term.times(Fraction(1, share))
+            made = field.unit(key, lambda at: at.quotient(part).exp(), positive=True)
+            self.exponents[field.place(made)] = part
+        n = int(r * share)
+        if abs(n) > MAX_POWER:
+            raise UndecidedError("too high a power")
+        return field.known[key] ** n

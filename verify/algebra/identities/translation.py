@@ -1,0 +1,136 @@
+"""From a ring's element to the field of functions in which its hidden identities show."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Protocol
+
+from verify.algebra.identities.angles import Angles
+from verify.algebra.identities.field import Field, Quotient, UndecidedError
+from verify.algebra.identities.polynomials import Poly, terms_of
+from verify.algebra.identities.powers import Finer, FinerError, Powers
+
+_MOST_GENERATORS = 40
+_MOST_TERMS = 20_000
+_ATTEMPTS = 12
+
+
+class Function(Protocol):
+    """A generator of a ring: see `verify.algebra.generator.Generator`."""
+
+    @property
+    def index(self) -> int: ...
+
+    @property
+    def kind(self) -> str: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def inner(self) -> Poly: ...
+
+    @property
+    def degree(self) -> int: ...
+
+
+class Translation:
+    """One element of a ring, and the generators that it depends on, as quotients of a field.
+
+    Raises UndecidedError where it is too large.
+    """
+
+    def __init__(self, used: Sequence[Function], x: Poly, finer: Finer, *, tangents: bool) -> None:
+        self.used = used
+        if len(self.used) > _MOST_GENERATORS or len(x) > _MOST_TERMS:
+            raise UndecidedError("too large")
+        names = tuple(g.name for g in self.used if g.kind == "variable")
+        self.field = Field(names, 2 * len(self.used) + 24)
+        self.powers = Powers(self.field, finer)
+        self.angles = Angles(self.field, self.powers, tangents=tangents)
+        self.images: dict[int, Quotient] = {}
+        self._known: dict[tuple[str, int], Poly] = {}
+        for g in self.used:
+            self.images[g.index] = self._image(g)
+        self.element = self.of(x)
+
+    def of(self, x: Poly) -> Quotient:
+        """A polynomial in the ring's generators that have an image, over one divisor."""
+        field, degrees = self.field, x.degrees()
+        used = [g for g in self.used if degrees[g.index] > 0]
+        below = {g.index: str(self.images[g.index].below) for g in used}
+        divisors = {below[g.index]: self.images[g.index].below for g in used}
+        divided = [
+            {key: sum(int(m[k]) for k in below if below[k] == key) for key in divisors}
+            for m in x.monoms()
+        ]
+        most = {key: max(powers[key] for powers in divided) for key in divisors}
+        power, total = self._powers_of, field.ring.zero
+        for (monomial, c), powers in zip(terms_of(x), divided, strict=True):
+            term = field.ring.context.constant(c)
+            for g in used:
+                if n := int(monomial[g.index]):
+                    term = field.multiplied(term, power(self.images[g.index].above, n))
+            for key, n in powers.items():
+                if n < most[key]:
+                    term = field.multiplied(term, power(divisors[key], most[key] - n))
+            total += term
+            field.limit(total)
+        divisor = field.ring.one
+        for key, n in most.items():
+            divisor = field.multiplied(divisor, power(divisors[key], n))
+        return field.made(field.ring.reduce(total), divisor)
+
+    def _powers_of(self, x: Poly, n: int) -> Poly:
+        key = str(x), n
+        if key not in self._known:
+            self._known[key] = x if n == 1 else self.field.multiplied(self._powers_of(x, n - 1), x)
+        return self._known[key]
+
+    def _image(self, g: Function) -> Quotient:
+        if g.kind == "variable":
+            return self.field.polynomial(self.field.ring.gens[self.field.ring.places[g.name]])
+        if g.kind == "pi":
+            return self.angles.pi
+        if g.kind not in _IMAGES:
+            raise UndecidedError(f"{g.kind} is not handled here")
+        return _IMAGES[g.kind](self, self.of(g.inner), g.degree)
+
+    def _exponentials(self, u: Quotient, sign: int) -> Quotient:
+        up = self.powers.exponential(u)
+        return (up + up.inverse().times(sign)).times(Fraction(1, 2))
+
+    def _root(self, u: Quotient, degree: int) -> Quotient:
+        self.powers.positive(u)
+        return self.powers.power(u, Fraction(1, degree))
+
+    def _logarithm(self, u: Quotient) -> Quotient:
+        self.powers.positive(u)
+        return self.powers.logarithm(u)
+
+
+_IMAGES: dict[str, Callable[[Translation, Quotient, int], Quotient]] = {
+    "sin": lambda t, u, _: t.angles.of(u)[1],
+    "cos": lambda t, u, _: t.angles.of(u)[0],
+    "exp": lambda t, u, _: t.powers.exponential(u),
+    "sinh": lambda t, u, _: t._exponentials(u, -1),
+    "cosh": lambda t, u, _: t._exponentials(u, 1),
+    "log": lambda t, u, _: t._logarithm(u),
+    "atan": lambda t, u, _: t.angles.arctangent(u),
+    "root": lambda t, u, degree: t._root(u, degree),
+    "inverse": lambda t, u, _: u.inverse(),
+    "stage": lambda t, u, _: u,
+}
+
+
+def translated(used: Sequence[Function], x: Poly, *, tangents: bool) -> Translation:
+    """The translation, with every unit divided as finely as it needs to be.
+
+    `used`: all generators that x depends on, the oldest first.
+    """
+    finer = Finer()
+    for _ in range(_ATTEMPTS):
+        try:
+            return Translation(used, x, finer, tangents=tangents)
+        except FinerError:
+            continue
+    raise UndecidedError("units are divided more and more finely")
