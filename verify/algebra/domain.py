@@ -11,6 +11,7 @@ import sympy
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Ball, enclose, points
 from verify.algebra.formula import to_text
+from verify.algebra.identities.absolute_values import sign_of
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError
@@ -157,7 +158,7 @@ def _unequal(u: sympy.Expr) -> Iterable[Requirement]:
         base = factor.base if factor.is_Pow and factor.exp.is_Rational else factor
         if base.is_Mul:
             yield from _unequal(base)
-        elif not base.is_number and not (_small(base) and base.is_nonzero):
+        elif not base.is_number and not _always(base, "!="):
             rest = base.primitive()[1] if base.is_Add else base
             yield Requirement(-rest if rest.could_extract_minus_sign() else rest, "!=")
 
@@ -174,8 +175,18 @@ def _signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
     elif exponent.is_Rational and exponent != 1 and number > 0:
         if relation == ">":
             yield from _simplified(base, "!=" if exponent.is_Integer else ">")
-    elif not (_small(rest) and (rest.is_positive if relation == ">" else rest.is_nonnegative)):
+    elif not _always(rest, relation):
         yield Requirement(rest, relation)
+
+
+def _always(u: sympy.Expr, relation: Relation) -> bool:
+    """Whether the condition is seen to hold everywhere."""
+    if not _small(u):
+        return False
+    if relation == "!=":
+        return bool(u.is_nonzero) or sign_of(u, strict=True) is not None
+    seen = u.is_positive if relation == ">" else u.is_nonnegative
+    return bool(seen) or sign_of(u, strict=relation == ">") == 1
 
 
 def _root_of_linear(u: sympy.Expr, symbol: sympy.Symbol) -> list[sympy.Rational]:

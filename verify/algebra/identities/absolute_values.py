@@ -30,12 +30,15 @@ def without_absolute_values(expression: sympy.Expr) -> sympy.Expr:
 
 
 def _size(v: sympy.Expr) -> sympy.Expr:
-    sign = _sign(v)
+    sign = sign_of(v)
     return sign * v if sign else sympy.Abs(v)
 
 
-def _sign(v: sympy.Expr) -> int | None:
-    """1 where v ≥ 0 everywhere, −1 where v ≤ 0, None where neither is shown."""
+def sign_of(v: sympy.Expr, *, strict: bool = False) -> int | None:
+    """1 where v ≥ 0 everywhere, −1 where v ≤ 0, None where neither is shown.
+
+    `strict`: that v vanishes nowhere is shown, too.
+    """
     if v.count_ops() > _MOST_OPERATIONS:
         return None
     try:
@@ -47,4 +50,4 @@ def _sign(v: sympy.Expr) -> int | None:
     names = [f"_{k}" for k in range(len(polynomial.gens))]
     context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex)
     terms = {m: flint.fmpq(int(c.p), int(c.q)) for m, c in polynomial.terms()}
-    return definite(context.from_dict(terms), _Generators(polynomial.gens))
+    return definite(context.from_dict(terms), _Generators(polynomial.gens), strict=strict)
