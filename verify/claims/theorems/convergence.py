@@ -28,9 +28,6 @@ def convergence(shift: int = 0) -> Argument:
     checks += [_within_the_bound(eta, eta + shift) for eta in orders]
     return concluded(
         "convergence",
-        "Eq. 8–11, Section 2.2",
-        "The global error of the scheme of order η on [t₀, `t_end`] is O(`h^η`), so that the "
-        "scheme converges.",
         Verdict.PROVED,
         "the conclusion holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, "
         "q) together in place of Eq. 9's two; the printed Eq. 9 and 10 do not prove it",
@@ -110,9 +107,6 @@ def eq_10(fixed: bool = True) -> Argument:
     ]
     return concluded(
         "eq-10",
-        "Eq. 10",
-        "`e_{k+1}` ≤ (1 + hL) `e_k` + C `h^(n+1)` ≤ `e^(hL)` `e_n` + C `h^(n+1)`, n the order of "
-        "the truncated exponential (as printed).",
         Verdict.REFUTED,
         "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
         f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "

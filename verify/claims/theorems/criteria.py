@@ -50,8 +50,6 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Criterion 2 is sufficient for criterion 3."""
     return concluded(
         "criterion-2-implies-3",
-        "Section 3, after Criterion 4",
-        "Criterion 2 is a sufficient condition for criterion 3.",
         Verdict.PROVED,
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
         "infinitesimal” must be meant uniformly in k, else it fails",
@@ -80,8 +78,6 @@ def connection(
     examples = (friction, *alternating)
     return concluded(
         "criterion-4-connection",
-        "Section 3, after Criterion 4",
-        "There is no definite connection between criterion 4 and criteria 2 and 3.",
         Verdict.REFUTED,
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1; so does MSE = o(h²), "
         "by |Λ| ≤ exp(T √MSE/h) − 1; only for criterion 3 as stated, MSE = o(h), is there none",
@@ -108,8 +104,6 @@ def stronger(
     between = [0 < compensated.run(n).lam < Fraction(1, n) for n in compensated.steps]
     return concluded(
         "criterion-4-stronger",
-        "Section 3, after Criterion 4",
-        "Criterion 4 has stronger area-preserving performance compared to criteria 2 and 3.",
         Verdict.REFUTED,
         "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one of "
         "the "

@@ -52,10 +52,6 @@ def empty(hamiltonian: bool = True) -> Argument:
     ]
     return concluded(
         "criteria-of-consistent-schemes",
-        "Section 3, Criteria 2–4",
-        "Criteria 2, 3 and 4 tell which numerical algorithms are nearly area-preserving (read: "
-        "some "
-        "schemes for Eq. 1 fail them).",
         Verdict.REFUTED,
         "every consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every [0, T]: "
         "all "
@@ -125,9 +121,6 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
     ]
     return concluded(
         "total-error-increases",
-        "Section 3, before Eq. 16",
-        "The errors of every transformation accumulate; therefore, the total error of the mapping "
-        "will keep increasing.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
         f"1, 2, … steps is {shown}, exact but for the "

@@ -49,9 +49,6 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
             checks.append(_same(name, hamiltonian, order))
     return concluded(
         "lie-exponential",
-        "Eq. 2, 4 and 5",
-        "The discretization scheme is the series Σ hⁿ/n! Lⁿ, n = 0 … η: the Lie exponential "
-        "expansion of order η.",
         Verdict.PROVED,
         "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
         f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
@@ -112,8 +109,6 @@ def eq_3(coordinate: str = "p") -> Argument:
     ]
     return concluded(
         "eq-3",
-        "Eq. 3",
-        "`L_{H_p}`(`p_k`) = `H_p` ∂q/∂p = `H_p` (as printed).",
         Verdict.REFUTED,
         "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
         "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",

@@ -44,9 +44,6 @@ def eq_9(pair: tuple[Point, Point] = PAIR) -> Argument:
     ]
     return concluded(
         "eq-9",
-        "Eq. 9",
-        "|`p̃_{k+1}` − `p_{k+1}`| ≤ (1 + `hL_p`) |`p̃_k` − `p_k`| and the same for q, with "
-        "constants `L_p`, `L_q`.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, h = 0.1) two points with equal p and q = "
         f"{text(pair[0].q)}, {text(pair[1].q)} have |p̃ − p| = {text(left)} after one step, "
@@ -116,9 +113,6 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
     )
     return concluded(
         "two-norm",
-        "Section 4.1, after Eq. 20",
-        "Since Eq. 20 is a matrix, the 2-norm is adopted as the Lipschitz condition: `L_p` = "
-        "‖`J_k`‖₂ (in Eq. 9).",
         Verdict.REFUTED,
         f"a map with ‖J‖₂ > 1 + h‖J‖₂ has no Lipschitz constant 1 + h‖J‖₂, and the Duffing step is "
         f"one: at (p, q) = {point}, h = {text(h)}, (1 − h)² ‖J‖₂² ≥ {text(stretch * (1 - h) ** 2)}",

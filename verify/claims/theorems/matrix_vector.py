@@ -36,9 +36,6 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
     ]
     return concluded(
         "eq-12",
-        "Eq. 12",
-        "The scheme can be rewritten as `z_{k+1}` = `J_k` `z_k`, z = (p, q), `J_k` its Jacobian "
-        "matrix.",
         Verdict.REFUTED,
         f"for the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point}, J z = {product} "
         "but "
@@ -93,8 +90,6 @@ def near_identity(p_next: str = "-q", q_next: str = "p") -> Argument:
     ]
     return concluded(
         "near-identity",
-        "Section 3, Criterion 2",
-        "`ΔJ_k` → 0, when h → 0. Thus, the discretization Eq. 12 is a near-identity mapping.",
         Verdict.REFUTED,
         f"the inference fails: p' = `{p_next}`, q' = `{q_next}` has ΔJ ≡ 0 for all h and is not "
         "near the identity; the scheme is near-identity, but because Eq. 2 is z + O(h)",
