@@ -67,10 +67,11 @@ def _given(report: Report) -> Given:
 
 def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[ClaimView, ...]:
     scenes = {s.name: (anchor, s.title) for s, anchor in zip(report.scenes, own, strict=True)}
+    statements = {reading: each for each in report.statements for reading in each.readings}
     found = []
     for result in report.claims:
-        anchor = anchors.take("claim", result.id)
-        claim = ClaimView(result, anchor, *scenes.get(result.scene, ("", "")))
+        anchor, of = anchors.take("claim", result.id), statements.get(result.id)
+        claim = ClaimView(result, anchor, *scenes.get(result.scene, ("", "")), of=of)
         if claim.is_table:
             claim = replace(claim, plot=scheme_plots.table(claim, name=f"table-of-{anchor}"))
         found.append(claim)

@@ -1,8 +1,12 @@
 """What can be said of a claim, and of the paper's criteria: a verdict with its evidence."""
 
+from typing import Literal
+
 from verify.prose import Prose
 from verify.scenes.frozen import Said, WithProse
 from verify.verdict import Verdict
+
+Standing = Literal["fair", "strict", "misprint", "ours"]  # see `verify.scenes.results.statement`
 
 
 class CriterionResult(WithProse):
@@ -20,6 +24,8 @@ class ClaimResult(WithProse):
     `scene` is empty where the claim speaks of every H. `section` is where it stands in its paper,
     such as "4.1 The Duffing system"; a report groups its claims by it.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
+    `statement_id`: of which statement of its paper it is a reading, `reading` how it is read there
+    and `standing` how it stands to what is printed; empty where statements are not counted.
     `reproduction`: a few lines of code that show what is said of someone else's code.
     """
 
@@ -28,6 +34,9 @@ class ClaimResult(WithProse):
     source: str
     section: str = ""
     statement: Said
+    statement_id: str = ""
+    reading: Said = Prose("")
+    standing: Standing = "fair"
     scene: str
     verdict: Verdict
     evidence: Said
