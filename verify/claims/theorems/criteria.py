@@ -24,7 +24,7 @@ Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion
 `x_k`) − 1 = o(1), h → 0."""
 
 
-def _inequalities(example: ExampleMap) -> Check:
+def inequalities_of(example: ExampleMap) -> Check:
     """MSE ≤ m² and |log| bounds, in Fractions: |Λ| ≤ Π(1 + |x|) − 1, (Σ|x|)² ≤ N² MSE."""
     holds = all(map(inequalities_hold, (example.run(n) for n in example.steps)))
     return Check(
@@ -62,8 +62,8 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
         false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), q' = q + hp, where ΔJ = −h
         + h². ∎""",
         [
-            _inequalities(FRICTION),
-            _inequalities(not_uniform),
+            inequalities_of(FRICTION),
+            inequalities_of(not_uniform),
             not_uniform.check(),
             FRICTION.check(),
         ],
@@ -92,7 +92,7 @@ def connection(
         criterion 4 implies neither 2 nor 3: for p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1,
         det J is (1 − √h)/(1 + √h) and its reciprocal in turn, so Λ is 0 or −2√h/(1 + √h), which
         tends to 0, while max |`ΔJ_k`| > 2√h and MSE > 4h for even N. ∎""",
-        [example.check() for example in examples] + [_inequalities(e) for e in examples],
+        [example.check() for example in examples] + [inequalities_of(e) for e in examples],
     )
 
 
