@@ -63,15 +63,13 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         printed = self._delta_j(read["formula"])
         gap = gaps(step_map, [(self._what, printed, step_map.delta_j)])[0]
         if self.up_to is None:
-            holds = (
-                f"as printed, agrees with {self._against} exactly, for all p, q, h and parameters"
-            )
-            return self.from_gaps([gap], f"{self._what}, {holds}")
+            holds = f"agrees with {self._against} exactly, for all p, q, h and parameters"
+            return self.from_gaps([gap], f"{self._what}, as printed, {holds}")
         wrong = self.differs_below(self._what, gap.ring, gap.difference, self.up_to)
         difference = to_text(-grouped(gap.ring, gap.difference))
         evidence = prose(
-            f"{self._what} as printed differs from {self._against} by O(", Formula(f"h^{self.up_to}"),
-            "): the difference is ", Formula(difference),
+            f"{self._what} as printed differs from {self._against} by O(",
+            Formula(f"h^{self.up_to}"), "): the difference is ", Formula(difference),
         )  # fmt: skip
         return wrong or self.result(Verdict.PROVED, evidence)
 

@@ -156,7 +156,7 @@ def _stretch(h: Fraction, norm: float) -> Check:
     pairs = [(i, j) for i in range(len(corners)) for j in range(i)]
     worst = max(_squared(images[i], images[j]) / _squared(corners[i], corners[j]) for i, j in pairs)
     slopes = [zip(jacobian(step, z, h), (1, 0, 0, 1), strict=True) for z in corners]
-    squares = max(sum(((x - unit) / h) ** 2 for x, unit in each) for each in slopes)
+    squares = max(sum((((x - unit) / h) ** 2 for x, unit in each), Fraction(0)) for each in slopes)
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}, on |p|, |q| ≤ 1: ‖(J − 1)/h‖² ≤ L² with L = "
         f"{text(bound)}, and |Φ(z̄) − Φ(z)|²/|z̄ − z|² ≤ (1 + hL)² for the pairs of its corners",

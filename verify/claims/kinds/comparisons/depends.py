@@ -26,16 +26,19 @@ class DependsClaim(RunClaim):
 
     only_here = "on what values depend is seen on the grid of its own scene"
     kind: Literal["depends"]
-    compared: Annotated[tuple[Quantity, ...], Field(min_length=1)]
+    of: Annotated[tuple[Quantity, ...], Field(min_length=1)]
     on: Annotated[tuple[On, ...], Field(min_length=1)]
 
     def quantities(self) -> tuple[str, ...]:
-        return self.compared
+        return self.of
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)
-        groups = {"step_size": rows, "initial_value": list(zip(*rows, strict=True))}
-        found = [(name, on, _apart(name, groups[on])) for name in self.compared for on in self.on]
+        groups: dict[str, Sequence[Sequence[RunResult]]] = {
+            "step_size": rows,
+            "initial_value": list(zip(*rows, strict=True)),
+        }
+        found = [(name, on, _apart(name, groups[on])) for name in self.of for on in self.on]
         verdicts = [told for _, _, (told, _) in found]
         said = (
             prose(f"{QUANTITIES[name].label} over the {_NAMES[on]}: ", values)

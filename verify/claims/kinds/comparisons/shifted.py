@@ -80,8 +80,8 @@ class ShiftedClaim(RunClaim):
             said = ", ".join(f"{k} {v}" for k, v in table.items() if isinstance(v, str | int))
             details.append([said, *("holds" if x.holds else x.lower() for x in (before, after))])
         evidence = prose(
-            f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other count Λ "
-            "changes by ", number(shown(changes["lambda"], 2)), " of itself at most, MSE by ",
+            f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other count "
+            "Λ changes by ", number(shown(changes["lambda"], 2)), " of itself at most, MSE by ",
             number(shown(changes["mse"], 2)), f" of itself, in {len(tasks)} runs",
         )  # fmt: skip
         return self.result(all_hold(verdicts), evidence, details)

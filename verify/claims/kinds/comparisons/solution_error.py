@@ -87,7 +87,7 @@ class SolutionErrorClaim(RunClaim):
         allowed = f"{'within' if self.within else 'beyond'} "
         evidence = prose(
             f"{holds.count(True)} of {len(holds)} errors at the end lie {allowed}",
-            Number(text(self.within or self.beyond or 0)), " of the orbit’s reach: from ",
+            Number(text(self.within or self.beyond or Fraction(0))), " of the orbit’s reach: from ",
             Number(_shown(least)), " (", _place(least), ") to ", Number(_shown(most)), " (",
             _place(most), ")",
         )  # fmt: skip

@@ -49,8 +49,8 @@ class TableUntilClaim(TableClaim):
             details.append([start_of(row[0]), *(shown(x, 5) for x in most)])
         refuted, total = beyond.count(True), len(beyond)
         evidence = prose(
-            f"{refuted} of {total} printed values are greater than lg (max ΔJ²) of the longest run, "
-            "T = ", Number(text(grid.time) if grid and grid.time else "0"),
+            f"{refuted} of {total} printed values are greater than lg (max ΔJ²) of the longest "
+            "run, T = ", Number(text(grid.time) if grid and grid.time else "0"),
             ", so for every shorter one too; that is at most ",
             number(shown(max(largest, key=middle), 5)),
         )  # fmt: skip
