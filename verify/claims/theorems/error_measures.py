@@ -83,7 +83,7 @@ def mean_square(true: int = 1, steps: int = 3) -> Argument:
             ),
             Check(
                 f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: the mean "
-                f"of (det J − {true})², det J from the four entries, and the MSE from the closed form",
+                f"of (det J − {true})², det J from its entries, and the MSE by the closed form",
                 mean == mse,
                 f"`{decimal(mean, 4)}` and `{decimal(mse, 4)}`",
             ),
