@@ -218,8 +218,16 @@ def _tile_of_proof(proof: ProofResult) -> Tile:
 
 
 def _refutation(claims: Sequence[ClaimView]) -> Refutation | None:
-    """A refuted table if there is one, since it sets numbers against numbers; else the first."""
-    refuted = [c for c in claims if c.result.verdict is Verdict.REFUTED]
+    """A refuted table if there is one, since it sets numbers against numbers; else the first.
+
+    Of a statement that holds in some reading none is told.
+    """
+    refuted = [
+        c
+        for c in claims
+        if c.result.verdict is Verdict.REFUTED
+        and (c.of.outcome is Outcome.REFUTED if c.of else c.result.standing != "ours")
+    ]
     if not refuted:
         return None
     tables = [c for c in refuted if c.is_table]

@@ -170,8 +170,12 @@ def _rippled(formula: str, m: int) -> list[Check]:
 
 
 def _run_of(step: StepMap, steps: int) -> bool:
+    """Exactly; a run whose numbers are not rational is none with ΔJ = h."""
     h = Fraction(1, steps)
-    found = areas(step, Point(Fraction(0), Fraction(0)), h, steps)
+    try:
+        found = areas(step, Point(Fraction(0), Fraction(0)), h, steps)
+    except ValueError:
+        return False
     return set(found.delta_j) == {h} and found.lam == (1 + h) ** steps - 1 >= 1
 
 

@@ -5,6 +5,7 @@ from fractions import Fraction
 from itertools import product
 
 import flint
+import sympy
 
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
@@ -15,11 +16,13 @@ from verify.claims.theorems.exact_maps import Point, next_point
 from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
+from verify.schemes.step_map import P, Q
 from verify.verdict import Verdict
 
 SIGNED = tuple(Fraction(n, 3) for n in (-5, -1, 0, 2, 7))
 _RATES = (Fraction(1, 2), Fraction(1), Fraction(3))  # L
 _ORDER = 2
+_TIME = sympy.Symbol("t")
 
 
 def local_error(shift: int = 0) -> Argument:
@@ -63,14 +66,23 @@ def eq_7(formula: str = "p**2/2 + q", steps: Sequence[int] = (1, 2)) -> Argument
 
 def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
     """Eq. 7 and the global error in q, on p = −t, q = −t²/2, which solves H = p²/2 + q alone."""
-    step, h = lie_map(Hamiltonian.parse(formula), 1), Fraction(1, 10)
+    hamiltonian = Hamiltonian.parse(formula)
+    step, h = lie_map(hamiltonian, 1), Fraction(1, 10)
     found, point = [], Point(Fraction(0), Fraction(0))
     for n in range(max(steps)):
         exact = [Point(-t, -t * t / 2) for t in (n * h, (n + 1) * h)]
         from_exact, point = next_point(step, exact[0], h), next_point(step, point, h)
         found.append((abs(from_exact.q - point.q), abs(exact[1].q - point.q)))
     (by_eq_7, globally), *_ = found
+    on_it = {P: -_TIME, Q: -(_TIME**2) / 2}
+    rates = [sympy.diff(hamiltonian.expression, z).subs(on_it) for z in (Q, P)]
     return [
+        Check(
+            f"H = `{formula}`: p = −t, q = −t²/2 solves Eq. 1",
+            [sympy.diff(on_it[P], _TIME) + rates[0], sympy.diff(on_it[Q], _TIME) - rates[1]]
+            == [0, 0],
+            f"`H_q` = `{rates[0]}`, `H_p` = `{rates[1]}` there",
+        ),
         Check(
             f"H = `{formula}`, lie1, h = {text(h)}, from (0, 0): after one step |q̃ − q| by Eq. 7 "
             "is 0, the global error |q̄ − q| is h²/2",
@@ -179,12 +191,12 @@ def eq_11(factor: Callable[[Fraction, int], Fraction] | None = None) -> Argument
         "inequalities hold, with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)` (the term m = 1 of the sum "
         "counts the first step twice, which only weakens it)",
         """Let `e_{k+1}` ≤ (1 + hL) `e_k` + |`C_{k+1}`| `h^(n+1)`. Iterated from `e_1` this is
-        `e_{k+1}` ≤ (1 + hL)^k `e_1` + Σ (1 + hL)^(k+1−m) |`C_m`| `h^(n+1)`, m = 2 … k + 1; the term
-        m = 1 that Eq. 11 has besides is not negative. As `e_1` ≤ |`C_1`| `h^(n+1)` and (1 + hL)^j ≤
-        `e^(LT)` for jh ≤ T, the right side is at most max |`C_m`| `h^(n+1)` (`e^(LT)` + ((1 +
-        hL)^(k+1) − 1)/(hL)) ≤ C̃ max |`C_m`| `h^n` with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)`, which
-        depends on the length of the interval and on L alone, as the paper says (and, for h ≤ h₀,
-        not on h). The recursion itself is the first inequality of Eq. 10, which needs both
+        `e_{k+1}` ≤ `(1 + hL)^k` `e_1` + Σ `(1 + hL)^(k+1−m)` |`C_m`| `h^(n+1)`, m = 2 … k + 1; the
+        term m = 1 that Eq. 11 has besides is not negative. As `e_1` ≤ |`C_1`| `h^(n+1)` and `(1 +
+        hL)^j` ≤ `e^(LT)` for jh ≤ T, the right side is at most max |`C_m`| `h^(n+1)` (`e^(LT)` +
+        (`(1 + hL)^(k+1)` − 1)/(hL)) ≤ C̃ max |`C_m`| `h^n` with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)`,
+        which depends on the length of the interval and on L alone, as the paper says (and, for h ≤
+        h₀, not on h). The recursion itself is the first inequality of Eq. 10, which needs both
         components together. ∎""",
         checks,
     )

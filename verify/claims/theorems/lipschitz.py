@@ -219,7 +219,7 @@ def inference() -> Argument:
         "`e^(L_p T)` of Eq. 11 useless; with both components together the same steps prove it",
         """Eq. 11 is summed from Eq. 10, and that from Eq. 9. Eq. 9 with one component on its right
         side asks for an `L_p` ≥ (1 − O(h))/h along the run of lie2 for H = (p² + q²)/2 from (q, p)
-        = (1, 0), see the claim on Eq. 9. With such an `L_p` the factor (1 + `hL_p`)^k of Eq. 11 is
+        = (1, 0), see the claim on Eq. 9. With such an `L_p` the factor `(1 + hL_p)^k` of Eq. 11 is
         about 2^k, and C̃ does not stay bounded as h → 0; so nothing follows of the error as h → 0.
         The conclusion is true, by the same steps for both components in one norm. ∎""",
         checks,

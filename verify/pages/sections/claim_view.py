@@ -32,7 +32,8 @@ _PRINTED = "printed"  # how the printed row of a table claim's details begins
 class ClaimView:
     """A claim with its place on the page; `plot`: its table's picture, where it is a table.
 
-    `of`: the statement that it is a reading of, where statements are counted.
+    `of`: the statement that it is a reading of, where statements are counted; `again`: whether
+    another reading of it stands before this one.
     """
 
     result: ClaimResult
@@ -41,11 +42,7 @@ class ClaimView:
     scene_title: str
     plot: Plot | None = None
     of: StatementResult | None = None
-
-    @property
-    def again(self) -> bool:
-        """Whether it is another reading of a statement that stands before it."""
-        return self.of is not None and self.of.readings[0] != self.result.id
+    again: bool = False
 
     @property
     def outcome(self) -> str:

@@ -4,6 +4,7 @@ Shown by two runs that differ in nothing else and whose values are apart by more
 """
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import combinations
 from typing import Annotated, Literal
 
@@ -55,8 +56,15 @@ def _apart(name: str, groups: Sequence[Sequence[RunResult]]) -> tuple[bool | Non
         if sign(second - first, zero=None) is not None:
             values = (number(shown(first, 3)), " and ", number(shown(second, 3)))
             return True, prose(*values)
-        same = same and bool((second - first).is_zero())
+        same = same and _equal(one, two, quantity.needs)
     return (False, prose("all the same")) if same else (None, prose("not told apart"))
+
+
+def _equal(one: RunResult, two: RunResult, names: Sequence[str]) -> bool:
+    """Whether the values are known to be the same: exact ones, by equal decimals."""
+    both = [(one.values[name], two.values[name]) for name in names]
+    exact = all(Fraction(each.bound) == 0 for pair in both for each in pair)
+    return exact and all(Fraction(a.value) == Fraction(b.value) for a, b in both)
 
 
 def _pairs(groups: Sequence[Sequence[RunResult]]) -> Iterator[tuple[RunResult, RunResult]]:

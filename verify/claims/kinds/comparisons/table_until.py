@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Literal
 
-from verify.arithmetic.arb import Ball, lg, rational_ball, shown
+from verify.arithmetic.arb import Ball, in_reach, lg, rational_ball, shown
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.kinds.table import TableClaim
@@ -48,13 +48,17 @@ class TableUntilClaim(TableClaim):
             largest += most
             details.append([start_of(row[0]), *(shown(x, 5) for x in most)])
         refuted, total = beyond.count(True), len(beyond)
+        if not refuted:
+            evidence = f"none of {total} printed values is known to be greater than lg (max ΔJ²)"
+            return self.result(Verdict.UNDECIDED, evidence, details)
+        known = [x for x in largest if in_reach(x)]
         evidence = prose(
             f"{refuted} of {total} printed values are greater than lg (max ΔJ²) of the longest "
-            "run, T = ", Number(text(grid.time) if grid and grid.time else "0"),
+            "run", *((", T = ", Number(text(grid.time))) if grid and grid.time else ()),
             ", so for every shorter one too; that is at most ",
-            number(shown(max(largest, key=middle), 5)),
+            number(shown(max(known, key=middle), 5)),
         )  # fmt: skip
-        return self.result(Verdict.REFUTED if refuted else Verdict.UNDECIDED, evidence, details)
+        return self.result(Verdict.REFUTED, evidence, details)
 
 
 CLAIM = TableUntilClaim
