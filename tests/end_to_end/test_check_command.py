@@ -114,11 +114,14 @@ def test_json_is_one_object_with_the_claims(
 ) -> None:
     status, out, err = here(capsys, "check", claims(WRONG), "--json")
     assert (status, err) == (1, "")
-    found = json_of(out)["claims"]
+    told = json_of(out)
+    found = told["claims"]
+    assert set(told) == {"claims", "statements"}
+    assert told["statements"] == []
     assert [c["id"] for c in found] == ["map", "first-term", "order", "convergence", "area"]
     assert [c["verdict"] for c in found] == ["PROVED", "PROVED", "REFUTED", "PROVED", "PROVED"]
     keys = {"id", "kind", "source", "statement", "verdict", "evidence", "domain"}
-    assert all(set(c) == keys for c in found)
+    assert all(set(c) == keys | {"statement_id", "reading", "standing"} for c in found)
     assert (found[0]["source"], found[0]["statement"]) == ("Eq. 19", "The scheme is this map.")
     assert all(c["evidence"] for c in found)
 

@@ -16,6 +16,7 @@ from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.statement import StatementResult, statements_of
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,12 @@ class Check:
         for claim in compress(self.claims, map(not_, exact)):
             found[claim.id] = self._judge(claim, {**self.known, **results}, store, where)
         return [found[claim.id] for claim in self.claims]
+
+    def statements(self, found: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
+        """The statements all of whose readings are among the claims that are checked."""
+        chosen = {claim.id for claim in self.claims}
+        missing = {claim.reading_of for claim in self.file.claims if claim.id not in chosen}
+        return tuple(each for each in statements_of(found) if each.id not in missing)
 
     def _judge(
         self, claim: Claim, results: Mapping[str, Frozen], store: Store, where: Placement

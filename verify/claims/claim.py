@@ -19,7 +19,7 @@ from verify.execution.task import Task
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import prose, read_prose
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.claim import ClaimResult, Standing
 from verify.scenes.scene import Scene
 from verify.scenes.values import SchemeName
 from verify.verdict import Verdict
@@ -31,7 +31,8 @@ class Claim(Frozen):
     `exact`: decided by algebra alone, so that it costs no run. `on_scene`: it speaks of a scheme
     and a scene. `run_keys`: the keys that say of which runs it speaks, and `one_run` whether it
     speaks of one only. `only_here`: why other scenes cannot be asked the same; empty where they
-    can. Formulas in `statement` stand between backticks.
+    can. Formulas in `statement` and `reading` stand between backticks. `reading_of`, `reading` and
+    `standing`: of which statement it is a reading, see `verify.claims.readings`.
     """
 
     exact: ClassVar[bool] = True
@@ -45,6 +46,9 @@ class Claim(Frozen):
     source: str = ""
     section: str = ""
     statement: str = ""
+    reading_of: str = ""
+    reading: str = ""
+    standing: Standing = "fair"
     scene: str = ""
     scheme: SchemeName
 
@@ -99,6 +103,9 @@ class Claim(Frozen):
             source=self.source,
             section=self.section,
             statement=read_prose(self.statement),
+            statement_id=self.reading_of,
+            reading=read_prose(self.reading),
+            standing=self.standing,
             scene=self.scene,
             verdict=verdict,
             evidence=prose(evidence),

@@ -14,6 +14,9 @@
     kind = "order"
     order = 3
 
+`title` names the whole; `about` lines say what it is, before all else, and `[[left_out]]` tables
+name with `what` and `why` what of the paper is not claimed. See `verify.claims.readings` for claims
+that are readings of one statement.
 See `verify.claims.kinds` for the kinds, `verify.claims.scenes` for what a claim may speak of, and
 `verify.scenes.paper_figures` for `[[figure]]`. A scene that a claim names is a `[[scene]]` of this
 file, or the file of that name beside it.
@@ -32,6 +35,7 @@ from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
 from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
+from verify.claims.readings import settled
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
 from verify.claims.toml_lines import Lines, lines_of
 from verify.errors import InputError, LimitError, unknown
@@ -39,7 +43,7 @@ from verify.files import read_text
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_from
 
-_ROOT = ("title", "defaults", "scene", "claim", "figure")
+_ROOT = ("title", "about", "defaults", "scene", "claim", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
 _GROUPS = (
     HAMILTONIAN_KEYS,
@@ -53,10 +57,15 @@ _ALSO = {"parameter": ("parameters",), "step_size": ("step_sizes",), "number": (
 
 @dataclass
 class ClaimsFile:
-    """The claims in their order, with the scenes they speak of by the names they have for them."""
+    """The claims in their order, with the scenes they speak of by the names they have for them.
+
+    `about`: what a report says before all else; `left_out`: what is not claimed of it, and why.
+    """
 
     name: str
     title: str
+    about: tuple[str, ...] = ()
+    left_out: tuple[tuple[str, str], ...] = ()
     claims: list[Claim] = field(default_factory=list)
     scenes: dict[str, Scene] = field(default_factory=dict)
     figures: list[PaperFigure] = field(default_factory=list)
@@ -93,6 +102,8 @@ def load_claims(path: Path) -> ClaimsFile:
             f"{path.name}:{at}: {key}", data[key], "unknown; allowed: " + ", ".join(_ROOT)
         )
     found.title = str(data.get("title", path.stem))
+    found.about = _texts(found, "about", data.get("about", []))
+    found.left_out = _left_out(found, data.get("left_out", []))
     defaults = _defaults(found, data.get("defaults", {}))
     scenes = _Scenes(path, data.get("scene", []), found.lines)
     for index, table in enumerate(tables):
@@ -106,8 +117,39 @@ def load_claims(path: Path) -> ClaimsFile:
             if not isinstance(told, LimitError):
                 raise told from None
             _append(found, outside({**defaults, **table}, str(told)))
+    _settle_readings(found)
     _add_figures(found, data.get("figure", []), scenes)
     return found
+
+
+def _texts(file: ClaimsFile, key: str, given: Any) -> tuple[str, ...]:
+    """A list of texts under a key of the file itself."""
+    if not isinstance(given, list) or not all(isinstance(text, str) for text in given):
+        at = file.lines.of("", 0, key)
+        raise InputError(f"{file.name}:{at}: {key}", given, "is not a list of texts")
+    return tuple(given)
+
+
+def _left_out(file: ClaimsFile, tables: Any) -> tuple[tuple[str, str], ...]:
+    """What is not claimed, each with the reason."""
+    if not isinstance(tables, list):
+        raise InputError(f"{file.name}: left_out", tables, "write [[left_out]] tables")
+    for index, table in enumerate(tables):
+        if not isinstance(table, dict) or set(table) != {"what", "why"}:
+            at = file.lines.of("left_out", index)
+            raise InputError(f"{file.name}:{at}: left_out", table, "has `what` and `why`, both")
+    return tuple((str(table["what"]), str(table["why"])) for table in tables)
+
+
+def _settle_readings(file: ClaimsFile) -> None:
+    """Each reading with the texts of its statement; in a second pass, for it may stand later."""
+    found = []
+    for index, claim in enumerate(file.claims):
+        try:
+            found.append(settled(file.claims, index))
+        except InputError as error:
+            raise file.located(index, claim.id, error) from None
+    file.claims = found
 
 
 def _add_figures(file: ClaimsFile, tables: Any, scenes: "_Scenes") -> None:

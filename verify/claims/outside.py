@@ -11,7 +11,8 @@ from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
-_KEPT = ("id", "kind", "source", "section", "statement", "scheme")
+_OF_READINGS = ("reading_of", "reading", "standing")
+_KEPT = ("id", "kind", "source", "section", "statement", "scheme", *_OF_READINGS)
 
 
 class OutsideClaim(Claim):

@@ -16,6 +16,7 @@ from verify.hamiltonians import systems
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.report import Provenance, Report, SceneResult
+from verify.scenes.results.statement import statements_of
 from verify.scenes.scene import Scene
 from verify.studies.plan import found_of, plan_scenes
 
@@ -29,6 +30,8 @@ def make_report(
     command: str,
     claim_scenes: Mapping[str, Scene] | None = None,
     figures: Sequence[PaperFigure] = (),
+    preface: Sequence[str] = (),
+    not_claimed: Sequence[tuple[str, str]] = (),
     plan: Plan | None = None,
     where: Placement = ANYWHERE,
     done: OnResult | None = None,
@@ -36,7 +39,8 @@ def make_report(
     """Compute what the scenes and claims need, and judge.
 
     A claim speaks of one of the scenes, or of `claim_scenes`, which the report does not show.
-    `figures` are passed on to what makes a page.
+    `figures` and `preface` are passed on to what makes a page; `not_claimed`, what of the paper no
+    claim is of, stands with what was left out.
     """
     begun = time.perf_counter()
     plan = plan_scenes(list(scenes)) if plan is None else plan
@@ -48,12 +52,15 @@ def make_report(
     kept = store.taken - before
     computed = len(plan.tasks) - kept
     findings = Findings(own, results)
+    judged = all_judged(claims, spoken_of, {**known, **results}, store, where)
     return Report(
         title=title,
-        claims=all_judged(claims, spoken_of, {**known, **results}, store, where),
+        claims=judged,
+        statements=statements_of(judged),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
         figures=tuple(figures),
-        left_out=tuple(plan.left_out),
+        preface=tuple(preface),
+        left_out=(*not_claimed, *plan.left_out),
         provenance=_provenance(command, begun, kept, computed, where),
     )
 

@@ -1,6 +1,7 @@
 """The command `verify check`: the claims of a paper, one verdict each."""
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,8 +14,11 @@ from verify.commands.shared.tasks import kept_tasks, with_tasks
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.results.claim import ClaimResult
+    from verify.scenes.results.statement import StatementResult
 
 _KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "domain")
+_OF_READINGS = ("statement_id", "reading", "standing")
+_OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
 
 
 @click.command()
@@ -63,18 +67,31 @@ def check(claims: str, only: tuple[str, ...], keep: Path | None, where: "Placeme
     prepared = prepare(load_claims(path), only)
     with kept_tasks(prepared.plan.tasks, keep) as (store, done):
         found = prepared.run(store, where=where, done=done)
+    statements = prepared.statements(found)
     return Answer(
-        lambda: {"claims": [picked(claim, *_KEYS) for claim in found]},
-        lambda: _print(found),
+        lambda: {
+            "claims": [picked(claim, *_KEYS, *_OF_READINGS) for claim in found],
+            "statements": [picked(each, *_OF_STATEMENTS) for each in statements],
+        },
+        lambda: _print(found, statements),
         failed=any(claim.verdict == "REFUTED" for claim in found),
     )
 
 
-def _print(found: "list[ClaimResult]") -> None:
+def _print(found: "list[ClaimResult]", statements: "Sequence[StatementResult]") -> None:
+    from verify.scenes.results.statement import counted
+
     width = max(len(claim.id) for claim in found)
     for claim in found:
         source = f"{claim.source}: " if claim.source else ""
         click.echo(f"{claim.verdict:9}  {claim.id:{width}}  {source}{claim.evidence}")
-    counted = Counter(str(claim.verdict) for claim in found)
+    verdicts = Counter(str(claim.verdict) for claim in found)
     of = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
-    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in counted.most_common()))
+    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in verdicts.most_common()))
+    if statements:
+        click.echo(counted(statements, [c for c in found if _counts(c, statements)]))
+
+
+def _counts(claim: "ClaimResult", statements: "Sequence[StatementResult]") -> bool:
+    """Whether it is a claim of ours, or a reading of one of these statements."""
+    return not claim.statement_id or claim.statement_id in {each.id for each in statements}

@@ -83,6 +83,8 @@ def _scene(
             command=f"verify report {scene} -o {folder.name}{asked}",
             claim_scenes=claim_scenes,
             figures=file.figures if file else (),
+            preface=file.about if file else (),
+            not_claimed=file.left_out if file else (),
             plan=planned,
             where=where,
             done=done,

@@ -19,6 +19,7 @@ from verify.pages.text.words import counts_of
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.stability import KINDS, Kind, StabilityResult
+from verify.scenes.results.statement import Outcome, counted
 from verify.verdict import Verdict
 
 # A judged run's sign, and the verdict whose colour it has.
@@ -32,6 +33,20 @@ _RUN_SIGNS: dict[Kind, tuple[str, Verdict]] = {
     "underflow": ("↓", Verdict.REFUTED),
     "undecided": ("?", Verdict.UNDECIDED),
 }
+# A statement's outcome: the verdict whose colour it has, its sign, its word, what it means.
+_OUTCOMES = {
+    Outcome.HOLDS: (Verdict.PROVED, "✓", "hold", "every reading of the statement holds"),
+    Outcome.IN_SOME: (
+        Verdict.MEASURED, "≈", "hold in some readings",
+        "one reading holds; another is refuted, or not decided",
+    ),
+    Outcome.REFUTED: (
+        Verdict.REFUTED, "✗", "refuted", "every reading is refuted, also the most favourable one",
+    ),
+    Outcome.UNDECIDED: (
+        Verdict.UNDECIDED, "?", "undecided", "no reading is shown to hold, and not all are refuted",
+    ),
+}  # fmt: skip
 _FEW = 4  # proofs that are told one by one
 
 
@@ -78,6 +93,10 @@ def _of_a_section(report: Report) -> tuple[str, Sequence[Tile]]:
 
 def finding(report: Report, refutation: Refutation | None = None) -> str:
     """What the claims say, or else the proofs and the judged runs; "" where there are none."""
+    if report.statements:
+        said = counted(report.statements, report.claims)
+        of_numbers = _worst(refutation).removeprefix("; ")
+        return f"{said}." + (f" {of_numbers[:1].upper()}{of_numbers[1:]}." if of_numbers else "")
     if report.claims:
         return f"{_finding_of_claims([c.verdict for c in report.claims])}{_worst(refutation)}."
     proofs, judged = _proofs(report), _stability_tiles(report)
@@ -153,6 +172,13 @@ def _h(power: int) -> str:
 
 
 def _tiles(report: Report) -> list[Tile]:
+    if report.statements:
+        found = Counter(statement.outcome for statement in report.statements)
+        return [
+            Tile(v, sign, whole(found[o]), word, meaning, found[o])
+            for o, (v, sign, word, meaning) in _OUTCOMES.items()
+            if found[o]
+        ]
     if report.claims:
         verdicts = Counter(c.verdict for c in report.claims)
         return [
@@ -192,8 +218,16 @@ def _tile_of_proof(proof: ProofResult) -> Tile:
 
 
 def _refutation(claims: Sequence[ClaimView]) -> Refutation | None:
-    """A refuted table if there is one, since it sets numbers against numbers; else the first."""
-    refuted = [c for c in claims if c.result.verdict is Verdict.REFUTED]
+    """A refuted table if there is one, since it sets numbers against numbers; else the first.
+
+    Of a statement that holds in some reading none is told.
+    """
+    refuted = [
+        c
+        for c in claims
+        if c.result.verdict is Verdict.REFUTED
+        and (c.of.outcome is Outcome.REFUTED if c.of else c.result.standing != "ours")
+    ]
     if not refuted:
         return None
     tables = [c for c in refuted if c.is_table]

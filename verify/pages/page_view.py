@@ -17,6 +17,7 @@ from verify.pages.sections.given import Given, SceneView
 from verify.pages.sections.section import Place, Shown, shown, terms, walk
 from verify.pages.text import mathml, words
 from verify.pages.text.typography import listed, whole
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report, SceneResult
 
 
@@ -67,14 +68,27 @@ def _given(report: Report) -> Given:
 
 def _claims(report: Report, own: Sequence[str], anchors: Anchors) -> tuple[ClaimView, ...]:
     scenes = {s.name: (anchor, s.title) for s, anchor in zip(report.scenes, own, strict=True)}
-    found = []
-    for result in report.claims:
-        anchor = anchors.take("claim", result.id)
-        claim = ClaimView(result, anchor, *scenes.get(result.scene, ("", "")))
+    statements = {reading: each for each in report.statements for reading in each.readings}
+    found: list[ClaimView] = []
+    for result in _most_favourable_first(report.claims):
+        anchor, of = anchors.take("claim", result.id), statements.get(result.id)
+        again = of is not None and bool(found) and found[-1].of is of
+        scene = scenes.get(result.scene, ("", ""))
+        claim = ClaimView(result, anchor, *scene, of=of, again=again)
         if claim.is_table:
             claim = replace(claim, plot=scheme_plots.table(claim, name=f"table-of-{anchor}"))
         found.append(claim)
     return tuple(found)
+
+
+def _most_favourable_first(claims: Sequence[ClaimResult]) -> list[ClaimResult]:
+    """The readings of a statement where its first one stands, those that hold before the others."""
+    first: dict[str, int] = {}
+    ranks = []
+    for place, claim in enumerate(claims):
+        at = first.setdefault(claim.statement_id, place) if claim.statement_id else place
+        ranks.append((at, not claim.verdict.holds, claim.standing != "fair", place))
+    return [claims[rank[-1]] for rank in sorted(ranks)]
 
 
 def _scene(scene: SceneResult, anchor: str) -> SceneView:

@@ -84,5 +84,5 @@ def test_a_planted_kind_is_found_and_judged(planted: Path, name: str, verdict: V
 
 
 def test_without_its_file_the_kind_is_unknown(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="kind=named: unknown; allowed: area_preserving, "):
+    with pytest.raises(InputError, match="kind=named: unknown; allowed: alike, area_preserving, "):
         load_claims(claims_file(tmp_path, "c"))

@@ -20,6 +20,7 @@ from tests.paths import ROOT
 from verify.claims.claim import Claim
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
+from verify.claims.plan import add_claims
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
@@ -29,7 +30,8 @@ from verify.studies.plan import plan_scenes
 from verify.verdict import Verdict
 
 PAPER = ROOT / "reports" / "paper"
-CLAIMS: dict[str, Any] = {claim.id: claim for claim in load_claims(PAPER / "claims.toml").claims}
+FILE = load_claims(PAPER / "claims.toml")
+CLAIMS: dict[str, Any] = {claim.id: claim for claim in FILE.claims}
 EQUATIONS = {
     id_: claim for id_, claim in CLAIMS.items() if id_.startswith("eq-") and claim.kind != "theorem"
 }
@@ -253,14 +255,16 @@ def test_a_claim_that_is_no_formula_is_an_input_error(formula: str, proved: Find
 
 @pytest.fixture(scope="module")
 def short() -> tuple[Findings, dict[str, ClaimResult]]:
-    """The paper's scenes over [0, 2], and all claims checked on them."""
+    """The paper's scenes and those of its claims over [0, 2], and all claims checked on them."""
     scenes = {}
-    for name, scene in SCENES.items():
-        assert scene.grid is not None
-        grid = scene.grid.model_copy(update={"time": Fraction(2), "separate": False})
-        scenes[name] = proofs_alone(scene).model_copy(update={"grid": grid})
-    results = execute(plan_scenes(list(scenes.values())), Store(None), where=THIS_PROCESS)
-    findings = Findings(scenes, results)
+    for name, scene in FILE.scenes.items():
+        scenes[name] = proofs_alone(scene)
+        if scene.grid is not None:
+            grid = scene.grid.model_copy(update={"time": Fraction(2), "separate": False})
+            scenes[name] = scenes[name].model_copy(update={"grid": grid})
+    plan = plan_scenes([scenes[name] for name in SCENES])
+    known = add_claims(plan, FILE.claims, scenes)
+    findings = Findings(scenes, {**known, **execute(plan, Store(None), where=THIS_PROCESS)})
     return findings, {r.id: r for r in [claim.judge(findings) for claim in list(CLAIMS.values())]}
 
 
@@ -272,6 +276,8 @@ def test_every_claim_of_the_paper_gets_a_verdict_with_evidence(short: Any) -> No
         assert found[id_].evidence
         assert "\n" not in found[id_].evidence
     assert all(found[id_].verdict is Verdict.PROVED for id_ in EQUATIONS)
+    assert ["det J" in found[f"eq-{n}"].evidence for n in (23, 31)] == [True, True]
+    assert not any("det J − 1" in found[f"eq-{n}"].evidence for n in (23, 31))
     assert found["duffing-criteria"].verdict is Verdict.PROVED
     assert {found[id_].verdict for id_ in ("table-1", "table-2")} == {Verdict.REFUTED}
 

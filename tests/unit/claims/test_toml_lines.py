@@ -101,7 +101,7 @@ TABLE = 'kind = "table"\nstep_sizes = [0.1, 0.2]\nsteps = 9\nq = 1\np = 0\n'
 
 # name -> (the second claim's keys, the line that is named, what else the message holds)
 BAD: dict[str, tuple[str, int, str]] = {
-    "no-kind": ("order = 3\n", 12, "kind=: unknown; allowed: area_preserving, bounded"),
+    "no-kind": ("order = 3\n", 12, "kind=: unknown; allowed: alike, area_preserving"),
     "unknown-kind": ('source = "x"\nkind = "feeling"\n', 15, "kind=feeling"),
     "unknown-key": ('kind = "order"\norder = 3\nspeed = 1\n', 16, "speed=1: unknown key"),
     "missing-key": ('kind = "order"\n', 12, "order=: is missing"),

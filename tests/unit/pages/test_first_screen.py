@@ -10,6 +10,7 @@ from verify.pages.page import render
 from verify.pages.page_view import page_view
 from verify.pages.sections.claim_view import Anchors, groups
 from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.statement import statements_of
 from verify.verdict import Verdict
 
 # -- claims by section ----------------------------------------------------------------------------
@@ -65,6 +66,60 @@ def test_the_finding_counts_the_verdicts(verdicts: str, sentence: str) -> None:
     letters = {v[0]: v for v in Verdict}
     claims = tuple(claim(id=str(i), verdict=letters[v]) for i, v in enumerate(verdicts))
     assert sentence in render(report((), claims=claims))
+
+
+# -- statements and readings -----------------------------------------------------------------------
+
+P, R = Verdict.PROVED, Verdict.REFUTED
+
+
+def read(*readings: tuple[str, str, Verdict], **more: Any) -> Any:
+    """A report of readings: each its id, its statement and its verdict; "" for a claim of ours."""
+    claims = tuple(
+        claim(
+            id=id_, source=f"Eq. {of}", statement=f"It is {of}.", statement_id=of, verdict=verdict,
+            reading=f"as {id_}", standing="fair" if of else "ours",
+        )
+        for id_, of, verdict in readings
+    )  # fmt: skip
+    return report(claims=claims, statements=statements_of(claims), **more)
+
+
+def test_statements_are_counted_and_not_their_readings() -> None:
+    made = read(("a", "A", R), ("b", "A", P), ("c", "C", R), ("d", "D", P), ("e", "", R))
+    page = render(made)
+    assert (
+        "3 statements of the paper, in 4 readings: 1 holds in every reading, 1 holds in some "
+        "readings, 1 is refuted in every reading; 1 more claim is ours." in page
+    )
+    tiles = [(t.figure, t.word, t.verdict) for t in page_view(made).first.tiles]
+    assert tiles == [
+        ("1", "hold", P), ("1", "hold in some readings", Verdict.MEASURED), ("1", "refuted", R),
+    ]  # fmt: skip
+
+
+def test_the_reading_that_holds_stands_before_the_others_of_its_statement() -> None:
+    made = read(("a", "A", R), ("x", "X", P), ("b", "A", P), ("c", "A", Verdict.UNDECIDED))
+    found = page_view(made).claims
+    assert [c.result.id for c in found] == ["b", "a", "c", "x"]
+    assert [c.again for c in found] == [False, True, True, False]
+    assert [c.outcome for c in found] == ["3 readings: holds in some", "", "", ""]
+    page = render(made)
+    assert page.count("It is A.") == 1
+    assert all(f"as {id_}" in page for id_ in "abcx")
+
+
+def test_no_refutation_is_told_of_a_statement_that_holds_in_some_reading() -> None:
+    some = page_view(read(("a", "A", R), ("b", "A", P), ("e", "", R)))
+    assert some.first.refutation is None
+    every = page_view(read(("a", "A", R), ("b", "A", P), ("c", "C", R)))
+    assert every.first.refutation is not None
+    assert every.first.refutation.claim.result.id == "c"
+
+
+def test_what_the_paper_does_not_say_is_marked_as_ours() -> None:
+    assert "ours, not the paper’s" in render(read(("a", "A", P), ("e", "", R)))
+    assert "ours, not the paper’s" not in render(read(("a", "A", P)))
 
 
 def test_tiles_say_by_sign_and_word_what_was_found() -> None:

@@ -48,6 +48,11 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     def _what(self) -> str:
         return _PRINTED_AS[self.kind]
 
+    @property
+    def _against(self) -> str:
+        """What the formula is held against, as it is printed."""
+        return "det J" if self.kind == "lambda_factor" else "det J − 1"
+
     def _delta_j(self, formula: sympy.Expr) -> sympy.Expr:
         """ΔJ as the claim's formula prints it."""
         return formula - 1 if self.kind == "lambda_factor" else formula
@@ -59,13 +64,15 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         printed = self._delta_j(formulas["formula"])
         gap = gaps(step_map, [(self._what, printed, step_map.delta_j)], domain)[0]
         if self.up_to is None:
-            holds = "as printed, agrees with det J − 1 exactly, for all p, q, h and parameters"
-            return self.from_gaps([gap], f"{self._what}, {holds}" + within(domain), domain)
+            holds = f"agrees with {self._against} exactly, for all p, q, h and parameters"
+            evidence = f"{self._what}, as printed, {holds}" + within(domain)
+            return self.from_gaps([gap], evidence, domain)
         wrong = self.differs_below(self._what, gap.ring, gap.difference, self.up_to, domain)
         difference = to_text(-grouped(gap.ring, gap.difference))
         evidence = prose(
-            f"{self._what} as printed differs from det J − 1 by O(", Formula(f"h^{self.up_to}"),
-            "): the difference is ", Formula(difference), within(domain),
+            f"{self._what} as printed differs from {self._against} by O(",
+            Formula(f"h^{self.up_to}"), "): the difference is ", Formula(difference),
+            within(domain),
         )  # fmt: skip
         return wrong or self.result(Verdict.PROVED, evidence, domain=domain)
 

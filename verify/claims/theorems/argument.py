@@ -22,15 +22,13 @@ class Check:
 
 @dataclass(frozen=True)
 class Argument:
-    """A statement with its verdict and the argument for it.
+    """A verdict on what the claim of that name states, and the argument for it.
 
     `evidence` is one line; `proof` a paragraph that can be quoted; `details` a table, whose first
     row is its head: the facts that were computed.
     """
 
     id: str
-    source: str
-    statement: Prose
     verdict: Verdict
     evidence: Prose
     proof: Prose
@@ -42,8 +40,6 @@ HEAD = ("what the argument rests on", "value", "checked")
 
 def concluded(
     name: str,
-    source: str,
-    statement: str,
     verdict: Verdict,
     evidence: str,
     proof: str,
@@ -63,8 +59,6 @@ def concluded(
         proof = ""
     return Argument(
         id=name,
-        source=source,
-        statement=read_prose(statement),
         verdict=verdict,
         evidence=read_prose(evidence),
         proof=read_prose(" ".join(proof.split())),

@@ -24,7 +24,7 @@ Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion
 `x_k`) − 1 = o(1), h → 0."""
 
 
-def _inequalities(example: ExampleMap) -> Check:
+def inequalities_of(example: ExampleMap) -> Check:
     """MSE ≤ m² and |log| bounds, in Fractions: |Λ| ≤ Π(1 + |x|) − 1, (Σ|x|)² ≤ N² MSE."""
     holds = all(map(inequalities_hold, (example.run(n) for n in example.steps)))
     return Check(
@@ -50,8 +50,6 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Criterion 2 is sufficient for criterion 3."""
     return concluded(
         "criterion-2-implies-3",
-        "Section 3, after Criterion 4",
-        "Criterion 2 is a sufficient condition for criterion 3.",
         Verdict.PROVED,
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
         "infinitesimal” must be meant uniformly in k, else it fails",
@@ -64,8 +62,8 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
         false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), q' = q + hp, where ΔJ = −h
         + h². ∎""",
         [
-            _inequalities(FRICTION),
-            _inequalities(not_uniform),
+            inequalities_of(FRICTION),
+            inequalities_of(not_uniform),
             not_uniform.check(),
             FRICTION.check(),
         ],
@@ -80,8 +78,6 @@ def connection(
     examples = (friction, *alternating)
     return concluded(
         "criterion-4-connection",
-        "Section 3, after Criterion 4",
-        "There is no definite connection between criterion 4 and criteria 2 and 3.",
         Verdict.REFUTED,
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1; so does MSE = o(h²), "
         "by |Λ| ≤ exp(T √MSE/h) − 1; only for criterion 3 as stated, MSE = o(h), is there none",
@@ -96,7 +92,7 @@ def connection(
         criterion 4 implies neither 2 nor 3: for p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1,
         det J is (1 − √h)/(1 + √h) and its reciprocal in turn, so Λ is 0 or −2√h/(1 + √h), which
         tends to 0, while max |`ΔJ_k`| > 2√h and MSE > 4h for even N. ∎""",
-        [example.check() for example in examples] + [_inequalities(e) for e in examples],
+        [example.check() for example in examples] + [inequalities_of(e) for e in examples],
     )
 
 
@@ -108,8 +104,6 @@ def stronger(
     between = [0 < compensated.run(n).lam < Fraction(1, n) for n in compensated.steps]
     return concluded(
         "criterion-4-stronger",
-        "Section 3, after Criterion 4",
-        "Criterion 4 has stronger area-preserving performance compared to criteria 2 and 3.",
         Verdict.REFUTED,
         "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one of "
         "the "

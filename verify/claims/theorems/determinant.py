@@ -15,10 +15,6 @@ from verify.schemes.methods.taylor.lie import lie_map
 from verify.schemes.step_map import H_STEP, P, Q
 from verify.verdict import Verdict
 
-_SENTENCE = (
-    "Due to the existence of local truncation errors, the value of the determinant cannot always "
-    "be equal to 1"
-)
 SYSTEMS = ("duffing", "pendulum")
 ETAS = range(1, 6)
 # det J = 1 exactly, and the scheme is not the flow.
@@ -31,8 +27,6 @@ def examples(names: Sequence[str] = SYSTEMS) -> Argument:
     at_rest = [_at_rest(name, eta) for name in names for eta in ETAS]
     return concluded(
         "determinant-of-the-examples",
-        "Section 3, before Eq. 14",
-        f"{_SENTENCE} (read: for the paper's two systems).",
         Verdict.PROVED,
         "wherever H has an equilibrium with D = det Hess H ≠ 0, as both systems have at (0, 0), "
         "det J of lie2 is 1 + h⁴D²/4 there, and for every η it is 1 for finitely many h only",
@@ -69,8 +63,6 @@ def universal(formulas: Sequence[str] = PRESERVED) -> Argument:
     """As a statement on every H: refuted by H with det J ≡ 1 and a truncation error."""
     return concluded(
         "determinant-of-every-h",
-        "Section 3, before Eq. 14",
-        f"{_SENTENCE} (read: for every Hamiltonian).",
         Verdict.REFUTED,
         "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; "
         "so it "
@@ -120,10 +112,6 @@ def classification(flaw: int = 0) -> Argument:
     conic = developables.Conic(flaw)
     return concluded(
         "determinant-classification",
-        "Section 3, before Eq. 14, made precise",
-        "lie2 has det J = 1 for all h exactly for H = F(ℓ) + m and H = F(ℓ + m²), ℓ and m linear, "
-        "and for a third family, to which the powers 3/4 of quadratic forms belong; near the "
-        "points of an open dense set these are all, and no polynomial H is in the third.",
         Verdict.PROVED,
         "locally complete for smooth H, near the points of an open dense set, globally for "
         "polynomial H and for "

@@ -49,9 +49,6 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
             checks.append(_same(name, hamiltonian, order))
     return concluded(
         "lie-exponential",
-        "Eq. 2, 4 and 5",
-        "The discretization scheme is the series Σ hⁿ/n! Lⁿ, n = 0 … η: the Lie exponential "
-        "expansion of order η.",
         Verdict.PROVED,
         "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
         f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
@@ -112,8 +109,6 @@ def eq_3(coordinate: str = "p") -> Argument:
     ]
     return concluded(
         "eq-3",
-        "Eq. 3",
-        "`L_{H_p}`(`p_k`) = `H_p` ∂q/∂p = `H_p` (as printed).",
         Verdict.REFUTED,
         "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
         "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",
@@ -141,4 +136,26 @@ def _example() -> Check:
     )
 
 
-THEOREMS = {"lie-exponential": lie_exponential, "eq-3": eq_3}
+def eq_3_meant(coordinate: str = "q") -> Argument:
+    """Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q, by Eq. 5."""
+    flow = flow_of_every_hamiltonian(2)
+    diff = flow.ring.diff
+    return concluded(
+        "eq-3-meant",
+        Verdict.PROVED,
+        "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
+        "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",
+        """By Eq. 5 `L_{H_p}`(y) = `H_p` ∂y/∂q and `L_{−H_q}`(y) = −`H_q` ∂y/∂p. With y = q the one
+        is `H_p`, with y = p the other is −`H_q`; these are the first terms of Eq. 2, by which Eq.
+        19 and 27 are right. ∎""",
+        [
+            vanishes(
+                f"by Eq. 5, `L_{{H_p}}`({coordinate}) − `H_p` and `L_{{−H_q}}`(p) + `H_q`",
+                flow.h_p * diff(flow.ring[coordinate], "q") - flow.h_p,
+                -flow.h_q * diff(flow.ring["p"], "p") + flow.h_q,
+            )
+        ],
+    )
+
+
+THEOREMS = {"lie-exponential": lie_exponential, "eq-3": eq_3, "eq-3-meant": eq_3_meant}

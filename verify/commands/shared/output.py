@@ -211,10 +211,14 @@ def _crossed(way: "CrossoverResult") -> str:
 
 
 def print_report(made: "Report", *pages: Path) -> None:
+    from verify.scenes.results.statement import counted
+
     for line in made.preface:
         click.echo(line)
     for claim in made.claims:
         click.echo(f"{claim.verdict:9}  {claim.source}: {claim.evidence}")
+    if made.statements:
+        click.echo(counted(made.statements, made.claims))
     for scene in made.scenes:
         for c in scene.criteria:
             click.echo(f"{c.verdict:9}  {scene.name}, {c.scheme}, criterion {c.number}")

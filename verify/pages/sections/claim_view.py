@@ -8,22 +8,53 @@ from dataclasses import dataclass
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.section import Counts
-from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.claim import ClaimResult, Standing
+from verify.scenes.results.statement import Outcome, StatementResult
 from verify.verdict import Verdict
 
 _NUMBERED = re.compile(r"\d+(?:\.\d+)*(?=\D|$)")
+_STANDINGS: dict[Standing, str] = {
+    "fair": "",
+    "strict": "taken strictly",
+    "misprint": "to the letter, a misprint",
+    "ours": "ours, not the paper’s",
+}
+_OUTCOMES = {
+    Outcome.HOLDS: "holds in each",
+    Outcome.IN_SOME: "holds in some",
+    Outcome.REFUTED: "refuted in each",
+    Outcome.UNDECIDED: "undecided",
+}
 _PRINTED = "printed"  # how the printed row of a table claim's details begins
 
 
 @dataclass(frozen=True)
 class ClaimView:
-    """A claim with its place on the page; `plot`: its table's picture, where it is a table."""
+    """A claim with its place on the page; `plot`: its table's picture, where it is a table.
+
+    `of`: the statement that it is a reading of, where statements are counted; `again`: whether
+    another reading of it stands before this one.
+    """
 
     result: ClaimResult
     anchor: str
     scene_anchor: str
     scene_title: str
     plot: Plot | None = None
+    of: StatementResult | None = None
+    again: bool = False
+
+    @property
+    def outcome(self) -> str:
+        """What holds of the statement, with the first of its several readings."""
+        if self.of is None or self.again or len(self.of.readings) == 1:
+            return ""
+        return f"{len(self.of.readings)} readings: {_OUTCOMES[self.of.outcome]}"
+
+    @property
+    def standing(self) -> str:
+        """How it stands to what is printed, where it is no fair reading."""
+        return _STANDINGS[self.result.standing]
 
     @property
     def name(self) -> str:

@@ -1,8 +1,12 @@
 """What can be said of a claim, and of the paper's criteria: a verdict with its evidence."""
 
+from typing import Literal
+
 from verify.prose import Prose
 from verify.scenes.frozen import Said, WithProse
 from verify.verdict import Verdict
+
+Standing = Literal["fair", "strict", "misprint", "ours"]  # see `verify.scenes.results.statement`
 
 
 class CriterionResult(WithProse):
@@ -22,6 +26,8 @@ class ClaimResult(WithProse):
     `domain`: conditions on p, q, h and the parameters under which the verdict holds, one a text,
     beyond what the claim itself says; none where that is everywhere.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
+    `statement_id`: of which statement of its paper it is a reading, `reading` how it is read there
+    and `standing` how it stands to what is printed; empty where statements are not counted.
     `reproduction`: a few lines of code that show what is said of someone else's code.
     """
 
@@ -30,6 +36,9 @@ class ClaimResult(WithProse):
     source: str
     section: str = ""
     statement: Said
+    statement_id: str = ""
+    reading: Said = Prose("")
+    standing: Standing = "fair"
     scene: str
     verdict: Verdict
     evidence: Said

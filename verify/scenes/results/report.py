@@ -18,6 +18,7 @@ from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
+from verify.scenes.results.statement import StatementResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.verdict import Verdict
 
@@ -72,6 +73,7 @@ class Provenance(Frozen):
 class Report(Frozen):
     """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
 
+    `statements`: those of the paper whose readings the claims are, where statements are counted.
     `gallery`: the worst scenes that a hunt found. `preface`: what is said before all else, such as
     which libraries are installed.
     """
@@ -79,6 +81,7 @@ class Report(Frozen):
     format: ReportFormat = FORMAT
     title: str
     claims: tuple[ClaimResult, ...]
+    statements: tuple[StatementResult, ...] = ()
     scenes: tuple[SceneResult, ...]
     figures: tuple[PaperFigure, ...] = ()
     gallery: Gallery | None = None

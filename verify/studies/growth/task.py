@@ -16,6 +16,7 @@ class GrowthTask(InitialValueTask):
     digits: int
 
     def compute(self, keeper: Keeper) -> AverageResult:
+        """The law, its average enclosed."""
         from verify.studies.growth.prediction import average_of
 
         return average_of(self.exact_hamiltonian(), **self.asked())

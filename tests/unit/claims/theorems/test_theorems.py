@@ -10,14 +10,15 @@ from tests.helpers.theorem_controls import refused
 from tests.paths import ROOT
 from verify.claims.theorems import (
     check_theorem,
+    consistency,
     convergence,
     criteria,
-    criteria_empty,
     criteria_examples,
     lie_series,
     lipschitz,
     matrix_vector,
     names,
+    total_error,
 )
 from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
 from verify.claims.theorems.criteria_examples import ExampleMap
@@ -25,7 +26,6 @@ from verify.claims.theorems.differential import Flow, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Areas, Point, value
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.prose import read_prose
 from verify.scenes.scene import read_toml
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -34,20 +34,52 @@ PROVED, REFUTED, UNDECIDED = Verdict.PROVED, Verdict.REFUTED, Verdict.UNDECIDED
 TOML = ROOT / "reports" / "paper" / "claims.toml"
 VERDICTS = {
     "lie-exponential": PROVED,
+    "eq-1": PROVED,
     "eq-3": REFUTED,
+    "eq-3-meant": PROVED,
+    "local-error": PROVED,
+    "eq-7": REFUTED,
+    "eq-7-meant": PROVED,
+    "eq-8": PROVED,
     "convergence": PROVED,
+    "convergence-inference": REFUTED,
     "eq-9": REFUTED,
+    "eq-9-plane": PROVED,
     "eq-10": REFUTED,
+    "eq-10-meant": PROVED,
+    "eq-11": PROVED,
     "two-norm": REFUTED,
+    "two-norm-of-the-step": PROVED,
     "eq-12": REFUTED,
-    "near-identity": REFUTED,
+    "eq-12-tangent": PROVED,
+    "near-identity": PROVED,
+    "near-identity-inference": REFUTED,
+    "area-definition": PROVED,
+    "area-definition-flow": REFUTED,
+    "criterion-1": PROVED,
+    "criterion-1-any-map": REFUTED,
+    "eq-14": PROVED,
+    "eq-15": PROVED,
+    "eq-15-sum": REFUTED,
+    "eq-17": PROVED,
+    "eq-25": PROVED,
+    "criterion-2": PROVED,
+    "criterion-3": PROVED,
+    "criterion-3-any-map": REFUTED,
+    "criterion-4": PROVED,
+    "smaller-lambda": PROVED,
+    "smaller-lambda-each-step": REFUTED,
     "determinant-of-every-h": REFUTED,
     "determinant-of-the-examples": PROVED,
     "determinant-classification": PROVED,
     "criterion-2-implies-3": PROVED,
     "criterion-4-connection": REFUTED,
+    "criterion-2-implies-3-pointwise": REFUTED,
+    "criterion-4-connection-pointwise": PROVED,
     "criterion-4-stronger": REFUTED,
-    "criteria-of-consistent-schemes": REFUTED,
+    "criterion-4-stronger-smooth": PROVED,
+    "criteria-of-consistent-schemes": PROVED,
+    "consistency-is-not-enough": PROVED,
     "total-error-increases": REFUTED,
 }
 
@@ -63,7 +95,7 @@ def test_every_theorem_is_found_and_has_its_verdict() -> None:
 def test_an_argument_is_one_line_a_paragraph_and_a_table(name: str) -> None:
     argument = check_theorem(name)
     assert argument.id == name
-    assert "\n" not in argument.evidence + argument.proof + argument.statement
+    assert "\n" not in argument.evidence + argument.proof
     assert argument.evidence
     assert argument.proof.endswith("∎")
     assert "  " not in argument.proof
@@ -72,15 +104,10 @@ def test_an_argument_is_one_line_a_paragraph_and_a_table(name: str) -> None:
     assert all(len(row) == len(head) and row[-1] == "holds" for row in rows)
 
 
-def test_the_claims_file_says_what_the_functions_judge() -> None:
+def test_each_theorem_judges_the_claim_of_its_name() -> None:
     tables = [t for t in read_toml(TOML)["claim"] if t["kind"] == "theorem"]
+    assert [t["id"] for t in tables] == [t["name"] for t in tables]
     assert {t["name"] for t in tables} == set(names())
-    for table in tables:
-        argument = check_theorem(table["name"])
-        assert table["kind"] == "theorem"
-        assert (table["id"], table["source"], read_prose(table["statement"])) == (
-            argument.id, argument.source, argument.statement,
-        )  # fmt: skip
 
 
 def test_an_unknown_theorem_is_named() -> None:
@@ -92,7 +119,7 @@ def test_an_unknown_theorem_is_named() -> None:
 
 
 def argued(*checks: Check) -> Argument:
-    return concluded("x", "s", "t", PROVED, "because", "proof ∎", checks)
+    return concluded("x", PROVED, "because", "proof ∎", checks)
 
 
 def test_an_argument_with_a_failed_check_or_none_is_undecided_and_has_no_proof() -> None:
@@ -197,7 +224,7 @@ def test_eq_12_is_not_refuted_by_a_quadratic_h_or_by_the_origin() -> None:
 def test_a_map_that_changes_areas_or_moves_little_does_not_refute_near_identity(
     p_next: str, q_next: str
 ) -> None:
-    assert refused(matrix_vector.near_identity(p_next, q_next))
+    assert refused(matrix_vector.near_identity_inference(p_next, q_next))
 
 
 # -- the criteria ---------------------------------------------------------------------------------
@@ -245,13 +272,13 @@ def test_the_inequalities_hold_for_every_run_and_not_for_made_up_numbers() -> No
 
 
 def test_a_map_for_another_field_has_a_delta_j_of_order_h() -> None:
-    assert refused(criteria_empty.empty(hamiltonian=False))
-    assert 1 not in criteria_empty.consistent_map()
+    assert refused(consistency.of_smooth_schemes(hamiltonian=False))
+    assert 1 not in consistency.consistent_map()
 
 
 def test_a_start_from_which_the_total_error_grows_does_not_refute_that_it_grows() -> None:
     point = Point(Fraction(1), Fraction(1, 5))
-    assert refused(criteria_empty.increasing(point))
+    assert refused(total_error.increasing(point))
 
 
 def test_a_value_that_is_not_rational_is_not_taken_for_one() -> None:

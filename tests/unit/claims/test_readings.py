@@ -1,0 +1,163 @@
+"""Readings of one statement: what a claims file may say of them, and what holds of a statement."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from verify.claims.check import prepare
+from verify.claims.file import load_claims
+from verify.errors import InputError
+from verify.execution.execute import Store
+from verify.execution.executors import THIS_PROCESS
+from verify.scenes.results.statement import Outcome, counted, outcome_of, statements_of
+from verify.verdict import Verdict
+
+HEAD = 'title = "A paper"\n[defaults]\nscheme = "lie2"\nsystem = "harmonic"\nkind = "order"\n'
+PROVED, REFUTED, UNDECIDED = Verdict.PROVED, Verdict.REFUTED, Verdict.UNDECIDED
+
+
+def claim(name: str, order: int = 4, **keys: str) -> str:
+    """ΔJ of lie2 on the oscillator is of order 4, so that this order alone holds."""
+    said = "".join(f'{key} = "{text}"\n' for key, text in keys.items())
+    return f'[[claim]]\nid = "{name}"\norder = {order}\n{said}'
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[..., Path]:
+    def write(*claims: str, head: str = HEAD) -> Path:
+        path = tmp_path / "claims.toml"
+        path.write_text(head + "".join(claims), encoding="utf-8")
+        return path
+
+    return write
+
+
+# -- what holds of a statement --------------------------------------------------------------------
+
+OUTCOMES = [
+    ((PROVED,), Outcome.HOLDS),
+    ((PROVED, Verdict.MEASURED, Verdict.ENCLOSED), Outcome.HOLDS),
+    ((REFUTED, PROVED), Outcome.IN_SOME),
+    ((PROVED, UNDECIDED), Outcome.IN_SOME),
+    ((REFUTED, REFUTED), Outcome.REFUTED),
+    ((REFUTED, UNDECIDED), Outcome.UNDECIDED),
+    ((UNDECIDED,), Outcome.UNDECIDED),
+]
+
+
+@pytest.mark.parametrize(("verdicts", "outcome"), OUTCOMES)
+def test_a_statement_is_refuted_only_where_every_reading_is(
+    verdicts: tuple[Verdict, ...], outcome: Outcome
+) -> None:
+    assert outcome_of(verdicts) is outcome
+    assert outcome_of(verdicts[::-1]) is outcome
+
+
+def test_readings_have_the_texts_of_their_statement_and_are_counted_with_it(
+    written: Callable[..., Path],
+) -> None:
+    path = written(
+        claim("a", source="Eq. 1", section="1 One", statement="It is so.", reading="loosely"),
+        claim("b", 3, reading_of="a", reading="to the letter", standing="strict"),
+        claim("c", 3, statement="Another."),
+        claim("d", 3, statement="Ours.", standing="ours"),
+    )
+    check = prepare(load_claims(path))
+    found = check.run(Store(None), where=THIS_PROCESS)
+    assert [(c.statement_id, str(c.statement), c.source) for c in found] == [
+        ("a", "It is so.", "Eq. 1"), ("a", "It is so.", "Eq. 1"), ("c", "Another.", ""),
+        ("", "Ours.", ""),
+    ]  # fmt: skip
+    assert (found[1].reading, found[1].standing, found[1].section) == (
+        "to the letter", "strict", "1 One",
+    )  # fmt: skip
+    statements = check.statements(found)
+    assert [(s.id, s.outcome, s.readings) for s in statements] == [
+        ("a", Outcome.IN_SOME, ("a", "b")),
+        ("c", Outcome.REFUTED, ("c",)),
+    ]
+    assert counted(statements, found) == (
+        "2 statements of the paper, in 3 readings: 1 holds in some readings, 1 is refuted in every "
+        "reading; 1 more claim is ours"
+    )
+
+
+def test_a_statement_of_which_a_reading_is_not_checked_has_no_outcome(
+    written: Callable[..., Path],
+) -> None:
+    path = written(claim("a", 3), claim("b", reading_of="a", reading="rightly"), claim("c"))
+    check = prepare(load_claims(path), ["a", "c"])
+    found = check.run(Store(None), where=THIS_PROCESS)
+    assert [each.id for each in check.statements(found)] == ["c"]
+
+
+def test_a_file_that_says_nothing_of_readings_counts_claims_alone(
+    written: Callable[..., Path],
+) -> None:
+    check = prepare(load_claims(written(claim("a"), claim("b", 3))))
+    found = check.run(Store(None), where=THIS_PROCESS)
+    assert statements_of(found) == check.statements(found) == ()
+
+
+# -- mistakes -------------------------------------------------------------------------------------
+
+FIRST = claim("a", statement="It is so.")
+WRONG = {
+    "unknown": (FIRST + claim("b", reading_of="A", reading="so"), "no claim before this one"),
+    "later": (claim("b", reading_of="a", reading="so") + FIRST, "no claim before this one"),
+    "of-itself": (claim("b", reading_of="b", reading="so"), "no claim before this one"),
+    "of-a-reading": (
+        FIRST + claim("b", reading_of="a", reading="so") + claim("c", reading_of="b", reading="x"),
+        "is a reading of a; name a statement's first claim",
+    ),
+    "of-ours": (
+        claim("a", standing="ours") + claim("b", reading_of="a", reading="so"),
+        "is ours; name a statement's first claim",
+    ),
+    "ours": (
+        FIRST + claim("b", reading_of="a", reading="so", standing="ours"),
+        "is no reading of a paper's statement",
+    ),
+    "with-a-statement": (
+        FIRST + claim("b", reading_of="a", reading="so", statement="Or so."),
+        "is that of a; say how it is read",
+    ),
+    "without-words": (FIRST + claim("b", reading_of="a"), "is missing: how a is read here"),
+    "none-fair": (
+        claim("a", standing="misprint")
+        + claim("b", reading_of="a", reading="x", standing="strict"),
+        "no reading of this statement is fair",
+    ),
+    "no-such-standing": (claim("a", standing="mine"), "'fair', 'strict', 'misprint' or 'ours'"),
+    "no-such-key": (FIRST + claim("b", reading_off="a"), "reading_off"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "problem"), WRONG.values(), ids=WRONG)
+def test_what_cannot_be_said_of_readings_is_named_with_its_line(
+    written: Callable[..., Path], body: str, problem: str
+) -> None:
+    with pytest.raises(InputError, match=r"claims\.toml:\d+: claim [abc]: ") as told:
+        load_claims(written(body))
+    assert problem in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+ROOTS = {
+    "about": ('about = "A text"\n', "about"),
+    "number": ("about = [1]\n", "about"),
+    "left_out": ('left_out = [{ what = "x" }]\n', "left_out"),
+    "one": ('left_out = "x"\n', "left_out"),
+}
+
+
+@pytest.mark.parametrize(("head", "key"), ROOTS.values(), ids=ROOTS)
+def test_what_a_file_says_before_and_after_its_claims_is_checked(
+    written: Callable[..., Path], head: str, key: str
+) -> None:
+    with pytest.raises(InputError, match=key):
+        load_claims(written(claim("a"), head=head + HEAD))
+    good = 'about = ["A text."]\nleft_out = [{ what = "x", why = "y" }]\n'
+    file = load_claims(written(claim("a"), head=good + HEAD))
+    assert (file.about, file.left_out) == (("A text.",), (("x", "y"),))

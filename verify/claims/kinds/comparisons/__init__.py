@@ -1,0 +1,1 @@
+"""Kinds of claims that compare runs with each other, with the exact solution, or with a table."""

@@ -1,0 +1,47 @@
+"""As the step size increases the quantity goes the same way from every initial value."""
+
+from itertools import pairwise
+from typing import Literal
+
+from verify.claims.findings import Findings
+from verify.claims.on_runs import RunClaim
+from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, table_of
+from verify.prose import Number, joined, prose
+from verify.scenes.results.claim import ClaimResult
+
+_WAYS = {True: "rises", False: "falls"}
+
+
+class AlikeClaim(RunClaim):
+    """One pattern over the step sizes, whatever the initial value."""
+
+    only_here = "a pattern is over the initial values of its own scene"
+    kind: Literal["alike"]
+    quantity: Quantity
+
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity,)
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        rows, quantity = self.run_rows(findings), QUANTITIES[self.quantity]
+        verdicts: list[bool | None] = []
+        said = []
+        for column in zip(*(list(pairwise(row)) for row in rows), strict=True):
+            ways = [sign(quantity(two) - quantity(one)) for one, two in column]
+            same = None if None in ways else len(set(ways)) == 1
+            verdicts.append(same)
+            one, two = column[0]
+            way = "is not told apart" if same is None else _way(ways)
+            said.append(prose("from h = ", Number(one.step_size), " to ", Number(two.step_size),
+                              f" it {way}"))  # fmt: skip
+        found = prose(f"{quantity.label} from {len(rows)} initial values: ", joined(", ", said))
+        return self.result(all_hold(verdicts), found, table_of(rows, self.quantity))
+
+
+def _way(ways: list[bool | None]) -> str:
+    if len(set(ways)) == 1:
+        return f"{_WAYS[bool(ways[0])]} from all"
+    return f"rises from {ways.count(True)} and falls from {ways.count(False)}"
+
+
+CLAIM = AlikeClaim

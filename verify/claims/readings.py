@@ -1,0 +1,63 @@
+"""Which claims of a file are readings of one statement: checked, and its texts handed on.
+
+    [[claim]]
+    id = "eq-9"
+    statement = "…"                     # what the paper prints, with its source and section
+    reading = "each component alone"    # in which sense; may be left out
+    …
+
+    [[claim]]
+    id = "eq-9-in-the-plane"
+    reading_of = "eq-9"                 # the same statement, whose texts it has, read otherwise
+    reading = "both components together, in one norm"
+    standing = "fair"                   # this is understood; or "strict", "misprint", "ours"
+    …
+
+See `verify.scenes.results.statement` for what the standings mean and when a statement is refuted.
+A file in which no claim has one of these keys counts claims alone, and no statements.
+"""
+
+from collections.abc import Sequence
+
+from verify.claims.claim import Claim
+from verify.errors import InputError
+
+_KEYS = {"reading_of", "reading", "standing"}
+
+
+def settled(claims: Sequence[Claim], index: int) -> Claim:
+    """The claim at this place with its statement's id and texts, if statements are counted.
+
+    Raises InputError, whose name is the key, where what it says of its statement cannot be.
+    """
+    claim = claims[index]
+    if not any(_KEYS & each.model_fields_set for each in claims):
+        return claim
+    if claim.standing == "ours":
+        if claim.reading_of:
+            problem = "a claim of ours is no reading of a paper's statement"
+            raise InputError("reading_of", claim.reading_of, problem)
+        return claim
+    if claim.reading_of:
+        return _of_another(claims, index)
+    fair = [c for c in claims if claim.id in (c.id, c.reading_of) and c.standing == "fair"]
+    if not fair:
+        problem = "no reading of this statement is fair, so that it is none of the paper"
+        raise InputError("standing", claim.standing, problem)
+    return claim.model_copy(update={"reading_of": claim.id})
+
+
+def _of_another(claims: Sequence[Claim], index: int) -> Claim:
+    claim = claims[index]
+    first = next((c for c in claims[:index] if c.id == claim.reading_of), None)
+    if first is None:
+        raise InputError("reading_of", claim.reading_of, "no claim before this one has this id")
+    if first.standing == "ours" or first.reading_of not in ("", first.id):
+        what = "is ours" if first.standing == "ours" else f"is a reading of {first.reading_of}"
+        raise InputError("reading_of", claim.reading_of, f"{what}; name a statement's first claim")
+    if claim.statement:
+        raise InputError("statement", claim.statement, f"is that of {first.id}; say how it is read")
+    if not claim.reading:
+        raise InputError("reading", "", f"is missing: how {first.id} is read here")
+    texts = {key: getattr(claim, key) or getattr(first, key) for key in ("source", "section")}
+    return claim.model_copy(update={"statement": first.statement, **texts})

@@ -1,0 +1,131 @@
+"""Sentences on the criteria in another sense: for each fixed k, or for smooth steps and all times.
+
+In `verify.claims.theorems.criteria` criterion 2 is read as max |ΔJ_k| = o(h). Here it is read to
+the letter, of each k by itself, which is weaker; and criterion 4 of all [0, t], t ≤ T, at once.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
+from verify.claims.theorems.consistency import consistent_map
+from verify.claims.theorems.criteria_examples import (
+    FRICTION,
+    NOT_UNIFORM,
+    TO_AND_FRO,
+    TO_AND_FRO_ODD,
+    ExampleMap,
+)
+from verify.verdict import Verdict
+
+_FIXED = (0, 1, 2)  # k
+
+
+def _small_for_each_k(example: ExampleMap) -> Check:
+    """ΔJ_k / h² for a few fixed k: the same number for every N, so that each ΔJ_k is O(h²)."""
+    ratios = [{example.run(n).delta_j[k] * n**2 for n in example.steps if n > k} for k in _FIXED]
+    return Check(
+        f"{example.name}: `ΔJ_k`/h² is the same for N = {', '.join(map(str, example.steps))}, k = "
+        f"{', '.join(map(str, _FIXED))}",
+        all(len(each) == 1 for each in ratios),
+        ", ".join(str(min(each)) for each in ratios),
+    )
+
+
+def _grows(example: ExampleMap) -> Check:
+    """Λ ≥ Σ ΔJ_k ≥ N/8, so that Λ has no bound as N grows; and MSE does not tend to 0."""
+    runs = [(n, example.run(n)) for n in example.steps]
+    holds = all(
+        found.lam >= sum(found.delta_j) >= Fraction(n, 8) and found.mse >= Fraction(1, 12)
+        for n, found in runs
+    )
+    return Check(
+        f"{example.name}: Λ ≥ Σ `ΔJ_k` ≥ N/8, MSE ≥ 1/12",
+        holds,
+        f"N = {', '.join(map(str, example.steps))}, exactly",
+    )
+
+
+def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+    """Each ΔJ_k = O(h²), and MSE → 1/5."""
+    return concluded(
+        "criterion-2-implies-3-pointwise",
+        Verdict.REFUTED,
+        "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
+        "MSE → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses "
+        "agree",
+        """With `q_k` = kh one has `ΔJ_k` = (kh)², for each fixed k a higher-order infinitesimal of
+        h. But the last steps of [0, 1] have kh near 1, and MSE = (1/N) Σ (kh)⁴ → 1/5. For a scheme
+        whose step depends smoothly on (p, q, h) this cannot happen: if ΔJ = o(h) at every point of
+        a compact set, its Taylor coefficients of h⁰ and h¹ vanish there, and ΔJ = O(h²) uniformly.
+        ∎""",
+        [not_uniform.check(), _small_for_each_k(not_uniform), _grows(not_uniform)],
+    )
+
+
+def pointwise_connection(
+    not_uniform: ExampleMap = NOT_UNIFORM,
+    friction: ExampleMap = FRICTION,
+    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
+) -> Argument:
+    """Of each k alone: 2 does not imply 4, nor does 3; and 4 implies neither."""
+    first = [abs(e.run(n).delta_j[0]) ** 2 * n >= 1 for e in alternating for n in e.steps]
+    return concluded(
+        "criterion-4-connection-pointwise",
+        Verdict.PROVED,
+        "read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + "
+        "h), criterion 3 does not (friction), and 4 implies neither: none of the four "
+        "implications holds",
+        """2 and not 4: for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but
+        Λ ≥ Σ (kh)² ≥ N/8 over [0, 1]. 3 and not 4: p' = p − h(q + p), q' = q + hp has MSE = h²(1 −
+        h)² = o(h) and Λ → 1/e − 1. 4, and neither 2 nor 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q
+        from q = 1 has Λ → 0, |`ΔJ_0`| = 2√h/(1 + √h) ≥ √h, and MSE > 4h for even N. ∎""",
+        [
+            not_uniform.check(),
+            _small_for_each_k(not_uniform),
+            _grows(not_uniform),
+            friction.check(),
+            *(example.check() for example in alternating),
+            Check("to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly"),
+        ],
+    )
+
+
+def stronger_for_smooth_steps(
+    hamiltonian: bool = False, friction: ExampleMap = FRICTION
+) -> Argument:
+    """For steps z + hg + h²r: 4 on every [0, t] implies 2 and 3, and 3 does not imply 4.
+
+    `hamiltonian`: whether g is a Hamiltonian's, for which div g = 0 and there is nothing to show.
+    """
+    powers = consistent_map(hamiltonian)
+    ring = next(iter(powers.values())).context()
+    divergence = ring.gens()[ring.names().index("a_p")] + ring.gens()[ring.names().index("b_q")]
+    none = divergence - divergence
+    return concluded(
+        "criterion-4-stronger-smooth",
+        Verdict.PROVED,
+        "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
+        "T implies criteria 2 and 3, and criterion 3, which always holds then, does not imply it: "
+        "4 is as strong as 2 and stronger than 3",
+        """Let the orbit of z' = g(z) exist on [0, T]. Then ΔJ = h div g + O(h²), Σ log(1 + `ΔJ_k`)
+        = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, Λ → exp(∫₀ᵗ div g dt) − 1 over
+        [0, t]. If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = O(h),
+        and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow. Criterion 3 always holds, as MSE =
+        O(h²), and criterion 4 does not for the oscillator with friction, where div g = −1. ∎""",
+        [
+            vanishes(
+                "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
+                powers.get(1, none) - divergence,
+                powers.get(0, none),
+            ),
+            friction.check(),
+        ],
+    )
+
+
+THEOREMS = {
+    "criterion-2-implies-3-pointwise": pointwise_two_not_three,
+    "criterion-4-connection-pointwise": pointwise_connection,
+    "criterion-4-stronger-smooth": stronger_for_smooth_steps,
+}

@@ -1,0 +1,95 @@
+"""Statements of a paper, and what holds of each by the verdicts on its readings.
+
+A statement is what the paper prints; a reading is one precise meaning of it, and a claim with a
+verdict. A sentence that asserts several things makes several statements.
+
+**When a statement is refuted.** It is read in its most favourable sense first. It `holds` where
+every one of its readings holds, holds `in some readings` where one does and another is not shown
+to, and is `refuted` where every reading is refuted; else it is `undecided`. So one reading in which
+it is true is enough for it not to be refuted; a statement has at least one `fair` reading, or it is
+no statement of the paper.
+
+**Thus, therefore, hence.** A sentence “A, thus B” asserts B: B has a verdict by itself, however it
+is derived. That B follows from A is a second reading of the same statement, “the inference”, with
+a verdict of its own. A true conclusion from a wrong inference therefore holds in some readings.
+
+**Whose it is.** `fair`: what the sentence says to a willing reader. `strict`: it can be taken so,
+and says more than the sentence needs. `misprint`: the letter, where the text around it shows that
+another is meant. `ours`: a theorem or a question of those who check, which the paper does not
+state; it is counted apart and is no reading of a statement.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from enum import StrEnum
+
+from verify.scenes.frozen import Said, WithProse
+from verify.scenes.results.claim import ClaimResult
+from verify.verdict import Verdict
+
+
+class Outcome(StrEnum):
+    """What holds of a statement, by all of its readings."""
+
+    HOLDS = "holds"
+    IN_SOME = "holds in some readings"
+    REFUTED = "refuted"
+    UNDECIDED = "undecided"
+
+
+class StatementResult(WithProse):
+    """A statement of the paper; `readings` are the ids of its claims."""
+
+    id: str
+    source: str
+    section: str = ""
+    statement: Said
+    outcome: Outcome
+    readings: tuple[str, ...]
+
+
+def outcome_of(verdicts: Sequence[Verdict]) -> Outcome:
+    """What holds of a statement whose readings have these verdicts."""
+    holding = [verdict.holds for verdict in verdicts]
+    if all(holding):
+        return Outcome.HOLDS
+    if any(holding):
+        return Outcome.IN_SOME
+    refuted = all(verdict is Verdict.REFUTED for verdict in verdicts)
+    return Outcome.REFUTED if refuted else Outcome.UNDECIDED
+
+
+def statements_of(claims: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
+    """The statements of which these are all readings, in their order; none where none is told."""
+    readings: dict[str, list[ClaimResult]] = {}
+    for claim in claims:
+        if claim.statement_id:
+            readings.setdefault(claim.statement_id, []).append(claim)
+    return tuple(
+        StatementResult(
+            id=name,
+            source=own[0].source,
+            section=own[0].section,
+            statement=own[0].statement,
+            outcome=outcome_of([claim.verdict for claim in own]),
+            readings=tuple(claim.id for claim in own),
+        )
+        for name, own in readings.items()
+    )
+
+
+def counted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> str:
+    """How many statements there are, in how many readings, and what holds of how many of them."""
+    found = Counter(statement.outcome for statement in statements)
+    readings, count = sum(len(each.readings) for each in statements), len(statements)
+    told = (
+        (found[Outcome.HOLDS], "{} in every reading", ("holds", "hold")),
+        (found[Outcome.IN_SOME], "{} in some readings", ("holds", "hold")),
+        (found[Outcome.REFUTED], "{} refuted in every reading", ("is", "are")),
+        (found[Outcome.UNDECIDED], "{} undecided", ("is", "are")),
+    )
+    parts = [f"{n} " + said.format(verb[n > 1]) for n, said, verb in told if n]
+    ours = len(claims) - readings
+    more = f"; {ours} more {'claims are' if ours > 1 else 'claim is'} ours" if ours else ""
+    of = f"{count} statement{'s' if count > 1 else ''} of the paper"
+    return f"{of}, in {readings} reading{'s' if readings > 1 else ''}: {', '.join(parts)}{more}"
