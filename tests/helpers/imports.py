@@ -2,7 +2,7 @@
 
 import ast
 from collections.abc import Iterator, Set
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from tests.paths import ROOT
@@ -47,12 +47,22 @@ def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
         waiting += ast.iter_child_nodes(node)
 
 
+@lru_cache(maxsize=1)
+def tree_of(path: Path) -> ast.Module:
+    """What stands in a file; the last one read is kept, since several questions are asked of it."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@lru_cache(maxsize=1)
+def nodes_of(path: Path) -> list[ast.AST]:
+    return list(ast.walk(tree_of(path)))
+
+
 @cache
 def imported(path: Path, everywhere: bool = False) -> frozenset[str]:
     """The modules that a file imports: at module level, or everywhere in it."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
     found: set[str] = set()
-    for node in ast.walk(tree) if everywhere else at_module_level(tree):
+    for node in nodes_of(path) if everywhere else at_module_level(tree_of(path)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -78,9 +88,8 @@ def rooms_of(name: str) -> str:
 @cache
 def texts(path: Path) -> frozenset[str]:
     """The texts in a file, and the pieces of those put together; but no docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    nodes = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in told]
+    told = {id(node.value) for node in nodes_of(path) if isinstance(node, ast.Expr)}
+    nodes = [n for n in nodes_of(path) if isinstance(n, ast.Constant) and id(n) not in told]
     return frozenset(node.value for node in nodes if isinstance(node.value, str))
 
 
@@ -110,14 +119,14 @@ def importer(node: ast.AST) -> str | None:
 @cache
 def by_name(path: Path) -> frozenset[str]:
     """What a file uses to import by name."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    return frozenset(name for node in ast.walk(tree) if (name := importer(node)))
+    return frozenset(name for node in nodes_of(path) if (name := importer(node)))
 
 
 def relative(path: Path) -> list[str]:
     """Calls of import_module with a package, to which the name is then relative."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    if not by_name(path):
+        return []
+    calls = [node for node in nodes_of(path) if isinstance(node, ast.Call)]
     return [
         ast.unparse(call)
         for call in calls
@@ -127,9 +136,11 @@ def relative(path: Path) -> list[str]:
 
 def whole_package(path: Path) -> set[str]:
     """What a file imports so that all of `verify` can be reached by attributes from there."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    names = {a.name for n in nodes_of(path) if isinstance(n, ast.Import) for a in n.names}
     return {name for name in names if name.partition(".")[0] == "verify"}
 
 
-IMPORTS = {name: imported(path) for name, path in NAMES.items()}  # at module level
+@cache
+def imports() -> dict[str, frozenset[str]]:
+    """What each module of ours imports at module level; read when it is first asked for."""
+    return {name: imported(path) for name, path in NAMES.items()}

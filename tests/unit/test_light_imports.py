@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.imports import IMPORTS, NAMES, rooms_of, roots
+from tests.helpers.imports import NAMES, imports, rooms_of, roots
 from tests.paths import ROOT
 
 LIGHT = [
@@ -39,19 +39,19 @@ def test_what_is_to_be_light_is_there() -> None:
 
 @pytest.mark.parametrize("name", LIGHT)
 def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
-    found = loaded_with(name, IMPORTS)
-    assert not {m: IMPORTS[m] for m in found & set(IMPORTS) if roots(IMPORTS[m]) & SLOW}
+    found = loaded_with(name, imports())
+    assert not {m: imports()[m] for m in found & set(imports()) if roots(imports()[m]) & SLOW}
     assert not roots(found) & SLOW
 
 
 def test_what_a_package_and_what_is_imported_import_is_seen() -> None:
     for module in ("verify", "verify.commands", "verify.from_type"):
-        planted = IMPORTS | {module: IMPORTS[module] | {"numpy.linalg"}}
+        planted = imports() | {module: imports()[module] | {"numpy.linalg"}}
         assert "numpy" in loaded_with("verify.commands.main", planted), module
 
 
 def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
-    for name, names in IMPORTS.items():
+    for name, names in imports().items():
         drawing = name.startswith("verify.pages.figures.") or name == "verify.pages.plotting"
         assert not roots(names) & {"numba", *(() if drawing else ("matplotlib",))}, name
 
@@ -62,8 +62,8 @@ EXPLORING = {f"verify.exploration.{name}" for name in ("scenes", "explore", "pro
 
 def test_hypothesis_waits_for_strategies_and_for_what_explores() -> None:
     """What imports it when it is imported, itself or by what it imports."""
-    slow = {name for name, names in IMPORTS.items() if "hypothesis" in roots(names)}
-    while more := {name for name in IMPORTS if IMPORTS[name] & slow} - slow:
+    slow = {name for name, names in imports().items() if "hypothesis" in roots(names)}
+    while more := {name for name in imports() if imports()[name] & slow} - slow:
         slow |= more
     assert {name for name in slow if not name.startswith("verify.strategies")} == EXPLORING
 
@@ -82,12 +82,12 @@ def bring_arrays(edges: Mapping[str, Set[str]]) -> set[tuple[str, str]]:
 
 def test_only_modules_of_arrays_import_modules_of_arrays() -> None:
     """So that what needs no array never imports numpy: the others do so in functions."""
-    assert not bring_arrays(IMPORTS)
+    assert not bring_arrays(imports())
     light = {"commands", "execution", "scenes", "claims", "proof", "schemes"}
-    assert not {name for name in of_arrays(IMPORTS) if rooms_of(name) in light}
-    assert "verify.studies.regions.panels" in of_arrays(IMPORTS), "the rule speaks of something"
-    planted = IMPORTS | {
-        "verify.studies.plan": IMPORTS["verify.studies.plan"] | {"verify.studies.regions.panels"}
+    assert not {name for name in of_arrays(imports()) if rooms_of(name) in light}
+    assert "verify.studies.regions.panels" in of_arrays(imports()), "the rule speaks of something"
+    planted = imports() | {
+        "verify.studies.plan": imports()["verify.studies.plan"] | {"verify.studies.regions.panels"}
     }
     assert bring_arrays(planted) == {("verify.studies.plan", "verify.studies.regions.panels")}
 
