@@ -12,6 +12,7 @@ import pytest
 
 from tests.end_to_end.test_command_line import SCENE, here
 from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
+from tests.helpers.local_cluster import local_cluster
 from tests.helpers.worker_functions import killed, killed_once, process, square, wrong
 from tests.unit.execution.test_execute import CONTENT, kept_in, plain
 from tests.unit.scenes.test_scene import DUFFING, load
@@ -32,15 +33,7 @@ GIVEN_UP = 1  # workers that may be lost with a task, so that a test of it is sh
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    """Two processes of one thread each, on any free ports."""
-    import dask
-
-    with (
-        dask.config.set({"distributed.scheduler.allowed-failures": GIVEN_UP}),
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs="CRITICAL"
-        ) as made,
-    ):
+    with local_cluster(**{"distributed.scheduler.allowed-failures": GIVEN_UP}) as made:
         yield made
 
 
@@ -147,7 +140,7 @@ def test_nothing_is_lost_or_doubled_when_a_worker_is_killed(address: str, tmp_pa
 
 
 def test_a_plan_whose_worker_is_killed_finds_the_same(address: str, tmp_path: Path) -> None:
-    plan = plan_scenes([load(tmp_path, CONTENT.replace("steps = 50", "steps = 20000"))])
+    plan = plan_scenes([load(tmp_path, CONTENT.replace("steps = 50", "steps = 5000"))])
     with open_place(Placement(cluster=address)) as place:
         ids = {
             pid for _, pid in results_of(place, [FunctionCall(str(k), process) for k in range(4)])
@@ -189,7 +182,7 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
     capsys: pytest.CaptureFixture[str], address: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "long.toml"
-    path.write_text(SCENE.replace("steps = 200", "steps = 100000"))
+    path.write_text(SCENE.replace("steps = 200", "steps = 20000"))
     whole, folder = tmp_path / "whole", tmp_path / "out"
     assert here(capsys, "report", str(path), "-o", str(whole), "--workers", "1")[0] == 0
     call = ("report", str(path), "-o", str(folder), "--cluster", address)
@@ -202,7 +195,7 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
     assert (status, out) == (130, ""), err
     before = {file: file.read_bytes() for file in kept(folder)}
     assert 1 <= len(before) < 11
-    assert err.count("\n") == 1
+    assert err.count("\n") == 1, err
     assert f"{len(before)} of 11 tasks are kept" in err
     assert {f.suffix for f in (folder / "kept").iterdir()} == {".json"}, "no checkpoint, no rest"
     status, _, err = here(capsys, *call)

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
-from verify.exploration import hunting
+from tests.helpers.local_cluster import local_cluster
+from verify.exploration import explore, hunting
 
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
@@ -22,9 +23,7 @@ HUNT = ("explore", "--maximise", "growth", "--examples", "12", "--steps", "10", 
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs="CRITICAL"
-    ) as made:
+    with local_cluster() as made:
         yield made
 
 
@@ -43,9 +42,13 @@ def killed_when(folder: Path, files: int, pid: int) -> threading.Thread:
 
 
 def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
-    cluster: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    cluster: Any,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    asked = (*ASKED, "--examples", "200")
+    monkeypatch.setattr(explore, "_STRETCH", 15)  # four stretches
+    asked = (*ASKED, "--examples", "60")
     alone = here(capsys, *asked, "--workers", "1")
     folder = tmp_path / "kept"
     with distributed.Client(cluster, set_as_default=False) as client:
@@ -56,7 +59,7 @@ def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
     found = here(capsys, *asked, "--cluster", address, "--keep", str(folder))
     killer.join()
     assert found == alone
-    assert json_of(found[1])["examples"] == 200
+    assert json_of(found[1])["examples"] == 60
     assert len(list(folder.glob("*.json"))) == 4, "each stretch once"
 
 
