@@ -1,4 +1,4 @@
-"""A Dask cluster of this machine, whose workers are begun, and after a loss begun again, at once."""
+"""A Dask cluster of this machine, whose workers are begun at once, also after a loss."""
 
 import multiprocessing
 from collections.abc import Iterator
