@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 
 import matplotlib
 from markupsafe import Markup
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -79,9 +80,19 @@ def drawing(draw: Callable[[], Figure], *, name: str, label: str) -> Markup:
         figure = draw()
         for text in figure.findobj(Text):
             text.set_text(_printable(text.get_text()))
+        _lay_out(figure)
         figure.savefig(stream, format="svg", metadata={"Date": None})
     root = ElementTree.fromstring(stream.getvalue())  # noqa: S314 - matplotlib's own output
     return _inline(root, name, _printable(label))
+
+
+def _lay_out(figure: Figure) -> None:
+    """Places what is in the figure. Left to it, `savefig` first draws the whole figure for that."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        FigureCanvasSVG(figure)  # by whose letters it is measured
+        engine.execute(figure)
+        figure.set_layout_engine(None)
 
 
 def _printable(text: str) -> str:
