@@ -10,7 +10,7 @@ from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, Reader, claim, report, scene
 from tests.unit.pages.text.test_markdown import (
-    HOSTILE,
+    WORST,
     outline_of_the_page,
     outline_of_the_text,
     strange,
@@ -251,7 +251,7 @@ def test_hostile_text_stays_text() -> None:
     assert EVIL in "".join(Reader(page).texts)
 
 
-@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize("text", WORST)
 def test_hostile_text_stays_text_in_a_repository(text: str) -> None:
     assert not list(strange(render_text(report(gallery=evil(text)))[0]))
 
