@@ -1,4 +1,4 @@
-"""How many examples are drawn: as many as a test asks for, and a fifth of them in CI.
+"""How many examples are drawn: as many as a test asks for, and an eighth of them in CI.
 
 There the same ones are drawn each time, so that more of them would find something once and never
 again; whoever runs a test by hand draws others.
@@ -9,7 +9,7 @@ import os
 from hypothesis import settings
 
 _FEWEST = 5
-_SHARE = 5 if os.environ.get("CI") else 1
+_SHARE = 8 if os.environ.get("CI") else 1
 
 
 def drawn(examples: int) -> settings:

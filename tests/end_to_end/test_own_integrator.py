@@ -4,7 +4,8 @@ import os
 import re
 import subprocess
 import sys
-from pathlib import Path
+
+import pytest
 
 from tests.paths import ROOT
 
@@ -14,38 +15,61 @@ EXAMPLE = re.search(r"```python\n(.*?)```", SECTION, re.DOTALL)
 SHOWN = re.search(r"```\n(.*?)```", SECTION.partition("simplest failure:")[2], re.DOTALL)
 
 
-def by_pytest(text: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    (folder / "test_mine.py").write_text(text, encoding="utf-8")
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir=.",
-               "--hypothesis-seed=0", "test_mine.py"]  # fmt: skip
+# Three programs, by one pytest: as it is printed, with a flipped sign, with a small error.
+PLANTED = {
+    "right": ("p = p - h * h_q", "p = p - h * h_q"),
+    "flipped": ("p = p - h * h_q", "p = p + h * h_q"),
+    "millionth": ("p - h * h_q", "p - 1.000001 * h * h_q"),
+}
+# What else would fail is not asked for: it takes longer than all the rest.
+PROFILE = """
+from hypothesis import Phase, settings
+settings.register_profile("brief", settings(), phases=[Phase.generate, Phase.shrink])
+settings.load_profile("brief")
+"""
+
+
+@pytest.fixture(scope="module")
+def said(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """What pytest says of the three, of which two fail."""
+    assert EXAMPLE
+    folder = tmp_path_factory.mktemp("own")
+    (folder / "conftest.py").write_text(PROFILE, encoding="utf-8")
+    for name, (old, new) in PLANTED.items():
+        assert EXAMPLE[1].count(old) == 1
+        text = EXAMPLE[1].replace(old, new).replace("def test_step", f"def test_{name}_step")
+        (folder / f"test_{name}.py").write_text(text, encoding="utf-8")
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--rootdir=.",
+               "--hypothesis-seed=0", "-v"]  # fmt: skip
     paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     environment = {**os.environ, "PYTHONPATH": paths}
-    return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment)
+    assert done.returncode == 1, done.stdout
+    assert "2 failed, 1 passed" in done.stdout
+    return done.stdout
 
 
-def planted(old: str, new: str) -> str:
-    assert EXAMPLE
-    assert EXAMPLE[1].count(old) == 1
-    return EXAMPLE[1].replace(old, new)
+def failure(said: str, name: str) -> str:
+    """What is said of that program's failure alone."""
+    _, *parts = re.split(r"^_{3,} (test_\w+) _{3,}$", said, flags=re.MULTILINE)
+    return dict(zip(parts[::2], parts[1::2], strict=True))[f"test_{name}_step"]
 
 
-def test_the_example_passes(tmp_path: Path) -> None:
-    assert EXAMPLE
-    done = by_pytest(EXAMPLE[1], tmp_path)
-    assert done.returncode == 0, done.stdout
-    assert "1 passed" in done.stdout
+def values(text: str) -> str:
+    """What is told of values, without comments and lines, which are hypothesis's to make."""
+    lines = (re.sub(r"^E\s", "", line).partition("#")[0] for line in text.splitlines())
+    return "".join("".join(lines).split()).replace(",)", ")").removesuffix(",")
 
 
-def test_a_flipped_sign_fails_and_shrinks_to_what_the_readme_shows(tmp_path: Path) -> None:
-    done = by_pytest(planted("p = p - h * h_q", "p = p + h * h_q"), tmp_path)
-    assert done.returncode == 1
+def test_the_example_passes(said: str) -> None:
+    assert re.search(r"test_right_step PASSED", said), said
+
+
+def test_a_flipped_sign_fails_and_shrinks_to_what_the_readme_shows(said: str) -> None:
     assert SHOWN
-    # What stands behind the values in comments is hypothesis's to say.
-    for line in SHOWN[1].splitlines():
-        assert line.partition("#")[0].strip() in done.stdout, done.stdout
+    assert "q=Fraction(1, 1)" in SHOWN[1]
+    assert values(SHOWN[1]) in values(failure(said, "flipped")), said
 
 
-def test_an_error_of_one_in_a_million_fails_as_simply(tmp_path: Path) -> None:
-    done = by_pytest(planted("p - h * h_q", "p - 1.000001 * h * h_q"), tmp_path)
-    assert done.returncode == 1
-    assert "expression=p**2/2 + q**2/2" in done.stdout, done.stdout
+def test_an_error_of_one_in_a_million_fails_as_simply(said: str) -> None:
+    assert "expression=p**2/2 + q**2/2" in failure(said, "millionth"), said

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from verify.scenes.shapes.outline import Outline
-from verify.studies.regions.panels import NODES, Rule, rule
+from verify.studies.regions.panels import NODES, Rule, nodes_between, rule
 
 FIRST_PANELS = 8  # of an outline, at least
 MOST_NODES = 120_000
@@ -172,7 +172,7 @@ class Probe:
 
     def _panels(self, parts: Sequence[_Part]) -> list[Panel]:
         starts = [
-            self.plane.points(self.outlines[i], arc, [a + (b - a) * s for s in self.rule.nodes])
+            self.plane.points(self.outlines[i], arc, nodes_between(self.rule.bits, a, b))
             for i, arc, a, b in parts
         ]
         images = self._images(starts, self.plane.images)

@@ -9,7 +9,7 @@ and nodes added; corners belong at the ends of panels.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from math import prod
 
 import flint
@@ -55,6 +55,12 @@ def rule(bits: int) -> Rule:
     whole = [[round(x * 2 ** (bits - 1)) for x in _exact(row)] for row in pairs]
     swept = np.array(whole, dtype=object)
     return Rule(bits, _exact(nodes), _exact(weights), tuple(map(_exact, d)), swept)
+
+
+@lru_cache(maxsize=8192)
+def nodes_between(bits: int, left: Fraction, right: Fraction) -> tuple[Fraction, ...]:
+    """The nodes of that rule on left ≤ s ≤ right. Each curve is cut first in the same places."""
+    return tuple(left + (right - left) * s for s in rule(bits).nodes)
 
 
 def _root(k: int) -> tuple[Ball, Ball]:

@@ -130,6 +130,8 @@ def test_a_linear_map_changes_areas_by_its_determinant(scheme: str, outline: Out
     found = measured(own, floats(scheme, h, steps))
     assert abs(found.change - true) <= found.error
     assert found.error < 1e-11
+    if outline is CAT:  # many arcs, and below it is carried with 33 digits, too
+        return
     fine = measured(own, wide(scheme, h, steps), WIDE_GOAL)
     assert abs(fine.change - true) <= fine.error < Fraction(1, 10**26)
 
@@ -137,8 +139,10 @@ def test_a_linear_map_changes_areas_by_its_determinant(scheme: str, outline: Out
 SYMPLECTIC = ("symplectic-euler", "stormer-verlet", "gauss4", "yoshida4")
 
 
-@pytest.mark.parametrize("scheme", SYMPLECTIC)
-@pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
+@pytest.mark.parametrize(
+    ("scheme", "hamiltonian"),
+    zip(SYMPLECTIC, (DUFFING, PENDULUM, DUFFING, PENDULUM), strict=True),
+)
 def test_what_preserves_area_changes_it_by_nothing_that_the_probe_can_tell(
     scheme: str, hamiltonian: Hamiltonian
 ) -> None:
@@ -176,12 +180,12 @@ PLACES = [
     (PENDULUM, (1, "1/2", "3/4"), CHANGED),
     (PENDULUM, TINY, ROUNDED),
 ]
-# Each scheme at one place, and three of them at all.
+# Each scheme at one place, and one of them at all.
 CARRIED = [
     (place, stepped)
     for k, place in enumerate(PLACES)
     for n, stepped in enumerate(STEPPED)
-    if n % 3 == k or stepped[0] in ("lie3", "stormer-verlet", "explicit-midpoint")
+    if n % 3 == k or stepped[0] == "lie3"
 ]
 
 
