@@ -38,10 +38,15 @@ class Series:
         return Series([-a for a in self.c])
 
     def __mul__(self, other: Any) -> "Series":
-        b = self.like(other).c
-        return Series(
-            [sum((self.c[k] * b[n - k] for k in range(n + 1)), MP.mpf(0)) for n in range(len(b))]
-        )
+        # Constants are series of zeros but for one number: what is 0 is left out.
+        own = [(k, x) for k, x in enumerate(self.c) if x]
+        found = [MP.mpf(0)] * len(self.c)
+        for m, y in enumerate(self.like(other).c):
+            if y:
+                for k, x in own:
+                    if k + m < len(found):
+                        found[k + m] += x * y
+        return Series(found)
 
     def inverse(self) -> "Series":
         found: list[Any] = []

@@ -68,6 +68,7 @@ class _Printer(StrPrinter):  # type: ignore[misc]
         return f"exp({self._print(expr.exp * sympy.log(expr.base))})"
 
 
+@lru_cache(maxsize=512)
 def to_text(expression: sympy.Expr) -> str:
     """The expression as a formula that `parse` reads back, to an equal expression."""
     return str(_Printer().doprint(expression))

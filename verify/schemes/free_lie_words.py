@@ -104,19 +104,28 @@ def step(kind: str, parts: Sequence[Mapping[str, E]], most: int, one: E) -> dict
     for part in parts:
         factor = _exponential(part, all_words, shares)
         after = {}
-        for word in all_words:
+        for word, cuts in _cuts(kind, most):
             total = series.get(word)
-            for length in range(1, len(word) + 1):
-                share = factor.get(word[-length:])
+            for head, tail in cuts:
+                share = factor.get(tail)
                 if share is None:
                     break
-                before = series.get(word[:-length])
+                before = series.get(head)
                 if before is not None:
                     total = before * share if total is None else total + before * share
             if total is not None:
                 after[word] = total
         series = after
     return {word: series.get(word, one * 0) for word in all_words}
+
+
+@cache
+def _cuts(kind: str, most: int) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
+    """Each word with its cuts in two, the shortest ends first."""
+    return tuple(
+        (word, tuple((word[:-n], word[-n:]) for n in range(1, len(word) + 1)))
+        for word in words(kind, most)
+    )
 
 
 def _exponential(
