@@ -79,8 +79,8 @@ CLOSED_FORMS: dict[str, tuple[str, str, Exact, Exact, Any]] = {
 }  # fmt: skip
 
 
-EXACT_TO = [(name, digits) for name in CLOSED_FORMS for digits in (5, 25)]
-EXACT_TO += [("swing", 50), ("circle", 50)]
+EXACT_TO = [(name, digits) for name in CLOSED_FORMS for digits in (5, 20)]
+EXACT_TO += [("swing", 40), ("circle", 40)]
 
 
 @pytest.mark.parametrize(("name", "digits"), EXACT_TO)

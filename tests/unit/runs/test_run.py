@@ -129,7 +129,7 @@ def test_estimated_bounds_hold_for_many_steps() -> None:
 
 @pytest.mark.parametrize(
     ("steps", "count", "direct"),
-    [(2_000, 15, DIRECT_STEPS), (20_001, 60, 0)],
+    [(2_000, 15, DIRECT_STEPS), (20_001, 36, 0)],
     ids=["certified", "compensated"],
 )
 def test_bounds_hold_for_every_one_of_many_random_runs(

@@ -14,7 +14,7 @@ from verify.reference.check.check import Checked, check
 from verify.reference.make.models import DATA_FORMAT, Data
 from verify.reference.make.writing import MANIFEST, digest
 
-FLIPS = 20  # of each kind of file
+FLIPS = 12  # of each kind of file
 
 
 @pytest.fixture(scope="module")
