@@ -27,7 +27,7 @@ class Leading:
 
     `decision.zero` is False at a proved leading term, None at an undecided one, and True where
     every coefficient vanishes (`power` is None then). False with `power` None: ΔJ is not zero, but
-    its leading term lies beyond the orders looked at.
+    its leading term lies beyond the orders looked at; `element` is then ΔJ itself.
     """
 
     power: int | None
@@ -37,7 +37,7 @@ class Leading:
     @cached_property
     def coefficient(self) -> sympy.Expr:
         """As an expression; 0 where there is none."""
-        if self.element is None:
+        if self.element is None or self.power is None:
             return sympy.S.Zero
         ring, x = self.element
         return ring.factored(x)
@@ -45,7 +45,7 @@ class Leading:
     @cached_property
     def domain(self) -> Domain:
         """The parameters for which the coefficient is not the zero function of p and q."""
-        if self.decision.zero is not False or self.element is None:
+        if self.decision.zero is not False or self.element is None or self.power is None:
             return EVERYWHERE
         return not_zero_for(*self.element, f"the coefficient of h^{self.power}")
 
@@ -53,13 +53,13 @@ class Leading:
         """As it is in the domain: the witness lies there, and without a point nothing is said."""
         if self.decision.zero is None or not domain.requirements:
             return self
-        ring, x = self.element or _ZERO
+        ring, x = self.element or _ZERO  # what vanishes has no element
         return replace(self, decision=domain.decide(ring, x))
 
     @property
     def text(self) -> str:
         """As a formula."""
-        if self.element is None:
+        if self.element is None or self.power is None:
             return "0"
         ring, x = self.element
         return ring.text(x)

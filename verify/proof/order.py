@@ -115,8 +115,7 @@ def leading_of(step_map: StepMap, series: _BySeries | None = None) -> Leading:
     if step.degree is None:
         leading = Expansion(step.ring, step.delta_j).leading()
         if leading.decision.zero is None and leading.power == MOST_ORDERS + 1:
-            # All coefficients looked at vanish; ΔJ itself may still be shown not to.
-            return Leading(None, step.ring.decide(step.delta_j))
+            return _beyond(step.ring, step.delta_j)
         return leading
     found = first_nonzero(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
     return found or VANISHES
@@ -131,8 +130,15 @@ def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
         return VANISHES
     if step_map.implicit:
         return Leading(MOST_ORDERS + 1, Decision(None))
-    decision = whole.ring.decide(whole.delta_j)
-    return Leading(MOST_ORDERS + 1 if decision.zero is None else None, decision)
+    return _beyond(whole.ring, whole.delta_j)
+
+
+def _beyond(ring: Ring, delta_j: Poly) -> Leading:
+    """Where all coefficients that are looked at vanish; ΔJ itself may still be shown not to."""
+    decision = ring.decide(delta_j)
+    if decision.zero is None:
+        return Leading(MOST_ORDERS + 1, decision)
+    return Leading(None, decision, None if decision.zero else (ring, delta_j))
 
 
 @dataclass(frozen=True)

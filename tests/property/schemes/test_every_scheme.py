@@ -102,7 +102,9 @@ def test_a_scheme_has_one_name_and_no_other(name: str) -> None:
     for file in schemes._FILES.names:
         made = schemes._made(file, name)
         assert made is None or made.name == name
-    for wrong in (f"{name} ", name.upper(), f"{name}x"):
+    for said in (f" {name} ", name.upper(), name.capitalize()):
+        assert get(said).name == name
+    for wrong in (f"{name}x", f"x{name}", f"{name}\n{name}"):
         with pytest.raises(InputError, match=r"unknown|order"):
             get(wrong)
 
