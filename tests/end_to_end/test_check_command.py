@@ -230,24 +230,6 @@ def test_an_interrupted_check_ends_with_130_and_says_what_is_kept(
 # -- documentation --------------------------------------------------------------------------------
 
 
-def test_the_readmes_claims_file_gives_the_verdicts_that_it_prints(tmp_path: Path) -> None:
-    readme = (ROOT / "README.md").read_text()
-    section = readme[readme.index("## Check a paper's claims") :]
-    (content, printed) = re.findall(r"```(?:toml)?\n(.*?)```", section, re.DOTALL)[:2]
-    (tmp_path / "claims.toml").write_text(content)
-    command = [
-        sys.executable,
-        "-c",
-        "from verify.commands.main import main; main()",
-        "check",
-        "claims.toml",
-    ]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
-    assert (done.returncode, done.stderr) == (1, "")
-    assert done.stdout.splitlines() == printed.splitlines()
-
-
 def test_the_example_of_the_help_is_a_claims_file(
     capsys: pytest.CaptureFixture[str], claims: Any
 ) -> None:

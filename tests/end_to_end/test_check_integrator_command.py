@@ -1,7 +1,6 @@
-"""`verify check-integrator` and the README's example of `verify.testing`, as users run them."""
+"""`verify check-integrator` and the examples of docs/check-integrator.md, as users run them."""
 
 import os
-import re
 import subprocess
 import sys
 import time
@@ -10,19 +9,18 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
+from tests.helpers.pages import PAGES, blocks
 from tests.paths import ROOT
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-SECTION = README.partition("<!-- check-integrator -->")[2].partition("\n## ")[0]
-EXAMPLE, TESTED = re.findall(r"```python\n(.*?)```", SECTION, re.DOTALL)
-SHOWN = re.findall(r"```\n((?:REFUTED|PROVED).*?)```", SECTION, re.DOTALL)
+FILES = {block.file: block.text for block in blocks(PAGES["docs/check-integrator.md"])}
+EXAMPLE, TESTED = FILES["mine.py"], FILES["test_mine.py"]
 KEYS = {"verdict", "order", "leading", "delta_j", "area_preserving", "convergence_order",
         "telescopes", "potential", "seconds", "reason", "witness"}  # fmt: skip
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The README's `mine.py`, in the current folder; it is imported anew."""
+    """The page's `mine.py`, in the current folder; it is imported anew."""
     (tmp_path / "mine.py").write_text(EXAMPLE, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
@@ -38,15 +36,6 @@ def test_a_plain_function_is_checked_in_under_five_seconds(folder: Path) -> None
     found = json_of(done.stdout)
     assert set(found) >= KEYS
     assert (found["verdict"], found["area_preserving"]) == ("PROVED", True)
-
-
-def test_the_text_is_that_of_the_readme(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shown = iter(SHOWN)
-    for command in re.findall(r"verify (check-integrator mine.*)", SECTION):
-        status, out, _ = here(capsys, *command.split())
-        text = next(shown)
-        assert status == (1 if text.startswith("REFUTED") else 0)
-        assert out == text
 
 
 def test_json_of_a_refuted_claim_has_the_counterexample(

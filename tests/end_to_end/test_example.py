@@ -1,22 +1,17 @@
-"""The README's notebook example, run as it is printed."""
+"""The notebook of docs/notebooks.md, run as it is printed."""
 
-import re
 from typing import Any
 
 import pytest
 from matplotlib.figure import Figure
 
-from tests.paths import ROOT
+from tests.helpers.page_session import read_through
+from tests.helpers.pages import PAGES
 
 
 @pytest.fixture(scope="module")
-def made() -> dict[str, Any]:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    match = re.search(r"<!-- notebook -->\n```python\n(.*?)```", readme, re.DOTALL)
-    assert match
-    names: dict[str, Any] = {}
-    exec(match[1], names)  # noqa: S102 - the README's own
-    return names
+def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    return read_through(PAGES["docs/notebooks.md"], tmp_path_factory.mktemp("notebook")).names
 
 
 def test_the_proof_has_order_3_and_shows_it(made: dict[str, Any]) -> None:

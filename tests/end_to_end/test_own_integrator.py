@@ -1,4 +1,4 @@
-"""The README's property test of somebody's own step, run as it is printed, and with errors."""
+"""The property test of docs/tests-of-your-own.md, run as it is printed, and with errors."""
 
 import os
 import re
@@ -7,13 +7,12 @@ import sys
 
 import pytest
 
+from tests.helpers.pages import PAGES, blocks
 from tests.paths import ROOT
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-SECTION = README.partition("<!-- own-integrator -->")[2].partition("\n## ")[0]
-EXAMPLE = re.search(r"```python\n(.*?)```", SECTION, re.DOTALL)
-SHOWN = re.search(r"```\n(.*?)```", SECTION.partition("simplest failure:")[2], re.DOTALL)
-
+BLOCKS = blocks(PAGES["docs/tests-of-your-own.md"])
+(EXAMPLE,) = (block.text for block in BLOCKS if block.file == "test_mine.py")
+(SHOWN,) = (block.text for block in BLOCKS if block.before.endswith("shows the simplest failure:"))
 
 # Three programs, by one pytest: as it is printed, with a flipped sign, with a small error.
 PLANTED = {
@@ -32,12 +31,11 @@ settings.load_profile("brief")
 @pytest.fixture(scope="module")
 def said(tmp_path_factory: pytest.TempPathFactory) -> str:
     """What pytest says of the three, of which two fail."""
-    assert EXAMPLE
     folder = tmp_path_factory.mktemp("own")
     (folder / "conftest.py").write_text(PROFILE, encoding="utf-8")
     for name, (old, new) in PLANTED.items():
-        assert EXAMPLE[1].count(old) == 1
-        text = EXAMPLE[1].replace(old, new).replace("def test_step", f"def test_{name}_step")
+        assert EXAMPLE.count(old) == 1
+        text = EXAMPLE.replace(old, new).replace("def test_step", f"def test_{name}_step")
         (folder / f"test_{name}.py").write_text(text, encoding="utf-8")
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--rootdir=.",
                "--hypothesis-seed=0", "-v"]  # fmt: skip
@@ -65,11 +63,10 @@ def test_the_example_passes(said: str) -> None:
     assert re.search(r"test_right_step PASSED", said), said
 
 
-def test_a_flipped_sign_fails_and_shrinks_to_what_the_readme_shows(said: str) -> None:
-    assert SHOWN
-    assert "q=Fraction(1, 1)" in SHOWN[1]
-    assert values(SHOWN[1]) in values(failure(said, "flipped")), said
+def test_a_flipped_sign_fails_and_shrinks_to_what_the_page_shows(said: str) -> None:
+    assert "q=Fraction(1, 1)" in SHOWN
+    assert values(SHOWN) in values(failure(said, "flipped")), said
 
 
 def test_an_error_of_one_in_a_million_fails_as_simply(said: str) -> None:
-    assert "expression=p**2/2 + q**2/2" in failure(said, "millionth"), said
+    assert "text='p**2/2 + q**2/2'" in failure(said, "millionth"), said

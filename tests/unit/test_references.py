@@ -13,7 +13,7 @@ import pytest
 from tests.paths import ROOT
 
 KINDS = {".py", ".md", ".toml", ".html", ".js", ".css"}
-FOLDERS = ("verify", "reports", "reference", "tests")
+FOLDERS = ("verify", "reports", "reference", "tests", "docs")
 LEFT_OUT = {
     Path(__file__),  # it plants what is not there
     ROOT / "tests" / "mutants" / "README.md",  # made from results on an older source, by a program
@@ -24,7 +24,7 @@ FILES = [
     ROOT / "pyproject.toml",
 ]
 DOTTED = re.compile(r"(?<![\w./-])verify(?:\.\w+)+")
-PATHS = re.compile(r"(?<![\w./:-])(?:verify|tests|reports|reference)/[\w/.-]*\w")
+PATHS = re.compile(r"(?<![\w./:-])(?:verify|tests|reports|reference|docs)/[\w/.-]*\w")
 PATTERN = re.compile(r"[A-Z]{4,}")  # FAMILY/NAME.py stands for any
 ONLY_IN_A_WHEEL = re.compile(r"verify[/.]data\b")
 NO_NAMES = {

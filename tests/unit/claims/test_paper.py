@@ -9,7 +9,7 @@ from tests.paths import ROOT
 from verify.claims.file import load_claims
 
 FILE = load_claims(ROOT / "reports" / "paper" / "claims.toml")
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = ("README.md", "docs/results-of-the-paper.md")
 EQUATIONS = range(1, 33)
 CRITERIA = range(1, 5)
 FIGURES = range(1, 15)
@@ -115,12 +115,22 @@ def test_no_statement_says_how_it_is_read() -> None:
     assert not [c.id for c in FILE.claims if c.reading_of in several and not c.reading]
 
 
-def test_the_readme_counts_the_statements_of_the_file() -> None:
+@pytest.mark.parametrize("page", PAGES)
+def test_the_documentation_counts_the_statements_of_the_file(page: str) -> None:
+    text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
     readings = [claim for claim in FILE.claims if claim.standing != "ours"]
     statements = {claim.reading_of for claim in readings}
-    said = f"{len(statements)} statements of the paper, in {len(readings)} readings"
-    assert said in " ".join(README.split())
-    assert f"{len(FILE.claims) - len(readings)} more claims are ours" in " ".join(README.split())
+    assert f"{len(statements)} statements of the paper, in {len(readings)} readings" in text
+    assert f"{len(FILE.claims) - len(readings)} more claims are ours" in text
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_documentation_names_the_paper_as_the_file_does(page: str) -> None:
+    text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
+    (named,) = (line.removeprefix("The paper: ") for line in FILE.about if "Contemporary" in line)
+    paper, doi = re.fullmatch(r"(.*, \d{4}), (doi:\S+?)\. .*", named).groups()  # type: ignore[union-attr]
+    assert paper in text
+    assert f"[{doi}](https://doi.org/{doi.removeprefix('doi:')})" in text
 
 
 def test_the_page_names_the_paper_and_does_not_call_it_verified() -> None:

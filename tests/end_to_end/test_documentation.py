@@ -1,0 +1,102 @@
+"""README.md and docs/*.md: what they tell to do is done, and what they print is what comes out."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.page_session import PageError, read_through
+from tests.helpers.pages import PAGES
+
+# What these define is looked at further, by a test that reads them through itself.
+ELSEWHERE = {"docs/notebooks.md": "test_example.py"}
+
+
+@pytest.mark.parametrize("name", sorted(set(PAGES) - set(ELSEWHERE)))
+def test_what_a_page_prints_is_what_comes_out(name: str, tmp_path: Path) -> None:
+    read_through(PAGES[name], tmp_path)
+
+
+@pytest.mark.parametrize("name", ELSEWHERE)
+def test_the_other_pages_are_read_through_elsewhere(name: str) -> None:
+    test = Path(__file__).with_name(ELSEWHERE[name]).read_text(encoding="utf-8")
+    assert f'read_through(PAGES["{name}"]' in test
+
+
+# -- a page that is wrong is seen -----------------------------------------------------------------
+
+PAGE = """
+Save this as `mine.toml`:
+
+```toml
+[defaults]
+scheme = "lie2"
+system = "duffing"
+```
+
+Append this to `mine.toml`:
+
+```toml
+[[claim]]
+id = "order"
+kind = "order"
+order = 4
+```
+
+```console
+$ verify check mine.toml \\
+      --only order
+REFUTED    order  ΔJ = (3*delta*p*q)·h^3 + O(h^4); at p = 7/17, q = 11/19, delta = 13/23 the \
+coefficient is [0.404226679230 +/- 4.45e-14], where delta ≠ 0
+1 claim: 1 REFUTED
+$ echo $?
+1
+$ cat mine.toml
+[defaults]
+…
+order = 4
+```
+
+```python
+from verify.schemes import get
+```
+
+```pycon
+>>> get("lie2").order
+2
+```
+
+```sh
+python3 -m venv .venv && .venv/bin/verify report paper -o paper-report   # takes minutes
+```
+"""
+WRONG = {
+    "a digit": ("404226679230", "404226679231"),
+    "a line too few": ("1 claim: 1 REFUTED\n", ""),
+    "a line too many": ("1 claim: 1 REFUTED\n", "1 claim: 1 REFUTED\nnothing else\n"),
+    "a status that is not told": ("$ echo $?\n1\n", ""),
+    "another status": ("$ echo $?\n1\n", "$ echo $?\n0\n"),
+    "a file that nobody told to save": ("Save this as", "This is"),
+    "what is appended, saved": ("Append this to", "Save this as"),
+    "what is saved, appended": ("Save this as", "Append this to"),
+    "an option that is not there": ("paper -o", "paper --output-folder"),
+    "a command that is not there": ("verify report", "verify reprot"),
+    "a program that is not known": ("python3 -m", "pyhton3 -m"),
+    "Python that fails": ("import get", "import got"),
+    "another value": (".order\n2", ".order\n3"),
+    "lines left out where others stand": ("…\norder = 4", "…\norder = 5"),
+    "a block of no kind": ("```sh", "```"),
+}
+
+
+def test_a_page_that_is_right_is_read_through(tmp_path: Path) -> None:
+    session = read_through(PAGE, tmp_path)
+    assert session.ran == 3
+    assert session.names["get"]
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_a_page_that_is_wrong_is_seen(what: str, tmp_path: Path) -> None:
+    old, new = WRONG[what]
+    assert PAGE.count(old) == 1
+    with pytest.raises(PageError):
+        read_through(PAGE.replace(old, new), tmp_path)

@@ -1,0 +1,95 @@
+"""README.md and docs: links that lead somewhere, an index, every command, a README of 8 kB."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.pages import PAGES, agrees, blocks, broken, commands, links
+from tests.paths import ROOT
+from verify.commands.main import cli
+
+MOST_BYTES = 8000  # of the README
+LINKED = {ROOT / name: text for name, text in PAGES.items()} | {
+    path: path.read_text(encoding="utf-8")
+    for path in (
+        *ROOT.glob("[A-Z]*.md"),
+        ROOT / "tests" / "README.md",
+        ROOT / "reference/README.md",
+    )
+}
+
+
+def test_every_link_leads_somewhere() -> None:
+    found = {path.name: broken(path, text) for path, text in LINKED.items()}
+    assert not {name: links for name, links in found.items() if links}
+    assert sum(len([*links(text)]) for text in LINKED.values()) > 100, "they were looked at"
+
+
+@pytest.mark.parametrize(
+    ("link", "wrong"),
+    [("docs/run.md", "docs/runs.md"), ("docs/prove.md#from-coefficients", "docs/prove.md#from"),
+     ("#sixty-seconds", "#seconds"), ("reports/paper/cat.png", "reports/cat.png")],
+)  # fmt: skip
+def test_a_link_that_leads_nowhere_is_seen(link: str, wrong: str) -> None:
+    page = PAGES["README.md"]
+    for mark in ("", "!"):
+        assert not broken(ROOT / "README.md", f"{page}\n{mark}[x]({link})")
+        assert broken(ROOT / "README.md", f"{page}\n| {mark}[x]({wrong}) |") == [wrong]
+    assert not broken(ROOT / "README.md", f"{page}\n[x](https://example.org/{wrong})")
+
+
+def test_every_page_stands_in_the_index_and_the_readme_leads_there() -> None:
+    pages = {Path(name).name for name in PAGES if name.startswith("docs/")} - {"README.md"}
+    assert len(pages) > 20
+    assert set(links(PAGES["docs/README.md"])) == pages
+    assert "docs/README.md" in set(links(PAGES["README.md"]))
+
+
+def test_the_readme_is_short() -> None:
+    assert len(PAGES["README.md"].encode()) <= MOST_BYTES
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/command-line.md"])
+def test_every_command_stands_in_the_table(page: str) -> None:
+    # A certificate is written by `prove`, and its page stands beside that in the README's table.
+    other = {"certificate"} if page == "README.md" else set()
+    rows = [line for line in PAGES[page].splitlines() if line.startswith("| ")]
+    missing = {name for name in cli.commands if not any(f"`verify {name}" in row for row in rows)}
+    assert missing == other
+
+
+def test_no_run_time_is_printed_as_a_fact() -> None:
+    """Of what commands print: a page that says when it was measured may have them."""
+    shown = [
+        line
+        for text in PAGES.values()
+        for block in blocks(text)
+        if block.language == "console"
+        for _, lines in commands(block.text)
+        for line in lines
+    ]
+    assert len(shown) > 200
+    assert any("… s" in line for line in shown)
+    assert not [line for line in shown if re.search(r"\d s\b", line)]
+
+
+@pytest.mark.parametrize(
+    ("shown", "printed", "same"),
+    [
+        ("20 steps, … s; done", "20 steps, 0.157 s; done", True),
+        ("20 steps, … s; done", "20 steps, 1e-05 s; done", True),
+        ("20 steps, … s; done", "20 steps, long s; done", False),
+        ("20 steps, … s; done", "21 steps, 0.157 s; done", False),
+        ("… steps", "20 steps", False),
+        ("a\n…\nd", "a\nb\nc\nd", True),
+        ("a\n…\nd", "a\nd", True),
+        ("a\n…\nd", "a\nb\nc", False),
+        ("h … 2h", "h … 2h", True),
+        ("h … 2h", "h 1 2h", False),
+        ("a.c", "abc", False),
+        ("a  ", "a", True),
+    ],
+)
+def test_only_what_is_marked_may_differ(shown: str, printed: str, same: bool) -> None:
+    assert agrees(shown.splitlines(), printed.splitlines()) == same
