@@ -1,6 +1,7 @@
 """`verify check-integrator` and the examples of docs/check-integrator.md, as users run them."""
 
 import os
+import re
 import subprocess
 import sys
 import time
@@ -88,24 +89,28 @@ def test_the_help_says_that_it_runs_the_users_code(capsys: pytest.CaptureFixture
     assert "RUNS YOUR CODE" in out
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "status", "said"),
-    [
-        ("", "", 0, "passed"),
-        ("p = p - h / 2", "p = p + h / 2", 1, "not a scheme for this H"),
-        ("step, PENDULUM, 2", "step, PENDULUM, 3", 1, "order 3 is claimed"),
-    ],
-)
-def test_the_pytest_example_passes_and_fails_with_an_error(
-    folder: Path, old: str, new: str, status: int, said: str
-) -> None:
-    assert not old or (EXAMPLE + TESTED).count(old) == 1
-    (folder / "mine.py").write_text(EXAMPLE.replace(old, new), encoding="utf-8")
-    (folder / "test_mine.py").write_text(TESTED.replace(old, new), encoding="utf-8")
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir=.",
-               "test_mine.py"]  # fmt: skip
+# Three programs, by one pytest: as the page prints it, with a flipped sign, with a higher order.
+PLANTED = {
+    "right": ("", "", ""),
+    "flipped": ("p = p - h / 2", "p = p + h / 2", "not a scheme for this H"),
+    "higher": ("step, PENDULUM, 2", "step, PENDULUM, 3", "order 3 is claimed"),
+}
+
+
+def test_the_pytest_example_passes_and_fails_with_an_error(tmp_path: Path) -> None:
+    for name, (old, new, _) in PLANTED.items():
+        assert not old or (EXAMPLE + TESTED).count(old) == 1
+        test = TESTED.replace(old, new).replace("from mine", f"from {name}")
+        (tmp_path / f"{name}.py").write_text(EXAMPLE.replace(old, new), encoding="utf-8")
+        (tmp_path / f"test_{name}.py").write_text(test, encoding="utf-8")
+    command = [sys.executable, "-m", "pytest", "-v", "-p", "no:cacheprovider", "--rootdir=."]
     paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     environment = {**os.environ, "PYTHONPATH": paths}
-    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment)
-    assert done.returncode == status, done.stdout
-    assert said in done.stdout
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
+    assert done.returncode == 1, done.stdout
+    assert "2 failed, 1 passed" in done.stdout
+    assert "test_right.py::test_step PASSED" in done.stdout
+    for name in ("flipped", "higher"):
+        # What is said of a failure begins with the test's source and ends with file and line.
+        told = re.split(rf"\ntest_{name}\.py:\d", done.stdout)[0].rpartition("def test_step")[2]
+        assert PLANTED[name][2] in told
