@@ -101,6 +101,12 @@ def links(page: str) -> Iterator[str]:
                 yield str(target)
 
 
+def code_in_text(page: str) -> Iterator[str]:
+    """What stands between backticks in its sentences and tables."""
+    for token in MarkdownIt().enable("table").parse(page):
+        yield from (c.content for c in token.children or [] if c.type == "code_inline")
+
+
 def broken(path: Path, page: str) -> list[str]:
     """The links of the page at this path that lead nowhere; those to other hosts are not asked."""
     found = []

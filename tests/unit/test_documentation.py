@@ -1,11 +1,13 @@
 """README.md and docs: links that lead somewhere, an index, every command, a README of 8 kB."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 
-from tests.helpers.pages import PAGES, agrees, blocks, broken, commands, links
+from tests.helpers.pages import PAGES, agrees, blocks, broken, code_in_text, commands, links
 from tests.paths import ROOT
 from verify.commands.main import cli
 
@@ -57,6 +59,52 @@ def test_every_command_stands_in_the_table(page: str) -> None:
     rows = [line for line in PAGES[page].splitlines() if line.startswith("| ")]
     missing = {name for name in cli.commands if not any(f"`verify {name}" in row for row in rows)}
     assert missing == other
+
+
+def commands_below(command: click.Command, name: str) -> Iterator[tuple[str, click.Command]]:
+    """Each command with its name, such as `verify reference make`."""
+    yield name, command
+    if isinstance(command, click.Group):
+        for below, inner in command.commands.items():
+            yield from commands_below(inner, f"{name} {below}")
+
+
+COMMANDS = dict(commands_below(cli, "verify"))
+OPTIONS = {o for c in COMMANDS.values() for p in c.params for o in p.opts} | {"-h", "--help"}
+TEXTS = {name: [*code_in_text(text)] for name, text in PAGES.items()}
+
+
+def stale(code: str) -> bool:
+    """Whether it is a command of ours, or options, that are not there."""
+    words = code.replace("COMMAND", "prove").split()
+    named = " ".join(words[:2]) in COMMANDS or words[:1] != ["verify"] or len(words) == 1
+    options = {word for word in words if re.match(r"--?[a-z]", word)}
+    return not named or (words[0] in {"verify", *options} and not options <= OPTIONS)
+
+
+def test_commands_and_options_in_sentences_are_there() -> None:
+    assert not {name: [c for c in codes if stale(c)] for name, codes in TEXTS.items()
+                if any(map(stale, codes))}  # fmt: skip
+    assert sum(code.startswith(("verify ", "--")) for c in TEXTS.values() for code in c) > 70
+
+
+@pytest.mark.parametrize(
+    ("code", "is_stale"),
+    [
+        ("verify prove --scheme lie2", False), ("verify prov", True), ("--digits", False),
+        ("--digit", True), ("verify run --digit 5", True), ("-o", False), ("-x", True),
+        ("verify", False), ("verify.prove", False), ("python -m verify", False),
+    ],
+)  # fmt: skip
+def test_a_stale_command_or_option_is_seen(code: str, is_stale: bool) -> None:
+    assert stale(code) == is_stale
+
+
+def test_what_is_not_typed_is_looked_at_by_another_test() -> None:
+    texts = {
+        name for name, page in PAGES.items() if any(b.language == "text" for b in blocks(page))
+    }
+    assert texts == {"docs/tests-of-your-own.md"}, "test_own_integrator.py looks at its failure"
 
 
 def test_no_run_time_is_printed_as_a_fact() -> None:
