@@ -115,7 +115,7 @@ def test_a_mistake_is_told_to_people_and_to_programs(
         ("step,p\n0,zero\n", GIVEN, "line 2, p=zero: not a finite number"),
         ("step,p\n7,1\n", GIVEN, "has no row of these data"),
         ("step,p\n0,\n1,\n", GIVEN, "are empty"),
-        ("step,p\n0,1\n", [*GIVEN[:3], "lie3", *GIVEN[4:]], "scheme = lie3, step_size = 0.001"),
+        ("step,p\n0,1\n", [*GIVEN[:3], "lie37", *GIVEN[4:]], "scheme = lie37, step_size = 0.001"),
         ("step,p\n0,1\n", [], "--scene"),
         ("step,p\n0,1\n", [*GIVEN, "--column", "p"], "OURS=THEIRS"),
         ("step,p\n0,1\n", ["--scene", "nowhere"], "is not in the reference data; they have:"),
