@@ -1,0 +1,227 @@
+"""The states of a run, at every step or thinned: t, p, q, H − H₀, ΔJ and Λ.
+
+A float64 run's p, q and Λ are the numbers of that run, whole: it is what is under test. In any
+other arithmetic the states of exact arithmetic are wanted: the run is done twice, with 15 more
+digits the second time, at a precision that is raised until the two agree to the digits asked for,
+and a row holds the digits in which they do. That is an estimate, as in `verify.runs.estimated`.
+
+H − H₀ and ΔJ are those of exact arithmetic at the state in the row, enclosed by balls; where a step
+solves equations ΔJ is found with mpfr at twice the digits.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify import arithmetic as number_systems
+from verify.algebra.enclosure import Enclosures
+from verify.arithmetic.arb import around, in_reach, middle_and_radius
+from verify.arithmetic.exact import known_digits, text, whole
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError, bits_for
+from verify.arithmetic.systems import ball, float64, mpfr
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.chunked_loop import Note, Progress
+from verify.kernels.computation import step_map_of
+from verify.kernels.kernel import kernel_for
+from verify.kernels.orbit import Orbit
+from verify.kernels.stepping import KernelRun, Outcome
+from verify.runs.digits_on_demand import choose
+from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
+from verify.scenes.results.orbit import OrbitTable
+from verify.scenes.results.run import RunResult
+
+MOST_POINTS = 10_000
+_ATTEMPTS = 6
+_MORE_DIGITS = 15
+_GUARD = 60  # bits, of what cancels in H − H₀; beyond, twice as many are tried
+_BINARY = "p, q and Λ are the numbers of the float64 run, whole"
+_AGREED = "the digits in which two runs agree"
+_STATE = ("p", "q")
+_ZERO = Fraction(0)
+Box = Mapping[str, tuple[Fraction, Fraction]]  # p and q, each with how far it may be off
+
+
+@dataclass(frozen=True)
+class _States:
+    """What is carried, at the steps `at`, with how far it may be off; 0 where it is what it is."""
+
+    at: tuple[int, ...]
+    notes: tuple[Note, ...]
+    radii: tuple[Note, ...]
+
+
+def orbit_of(
+    result: RunResult, points: int = MOST_POINTS, progress: Progress | None = None
+) -> OrbitTable:
+    """The states of a run: every step up to `points` of them, then every second, third, …
+
+    `points`: so many states after the initial one at most, 1 … 10,000; the last state is always
+    among them. Of a run that left the arithmetic's range: the states up to its last finite one.
+    The run is done again, or twice; `progress` is called with the number of steps done. Raises
+    InputError where no digits of it can be confirmed.
+    """
+    whole("points", points, 1, MOST_POINTS)
+    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
+    step_size, q, p = (Fraction(x) for x in (result.step_size, result.q, result.p))
+    orbit = Orbit(hamiltonian, result.scheme, step_size, q, p)
+    binary = result.arithmetic == float64.NAME
+    states = _states(orbit, result.steps, points, 0 if binary else result.digits, progress)
+    rows = _Rows(orbit, float64.NUMBER_SYSTEM.digits or 17 if binary else result.digits)
+    every = states.at[1] if len(states.at) > 1 else 1
+    return OrbitTable(tuple(rows.of(states, binary)), every, _BINARY if binary else _AGREED)
+
+
+# -- the states -----------------------------------------------------------------------------------
+
+
+def _states(
+    orbit: Orbit, steps: int, points: int, digits: int, progress: Progress | None
+) -> _States:
+    """The states of the run; in float64 where no digits are asked for."""
+    start = {"p": orbit.p, "q": orbit.q, "h": orbit.step_size}
+    whole_area = step_map_of(orbit.hamiltonian, orbit.scheme).preserves_area
+    asked: frozenset[str] = frozenset() if whole_area else frozenset({"lambda"})
+    while True:
+        run = KernelRun(orbit.hamiltonian, orbit.scheme, start, steps, asked, 0, sections=points)
+        found = _confirmed(run, digits, progress) if digits else _binary(run, progress)
+        own, done, notes, radii = found
+        if done == steps or not done:
+            break
+        steps = done  # it left the range; so that its last finite state is noted as well
+    first = _first(own, start) if not digits else {"p": orbit.p, "q": orbit.q}
+    every = -(-steps // points)
+    at = (0, *(min(k * every, steps) for k in range(1, len(notes) + 1)))
+    nothing = {"p": Fraction(0), "q": Fraction(0), "lambda": Fraction(0)}
+    return _States(at, (nothing | first, *notes), (nothing, *radii))
+
+
+Found = tuple[Arithmetic, int, tuple[Note, ...], tuple[Note, ...]]
+
+
+def _binary(run: KernelRun, progress: Progress | None) -> Found:
+    own = number_systems.get(float64.NAME, 17)
+    outcome = run.run(own, progress=progress)
+    return own, outcome.done, outcome.trail, ({},) * len(outcome.trail)
+
+
+def _first(own: Arithmetic, start: dict[str, Fraction]) -> Note:
+    """The initial state as the arithmetic has it."""
+    return {name: Fraction(own.number(start[name])) for name in _STATE}
+
+
+def _confirmed(run: KernelRun, digits: int, progress: Progress | None) -> Found:
+    """The run, and by how much it differs from one with fewer digits."""
+    name, wanted = choose(run, digits), working_digits(digits, run.steps)
+    for _ in range(_ATTEMPTS):
+        own = number_systems.get(name, wanted)
+        finer = number_systems.get(name, digits_of(own) + _MORE_DIGITS)
+        try:
+            first, second = (run.run(each, progress=progress) for each in (own, finer))
+        except UnsupportedError:
+            name = number_systems.automatic()[-1].name
+            continue
+        if own.absolute and second.done < run.steps:  # of a limited range
+            name = number_systems.automatic()[-1].name
+            continue
+        apart = _apart(first, second)
+        if apart is not None and apart <= Fraction(1, 10**digits):
+            return own, second.done, second.trail, tuple(_differences(first, second))
+        # Two orbits, and not one with errors: nothing tells how many digits are lost.
+        wanted = 2 * wanted if apart is None or apart > LINEAR else wanted + digits
+    raise InputError("scheme", run.scheme, f"{_ATTEMPTS} reruns of its orbit did not agree")
+
+
+def _apart(first: Outcome, second: Outcome) -> Fraction | None:
+    """How far the two are apart, relative to the orbit's size; None where they end elsewhere."""
+    if first.done != second.done:
+        return None
+    return spread(first, second) if second.trail else Fraction(0)
+
+
+def _differences(first: Outcome, second: Outcome) -> Iterator[Note]:
+    for a, b in zip(first.trail, second.trail, strict=True):
+        yield {name: abs(a[name] - b[name]) for name in b}
+
+
+# -- the rows -------------------------------------------------------------------------------------
+
+
+class _Rows:
+    """Writes the rows of one orbit with so many digits."""
+
+    def __init__(self, orbit: Orbit, digits: int) -> None:
+        self.orbit, self.digits = orbit, digits
+        field, _ = orbit.hamiltonian.field()
+        self.energy = Enclosures(field.ring, [field.energy])
+        self.delta_j = _DeltaJ(orbit, digits)
+
+    def of(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:
+        """The rows; in `binary` a number is written so that it is read back to the same double."""
+        z_0 = {name: around(states.notes[0][name], _ZERO) for name in _STATE}
+        for k, note, radii in zip(states.at, states.notes, states.radii, strict=True):
+            pairs = {n: (note.get(n, _ZERO), radii.get(n, _ZERO)) for n in (*_STATE, "lambda")}
+            shown = {
+                n: repr(float(x)) if binary else self._known(x, r) for n, (x, r) in pairs.items()
+            }
+            box = {n: pairs[n] for n in _STATE}
+            energy = self._energy_error(box, z_0) if k else "0"
+            t = text(k * self.orbit.step_size)
+            yield t, shown["p"], shown["q"], energy, self._text(self.delta_j(box)), shown["lambda"]
+
+    def _energy_error(self, box: Box, start: Mapping[str, flint.arb]) -> str:
+        """H − H₀ in the box, with more bits as long as they give digits that are missing."""
+        exact = not any(radius for _, radius in box.values())
+        bits = 4 * self.digits + _GUARD
+        for _ in range(_ATTEMPTS if exact else 1):
+            with working_precision(bits):
+                at = {name: around(*pair) for name, pair in box.items()}
+                both = self.energy.over(at), self.energy.over(start)
+                if both[0] is None or both[1] is None:
+                    return ""
+                found = both[0][0] - both[1][0]
+            if found == 0 or found.rel_accuracy_bits() >= bits_for(self.digits):
+                break
+            bits *= 2
+        return self._text(found)
+
+    def _text(self, x: flint.arb | None) -> str:
+        return self._known(*middle_and_radius(x)) if x is not None and in_reach(x) else ""
+
+    def _known(self, value: Fraction, radius: Fraction) -> str:
+        return known_digits(value, radius, self.digits)[0]
+
+
+class _DeltaJ:
+    """ΔJ at states, by one step of a kernel from Λ = 0: Λ is ΔJ after it."""
+
+    def __init__(self, orbit: Orbit, digits: int) -> None:
+        step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
+        self.vanishes = step_map.preserves_area
+        self.own = mpfr.make(2 * digits) if step_map.implicit else ball.make(digits + 25)
+        start = {"p": orbit.p, "q": orbit.q, "h": orbit.step_size}
+        run = KernelRun(orbit.hamiltonian, orbit.scheme, start, 1, frozenset({"lambda"}), 0)
+        self.kernel = kernel_for(run.hamiltonian, run.scheme, self.own, run.observables)
+        self.inputs = [self.own.number(x) for x in run.inputs(self.kernel, 0).values()]
+
+    def __call__(self, box: Box) -> flint.arb | None:
+        """A ball with the ΔJ of all states in the box; None where one may not be defined."""
+        if self.vanishes:
+            return flint.arb(0)
+        own = self.own
+        try:
+            with own.context():
+                state = [_in(own, *box[name]) for name in _STATE]
+                _, *after = self.kernel.function(1, *self.inputs, *state, own.number(_ZERO))
+                found: Any = after[-1]
+                return found if own.radius else around(own.exact(found), _ZERO)
+        except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
+            return None
+
+
+def _in(own: Arithmetic, value: Fraction, radius: Fraction) -> object:
+    return around(value, radius) if own.radius else own.number(value)

@@ -1,0 +1,106 @@
+"""The states of one run, as exact text and as numpy arrays.
+
+Row k is the state after k steps of h, the initial state first and the last state always there:
+
+| column | what it is |
+|---|---|
+| `t` | k h |
+| `p`, `q` | the state |
+| `energy_error` | H − H₀ at the state, 0 in the first row |
+| `delta_j` | ΔJ at the state: of the step that begins there, which Λ of the next row has in it |
+| `lambda` | Λ of the k steps that led there, 0 in the first row |
+
+The text is decimal, but for a `t` such as 1/3; it is empty where ΔJ or H is not defined, and the
+array has nan there. The arrays are the texts' nearest float64 numbers; what is smaller than those
+is 0 in them, as 1e-400 is.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from verify.errors import unknown
+from verify.notebook import html_table
+
+if TYPE_CHECKING:
+    import numpy as np
+
+COLUMNS = ("t", "p", "q", "energy_error", "delta_j", "lambda")
+HEADS = ("t", "p", "q", "H − H₀", "ΔJ", "Λ")
+_SHOWN = 5  # rows at either end, in a notebook
+
+
+@dataclass(frozen=True)
+class OrbitTable:
+    """The rows, each with the texts of `COLUMNS`, and what their digits are.
+
+    `every`: the steps between two rows; the last may be nearer. `digits`: in words, which digits
+    stand in the texts.
+    """
+
+    rows: tuple[tuple[str, ...], ...]
+    every: int
+    digits: str
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        """The exact texts of a column of `COLUMNS`; InputError for another name."""
+        if name not in COLUMNS:
+            raise unknown("column", name, COLUMNS)
+        place = COLUMNS.index(name)
+        return tuple(row[place] for row in self.rows)
+
+    def _array(self, name: str) -> "np.ndarray":
+        import numpy as np
+
+        return np.array([_float(text) for text in self.texts(name)], dtype=np.float64)
+
+    @cached_property
+    def t(self) -> "np.ndarray":
+        """The times, without a unit."""
+        return self._array("t")
+
+    @cached_property
+    def p(self) -> "np.ndarray":
+        """The momenta."""
+        return self._array("p")
+
+    @cached_property
+    def q(self) -> "np.ndarray":
+        """The displacements."""
+        return self._array("q")
+
+    @cached_property
+    def energy_error(self) -> "np.ndarray":
+        """H − H₀ at the states."""
+        return self._array("energy_error")
+
+    @cached_property
+    def delta_j(self) -> "np.ndarray":
+        """ΔJ at the states."""
+        return self._array("delta_j")
+
+    @cached_property
+    def lambda_(self) -> "np.ndarray":
+        """Λ of the steps that led to the states."""
+        return self._array("lambda")
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __repr__(self) -> str:
+        last = f", t = 0 … {self.rows[-1][0]}" if self.rows else ""
+        return f"OrbitTable({len(self)} states{last}; {', '.join(COLUMNS)})"
+
+    def _repr_html_(self) -> str:
+        """The first and the last rows."""
+        caption = f"{len(self)} states, one every {self.every} steps"
+        rows: Sequence[Sequence[str]] = self.rows
+        if len(rows) > 2 * _SHOWN:
+            rows = [*rows[:_SHOWN], ("…",) * len(COLUMNS), *rows[-_SHOWN:]]
+        return html_table(caption, HEADS, rows, self.digits)
+
+
+def _float(text: str) -> float:
+    return float(Fraction(text)) if "/" in text else float(text or "nan")
