@@ -1,14 +1,17 @@
 """User numbers as exact rationals, and back to decimals whose every digit is known.
 
-`0.001` written by a user is 1/1000. A Python float is taken by its exact binary value, with a
-warning where that is not the short decimal it prints as.
+`0.001` written by a user is 1/1000, in Python as in a file or on the command line: a float stands
+for the shortest decimal that is read back to it, which is how it prints. So `0.1` is 1/10, and
+`0.1 + 0.2`, which Python has rounded, is 0.30000000000000004. Who means a float's binary value
+writes `Fraction(0.1)`; who means 1/3 writes `"1/3"` or `Fraction(1, 3)`. numpy's numbers are read
+in the same way, a float32 by its own shortest decimal.
 """
 
 import re
-import warnings
 from decimal import Decimal
 from fractions import Fraction
-from typing import Protocol
+from numbers import Integral, Real
+from typing import Protocol, TypeGuard
 
 import gmpy2
 
@@ -38,14 +41,17 @@ def rational(value: Exact, name: str = "number") -> Fraction:
     infinities, booleans, other types, exponents beyond ±1000, and more than 8000 bits; so `text`
     of what it returns is read again.
 
-    >>> rational("0.1"), rational("7/3")
-    (Fraction(1, 10), Fraction(7, 3))
+    >>> rational("0.1"), rational(0.1), rational("7/3")
+    (Fraction(1, 10), Fraction(1, 10), Fraction(7, 3))
     """
-    if isinstance(value, bool) or not isinstance(value, Exact):
-        raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
-    if isinstance(value, float):
+    if _is_float(value):
         return _from_float(value, name)
-    exact = _from_text(str(value), name) if isinstance(value, str | Decimal) else Fraction(value)
+    if isinstance(value, bool) or not isinstance(value, Exact | Integral):
+        raise InputError(name, value, "not a number; allowed: integers, decimals, quotients a/b")
+    if isinstance(value, str | Decimal):
+        exact = _from_text(str(value), name)
+    else:  # numpy's integers overflow inside a Fraction
+        exact = Fraction(int(value) if isinstance(value, Integral) else value)
     if max(exact.numerator.bit_length(), exact.denominator.bit_length()) > _MAX_BITS:
         raise _too_long(name, value)
     return exact
@@ -61,11 +67,11 @@ def positive(value: Exact, name: str) -> Fraction:
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:
     """The value, where it is a whole number from `least` to `most`; else InputError."""
-    fits = isinstance(value, int) and not isinstance(value, bool)
-    if not fits or value < least or (most is not None and value > most):  # type: ignore[operator]
+    count = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+    if count is None or count < least or (most is not None and count > most):
         allowed = f"{least} or more" if most is None else f"{least} … {most}"
         raise InputError(name, value, f"must be a whole number, {allowed}")
-    return value  # type: ignore[return-value]
+    return count
 
 
 def _from_text(text: str, name: str) -> Fraction:
@@ -91,18 +97,17 @@ def _too_long(name: str, value: Exact) -> InputError:
     return InputError(name, value, f"has more than {_MAX_BITS} bits")
 
 
+def _is_float(value: object) -> TypeGuard[float]:
+    """A float, or one of numpy's; numpy itself is not imported for that."""
+    of_numpy = type(value).__module__ == "numpy" and isinstance(value, Real)
+    return isinstance(value, float) or (of_numpy and not isinstance(value, Integral))
+
+
 def _from_float(value: float, name: str) -> Fraction:
-    if value != value or value in (float("inf"), float("-inf")):
+    shown = str(value)  # the shortest decimal, of numpy's floats as well
+    if not re.search(r"\d", shown):
         raise InputError(name, value, "not a finite number")
-    exact = Fraction(value)
-    shown = repr(float(value))  # numpy's floats print as np.float64(…)
-    if exact != Fraction(shown):
-        warnings.warn(
-            f"{name}={shown} is a binary float, taken by its exact value, which is not "
-            f"{shown}; write it as a string, '{shown}', to mean the decimal",
-            stacklevel=3,
-        )
-    return exact
+    return Fraction(shown)
 
 
 def text(value: Fraction) -> str:

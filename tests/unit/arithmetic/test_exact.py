@@ -1,7 +1,5 @@
 """User numbers to exact rationals, and back to decimals whose every digit is known."""
 
-import re
-import warnings
 from decimal import Decimal
 from fractions import Fraction
 
@@ -19,6 +17,7 @@ from verify.arithmetic.exact import (
     rational,
     text,
     upper,
+    whole,
 )
 from verify.errors import InputError
 
@@ -115,18 +114,28 @@ def test_what_is_not_a_finite_number_is_one_clear_line(value: object) -> None:
     assert len(str(info.value)) < 200
 
 
-@pytest.mark.parametrize("value", [0.001, 0.1, 1e23, -0.3])
-def test_a_float_that_is_not_what_it_prints_as_warns(value: float) -> None:
-    with pytest.warns(UserWarning, match=re.escape(f"step={value!r} is a binary float")):
-        taken = rational(value, "step")
-    assert taken == Fraction(*value.as_integer_ratio()) != Fraction(repr(value))
+@pytest.mark.parametrize("value", [0.001, 0.1, 1e23, -0.3, 0.5, 0.0, 3.0, 2.0**40, 5e-324])
+def test_a_float_stands_for_the_decimal_that_it_prints_as(value: float) -> None:
+    """As a check of a step function takes it, a file and the command line do."""
+    assert rational(value) == rational(numpy.float64(value)) == Fraction(repr(value))
 
 
-@pytest.mark.parametrize("value", [0.5, 0.0, -0.75, 3.0, 2.0**40, numpy.float64(0.5)], ids=repr)
-def test_a_float_that_is_what_it_prints_as_does_not_warn(value: float) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert rational(value) == Fraction(*value.as_integer_ratio())
+def test_a_binary_value_is_meant_where_a_fraction_says_so() -> None:
+    assert rational(Fraction(0.1)) == Fraction(*(0.1).as_integer_ratio()) != rational(0.1)
+    assert rational(0.1 + 0.2) == Fraction("0.30000000000000004")
+
+
+def test_numbers_of_numpy_are_read_like_those_of_python() -> None:
+    assert rational(numpy.float32(0.1)) == Fraction(1, 10)
+    assert rational(numpy.int64(7)) == whole("steps", numpy.uint8(7), 1) == 7
+    assert rational(numpy.int64(2**62)) * 4 == 2**64
+    assert type(whole("steps", numpy.int64(7), 1)) is int
+    for wrong in (numpy.bool_(1), numpy.float64("nan"), numpy.float32("inf"), numpy.array([1.0])):
+        with pytest.raises(InputError, match=r"^mass="):
+            rational(wrong, "mass")
+    for no_count in (numpy.float64(7), numpy.bool_(1), numpy.int64(0)):
+        with pytest.raises(InputError, match="must be a whole number"):
+            whole("steps", no_count, 1)
 
 
 @pytest.mark.parametrize("value", ["0", 0, "-1e-30", -0.5, Fraction(-1, 3), "0/7"])

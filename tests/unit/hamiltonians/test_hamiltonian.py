@@ -150,10 +150,8 @@ def test_values_replace_the_present_ones() -> None:
     assert first.with_values({"b": "0.1"}).values == (("b", Fraction(1, 10)),)
 
 
-def test_a_float_value_is_taken_by_its_binary_value_with_a_warning() -> None:
-    with pytest.warns(UserWarning, match="parameter a=0.1"):
-        hamiltonian = Hamiltonian.parse("a*p", {"a": 0.1})
-    assert hamiltonian.values == (("a", Fraction(*(0.1).as_integer_ratio())),)
+def test_a_float_value_is_the_decimal_that_it_prints_as() -> None:
+    assert Hamiltonian.parse("a*p", {"a": 0.1}) == Hamiltonian.parse("a*p", {"a": "0.1"})
 
 
 def test_generic_keeps_symbols_but_drops_the_terms_that_vanish() -> None:

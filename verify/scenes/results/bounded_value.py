@@ -1,18 +1,36 @@
 """A number as it is reported: exact decimal strings, the same after a JSON round trip."""
 
+from collections.abc import Callable
+from decimal import Decimal
 from fractions import Fraction
-from typing import Annotated
+from numbers import Real
+from typing import Annotated, Any
 
 from pydantic import Field
 
-from verify.arithmetic.exact import known_digits
+from verify.arithmetic.exact import known_digits, of_mpf, rational
+from verify.errors import InputError
 from verify.scenes.frozen import Frozen
 
 _DECIMAL = r"^-?\d+(\.\d+)?(e[+-]\d+)?$"
 
 
 class Value(Frozen):
-    """A decimal whose printed digits are known, with the bound of its error."""
+    """A decimal whose printed digits are known, with the bound of its error.
+
+    It is used as a number: `float(x)`, `mpmath.mpf(x)` and `f"{x:.3e}"` give that of `value`,
+    `x.exact` the rational that `value` is, `abs(x)` and `-x` a Value.
+
+    Comparisons are of all numbers within the bounds: x < y is True where it holds for every one of
+    them, so that `assert abs(x) < 1e-6` says what it seems to say. Where the bounds overlap neither
+    x < y nor x > y is True, and neither x <= y nor x >= y: `not x < y` does not mean x ≥ y, and a
+    list of such is not sorted by them (sort by `key=float`). x == 0 is True of an exact 0 alone;
+    two Values are equal where value and bound are.
+
+    >>> x = Value(value="1.50e-03", bound="2.00e-05")
+    >>> float(x), x < 0.0016, x < 0.00151, x >= 0.00151
+    (0.0015, True, False, False)
+    """
 
     value: Annotated[str, Field(pattern=_DECIMAL)]
     bound: Annotated[str, Field(pattern=_DECIMAL)]
@@ -22,3 +40,88 @@ class Value(Frozen):
         """The digits of a value that its bound leaves, `digits` at most, and their own bound."""
         shown, within = known_digits(value, bound, digits)
         return cls(value=shown, bound=within)
+
+    @property
+    def exact(self) -> Fraction:
+        """`value` as a rational."""
+        return Fraction(self.value)
+
+    @property
+    def ends(self) -> tuple[Fraction, Fraction]:
+        """value − bound and value + bound, between which the true value is."""
+        middle, radius = Fraction(self.value), Fraction(self.bound)
+        return middle - radius, middle + radius
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __abs__(self) -> "Value":
+        return Value(value=self.value.removeprefix("-"), bound=self.bound)
+
+    def __neg__(self) -> "Value":
+        negative = self.value.startswith("-") or self.value == "0"
+        return Value(
+            value=self.value.lstrip("-") if negative else f"-{self.value}", bound=self.bound
+        )
+
+    def _mpmath_(self, precision: int, rounding: str) -> Any:
+        """What mpmath converts by: `value`, rounded to its present precision."""
+        import mpmath
+
+        exact = self.exact
+        parts = exact.numerator, exact.denominator, precision, rounding
+        return mpmath.mp.make_mpf(mpmath.libmp.from_rational(*parts))
+
+    def __str__(self) -> str:
+        return self.value if self.bound == "0" else f"{self.value} ± {self.bound}"
+
+    def __repr__(self) -> str:
+        return f"Value({self})"
+
+    def __format__(self, spec: str) -> str:
+        return format(float(self), spec) if spec else str(self)
+
+    # -- comparisons ------------------------------------------------------------------------------
+
+    def __lt__(self, other: object) -> bool:
+        return self._certain(other, lambda a, b: a[1] < b[0])
+
+    def __le__(self, other: object) -> bool:
+        return self._certain(other, lambda a, b: a[1] <= b[0])
+
+    def __gt__(self, other: object) -> bool:
+        return self._certain(other, lambda a, b: a[0] > b[1])
+
+    def __ge__(self, other: object) -> bool:
+        return self._certain(other, lambda a, b: a[0] >= b[1])
+
+    def __eq__(self, other: object) -> bool:
+        ends = _ends(other)
+        if ends is None:
+            return NotImplemented
+        if isinstance(other, Value) and (self.value, self.bound) == (other.value, other.bound):
+            return True
+        return self.ends[0] == self.ends[1] == ends[0] == ends[1]
+
+    def __hash__(self) -> int:
+        return hash(self.exact if Fraction(self.bound) == 0 else (self.value, self.bound))
+
+    def _certain(self, other: object, holds: Callable[[Any, Any], bool]) -> bool:
+        ends = _ends(other)
+        return NotImplemented if ends is None else holds(self.ends, ends)
+
+
+def _ends(x: object) -> tuple[Fraction, Fraction] | None:
+    """The least and greatest number that it may be; None where it is no number."""
+    if isinstance(x, Value):
+        return x.ends
+    try:
+        if hasattr(x, "_mpf_"):  # mpmath's, which is what it is in binary
+            exact = of_mpf(x)
+        elif isinstance(x, Real | Decimal):
+            exact = rational(x)  # type: ignore[arg-type]
+        else:
+            return None
+    except InputError:  # nan, an infinity
+        return None
+    return exact, exact
