@@ -1,66 +1,120 @@
-"""Arbitrary-precision verification of area preservation; the public names, imported when used."""
+"""Arbitrary-precision verification of area preservation, and the public names.
+
+A system is a name such as "duffing", a formula such as "p**2/2 - cos(q)", or a Hamiltonian; a
+scheme is a name such as "lie2", 'p_next = …; q_next = …', a Scheme or a StepMap. Numbers are exact:
+0.1 is 1/10. Bad input is an InputError of one line. Nothing is imported before it is used.
+
+"""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from verify.from_type import register
+from verify.lateral import computed_by
 
 if TYPE_CHECKING:
+    from verify import schemes as schemes
+    from verify.calls.bench import bench as bench
+    from verify.calls.check import check as check
+    from verify.calls.flow import flow as flow
+    from verify.calls.prove import prove as prove
+    from verify.calls.run import run as run
+    from verify.calls.separate import separate as separate
+    from verify.calls.separate import separate_grid as separate_grid
+    from verify.calls.stability import stability as stability
+    from verify.calls.sweep import sweep as sweep
     from verify.errors import InputError as InputError
     from verify.hamiltonians import systems as systems
     from verify.hamiltonians.hamiltonian import Hamiltonian as Hamiltonian
     from verify.hamiltonians.named_system import System as System
+    from verify.pages.plotting import plot_flow as plot_flow
     from verify.pages.plotting import plot_over_time as plot_over_time
     from verify.pages.plotting import plot_runs as plot_runs
     from verify.pages.plotting import plot_separation as plot_separation
-    from verify.proof.order import prove as prove
+    from verify.pages.plotting import plot_work_precision as plot_work_precision
+    from verify.pages.plotting_orbits import plot_orbit as plot_orbit
     from verify.proof.order_proof import Proof as Proof
-    from verify.runs.run import run as run
+    from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.report import Report as Report
     from verify.scenes.results.run import RunResult as RunResult
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
     from verify.scenes.results.separation import SeparationResult as SeparationResult
+    from verify.scenes.results.sweep import Sweep as Sweep
     from verify.scenes.scene import Scene as Scene
     from verify.scenes.scene import load_scene as load_scene
     from verify.schemes.scheme import Scheme as Scheme
     from verify.schemes.step_map import StepMap as StepMap
-    from verify.studies.separation.separate import separate as separate
-    from verify.studies.separation.separate import separate_grid as separate_grid
     from verify.verdict import Verdict as Verdict
 
-# Where each public name lives. Nothing is imported before it is asked for, so that `verify --help`
-# and a proof do not wait for what they do not use.
-_HOMES = {
-    "Hamiltonian": "verify.hamiltonians.hamiltonian",
-    "InputError": "verify.errors",
-    "Proof": "verify.proof.order_proof",
-    "Report": "verify.scenes.results.report",
-    "RunResult": "verify.scenes.results.run",
-    "Scene": "verify.scenes.scene",
-    "Scheme": "verify.schemes.scheme",
-    "SeparationGrid": "verify.scenes.results.separation",
-    "SeparationResult": "verify.scenes.results.separation",
-    "StepMap": "verify.schemes.step_map",
-    "System": "verify.hamiltonians.named_system",
-    "Verdict": "verify.verdict",
-    "load_scene": "verify.scenes.scene",
-    "plot_over_time": "verify.pages.plotting",
-    "plot_runs": "verify.pages.plotting",
-    "plot_separation": "verify.pages.plotting",
-    "prove": "verify.proof.order",
-    "run": "verify.runs.run",
-    "separate": "verify.studies.separation.separate",
-    "separate_grid": "verify.studies.separation.separate",
+# Each public name with the module that it comes from, and in a line what it is: what help(verify)
+# begins with. Imported when it is used, so that `verify --help` and a proof wait for nothing else.
+_NAMES = {
+    "run": ("verify.calls.run", "N steps: values with error bounds, and the orbit as arrays"),
+    "sweep": ("verify.calls.sweep", "runs over lists of schemes, steps, starts: a table"),
+    "prove": ("verify.calls.prove", "the order of ΔJ = det J − 1 and of the map, exactly"),
+    "separate": ("verify.calls.separate", "truncation and rounding in Λ of a float64 run"),
+    "separate_grid": ("verify.calls.separate", "the same over step sizes, and where they cross"),
+    "flow": ("verify.calls.flow", "a region carried by schemes, and its area"),
+    "stability": ("verify.calls.stability", "runs judged: stable or not, and whose fault it is"),
+    "bench": ("verify.calls.bench", "error against run time"),
+    "check": ("verify.calls.check", "a step function of one's own: proved, else measured"),
+    "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
+    "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),
+    "plot_over_time": ("verify.pages.plotting", "det J, ΔJ and Λ over t, as bands"),
+    "plot_separation": ("verify.pages.plotting", "truncation and rounding against the step size"),
+    "plot_flow": ("verify.pages.plotting", "a region and its images"),
+    "plot_work_precision": ("verify.pages.plotting", "error against run time, and step size"),
+    "Hamiltonian": ("verify.hamiltonians.hamiltonian", "H(p, q) with exact parameters"),
+    "System": ("verify.hamiltonians.named_system", "a named Hamiltonian, with its exact flow"),
+    "systems": ("verify.hamiltonians.systems", "the named systems: names(), get(name)"),
+    "Scheme": ("verify.schemes.scheme", "an integration scheme with its claims"),
+    "schemes": ("verify.schemes", "the schemes: names(), get(name)"),
+    "StepMap": ("verify.schemes.step_map", "the exact map of one step; from_formulas(H, p', q')"),
+    "Scene": ("verify.scenes.scene", "a declaration of what is to be verified"),
+    "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
+    "Proof": ("verify.proof.order_proof", "what is proved of a step map"),
+    "RunResult": ("verify.scenes.results.run", "what a run gave"),
+    "OrbitTable": ("verify.scenes.results.orbit", "the states of a run"),
+    "Sweep": ("verify.scenes.results.sweep", "what a sweep gave"),
+    "SeparationResult": ("verify.scenes.results.separation", "what a separation gave"),
+    "SeparationGrid": ("verify.scenes.results.separation", "separations over step sizes"),
+    "Report": ("verify.scenes.results.report", "a whole report"),
+    "Verdict": ("verify.verdict", "PROVED, ENCLOSED, MEASURED, REFUTED or UNDECIDED"),
+    "InputError": ("verify.errors", "bad input, in one line that says what is allowed"),
 }
-_MODULES = {"systems": "verify.hamiltonians.systems"}
-__all__ = [*_HOMES, *_MODULES]
+_MODULES = ("schemes", "systems")
+_WIDTH = max(map(len, _NAMES))
+__all__ = [*_NAMES]
+__doc__ += "\n".join(f"    {name:{_WIDTH}}  {what}" for name, (_, what) in _NAMES.items())
+
+
+def _orbit(*given: Any) -> Any:
+    from verify.runs.orbit import orbit_of
+
+    return orbit_of(*given)
+
+
+def _solution_errors(*given: Any) -> Any:
+    from verify.runs.solution_error import solution_errors
+
+    return solution_errors(*given)
+
 
 register()  # what hypothesis draws, whichever of the two is imported first
+computed_by("orbit", _orbit)
+computed_by("solution_errors", _solution_errors)
 
 
 def __getattr__(name: str) -> Any:
-    if name in _MODULES:
-        return import_module(_MODULES[name])
-    if name not in _HOMES:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("areaproof")
+    if name not in _NAMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+    home = import_module(_NAMES[name][0])
+    return home if name in _MODULES else getattr(home, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_NAMES, "__version__"})

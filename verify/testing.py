@@ -14,10 +14,11 @@ The step is proved where its code lets symbols through, and else measured; see
 `verify.integrators.check`. It is called, also with p, q and h that are no floats.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
-from verify.arithmetic.exact import Exact, rational
+from verify.arithmetic.exact import rational
+from verify.calls.given import hamiltonian_from
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
@@ -78,18 +79,6 @@ def _order(order: int) -> int:
     return order
 
 
-def _hamiltonian(
-    given: Hamiltonian | str, parameters: Mapping[str, Exact | None] | None
-) -> Hamiltonian:
-    from verify.hamiltonians import systems
-
-    if isinstance(given, Hamiltonian):
-        return given.with_values({**dict(given.values), **parameters}) if parameters else given
-    if isinstance(given, str) and given in systems.names():
-        return systems.get(given).hamiltonian(parameters)
-    return Hamiltonian.parse(given, parameters)
-
-
 def _asserted(
     step: StepFunction, hamiltonian: Hamiltonian | str, claims: Claims, options: dict[str, Any]
 ) -> Finding:
@@ -100,7 +89,7 @@ def _asserted(
             raise unknown(name, options[name], sorted(known))
     if not callable(step):
         raise InputError("step", step, "is no function")
-    exact = _hamiltonian(hamiltonian, options.get("parameters"))
+    exact = hamiltonian_from(hamiltonian, options.get("parameters"))
     p, q = options.get("p"), options.get("q")
     if (p is None) != (q is None):
         raise InputError("p, q", p if p is not None else q, "give both or none")

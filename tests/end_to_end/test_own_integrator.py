@@ -69,4 +69,4 @@ def test_a_flipped_sign_fails_and_shrinks_to_what_the_page_shows(said: str) -> N
 
 
 def test_an_error_of_one_in_a_million_fails_as_simply(said: str) -> None:
-    assert "text='p**2/2 + q**2/2'" in failure(said, "millionth"), said
+    assert "Hamiltonian(p**2/2 + q**2/2)" in failure(said, "millionth"), said

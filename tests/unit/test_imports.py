@@ -25,11 +25,11 @@ from tests.paths import ROOT
 
 # From the roof down. A module imports from its own room and from those below it.
 ROOF = ("verify", "__main__", "from_type", "testing")
-ROOMS = ("commands", "pages", "reference", "exploration", "strategies", "claims", "studies",
-         "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof", "schemes",
-         "hamiltonians", "algebra", "arithmetic")  # fmt: skip
-GROUND = ("content", "discovery", "drawable", "errors", "files", "formats", "notebook", "prose",
-          "verdict")  # fmt: skip
+ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "claims",
+         "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof",
+         "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
+GROUND = ("content", "discovery", "drawable", "errors", "files", "formats", "frames", "lateral",
+          "notebook", "prose", "verdict")  # fmt: skip
 
 
 def floor(name: str) -> int:
@@ -63,7 +63,9 @@ def deepest(text: str) -> str:
 # Where a name that no import statement has is imported, or run, or looked up, and why.
 BY_NAME = {
     "verify": {"import_module"},  # public names, when they are used
+    "verify.calls.progress": {"modules"},  # IPython, where it is imported
     "verify.discovery": {"import_module"},  # files of a package, by their names
+    "verify.frames": {"import_module"},  # pandas and xarray, where they are installed
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
     "verify.integrators.faults": {"modules"},  # numpy, where it is imported
     "verify.integrators.kept_state": {"modules"},  # numpy as above, and where a function is from
@@ -296,7 +298,7 @@ def test_only_what_is_declared_is_imported() -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
                 "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
-                "distributed", "pyarrow", "verify"}  # fmt: skip
+                "distributed", "pandas", "pyarrow", "tqdm", "verify", "xarray"}  # fmt: skip
     for name, path in NAMES.items():
         others = roots(imported(path, everywhere=True)) - set(sys.stdlib_module_names)
         assert others <= declared, name

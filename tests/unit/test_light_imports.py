@@ -52,7 +52,7 @@ def test_what_a_package_and_what_is_imported_import_is_seen() -> None:
 
 def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
     for name, names in imports().items():
-        drawing = name.startswith("verify.pages.figures.") or name == "verify.pages.plotting"
+        drawing = name.startswith(("verify.pages.figures.", "verify.pages.plotting"))
         assert not roots(names) & {"numba", *(() if drawing else ("matplotlib",))}, name
 
 

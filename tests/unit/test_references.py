@@ -50,6 +50,10 @@ def defined(module: str) -> frozenset[str] | None:
             names |= {node.name, *(f"{node.name}.{name}" for name in assigned(inner))}
         elif isinstance(node, ast.ImportFrom):
             names |= {alias.asname or alias.name for alias in node.names}
+            if module == "verify":  # its public modules: `verify.systems.get`
+                for alias in node.names:
+                    inner = defined(f"{node.module}.{alias.name}") or ()
+                    names |= {f"{alias.name}.{name}" for name in inner}
         names |= set(assigned([node]))
     return frozenset(names)
 

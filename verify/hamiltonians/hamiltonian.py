@@ -19,6 +19,7 @@ from verify.drawable import drawn_by
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import check_coordinates
 from verify.hamiltonians.lie_derivatives import LieDerivatives
+from verify.notebook import aligned_latex, cut, short_latex
 
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
@@ -130,6 +131,17 @@ class Hamiltonian:
     def formula(self) -> str:
         """The expression as text that `Hamiltonian.parse` reads back, to the same expression."""
         return to_text(self.expression)
+
+    def __repr__(self) -> str:
+        values = (f", {name} = {text(value)}" for name, value in self.values)
+        return f"Hamiltonian({cut(self.formula)}{''.join(values)})"
+
+    def _repr_latex_(self) -> str:
+        """H with its parameters as symbols, and the values of those that have one."""
+        lines = [f"H &= {short_latex(sympy.latex(self.expression))}"]
+        for name, value in self.values:
+            lines.append(f"{sympy.latex(symbol(name))} &= {sympy.latex(sympy.Rational(value))}")
+        return aligned_latex(lines)
 
     @property
     def texts(self) -> dict[str, Any]:  # Any: arguments of models, which check them

@@ -29,6 +29,12 @@ class System:
     goes: Callable[[Values, Fraction, Fraction], str | None] | None = None
     regimes: Mapping[str, Regime] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"System({self.name}: {self.formula})"
+
+    def _repr_latex_(self) -> str:
+        return self.hamiltonian()._repr_latex_()
+
     def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
         """H with these parameter values; parameters without one stay symbols."""
         return Hamiltonian.parse(self.formula, values)

@@ -75,6 +75,9 @@ class Finding:
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
 
+    def __repr__(self) -> str:
+        return f"Finding({self.verdict}: {self.reason})"
+
     @property
     def scheme(self) -> bool:
         """Whether it is shown to agree with the exact flow up to h, at least."""

@@ -1,16 +1,20 @@
 """The report's figures as matplotlib figures, to show, to restyle and to save.
 
 Each function gives a `matplotlib.figure.Figure` with white ground; `figure.axes` and all that
-stands on them are the caller's. Logarithms are taken before anything is drawn, so that 1e-500 has
+stands on them are the caller's. What is one plot takes `ax`, axes to draw it on; their figure is
+then given back. Logarithms are taken before anything is drawn, so that 1e-500 has
 its place too: the data of a logarithmic axis are decimal logarithms, and its ticks say 10ⁿ. All
 quantities are without units. What there is nothing to draw of is an `InputError`.
 """
 
 import re
 from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
 
 from matplotlib.figure import Figure
 
+from verify.arithmetic.exact import decimal
 from verify.errors import InputError, unknown
 from verify.pages.figures import (
     crossover_figure,
@@ -20,6 +24,7 @@ from verify.pages.figures import (
     stability_figure,
 )
 from verify.pages.figures import work_precision_figure as work_figure
+from verify.pages.figures.logarithm import lg
 from verify.pages.figures.svg import styled
 from verify.pages.figures.work_precision_plots import error_panels
 from verify.pages.sections.claim_view import ClaimView
@@ -39,44 +44,70 @@ QUANTITIES = {
     "lambda_max": "max |Λ|",
     "mse": "MSE",
     "delta_j_max": "max |ΔJ|",
+    "energy_error": "max |H − H₀|",
+    "solution_error": "solution error",
 }
+_DIGITS = 7
 
 
 def plot_runs(
-    runs: Sequence[RunResult], quantity: str = "lambda", *, slopes: Sequence[int] = ()
+    runs: Sequence[RunResult],
+    quantity: str = "lambda",
+    *,
+    slopes: Sequence[int] = (),
+    ax: Any = None,
 ) -> Figure:
     """A quantity of `QUANTITIES` against the step size, one line a scheme and initial value.
 
-    A grey guide stands above the points for each of `slopes`, powers of h.
+    `runs`: several RunResults, or a Sweep. "energy_error" is the greatest |H − H₀| of a run's
+    `orbit`, "solution_error" the distance of its last state from the exact solution. A grey guide
+    stands above the points for each of `slopes`, powers of h.
     """
     if quantity not in QUANTITIES:
         raise unknown("quantity", quantity, QUANTITIES)
+    runs = list(runs)
+    place = _PLACES.get(quantity)
     schemes = dict.fromkeys(run.scheme for run in runs)
     lines = [
         figures.Line(f"{scheme}, {line.label}" if len(schemes) > 1 else line.label, line.points)
         for scheme in schemes
-        for line in figures.lines([run for run in runs if run.scheme == scheme], quantity)
+        for own in [[run for run in runs if run.scheme == scheme]]
+        for line in (figures.lines_of(own, place) if place else figures.lines(own, quantity))
     ]
     if not lines:
         raise InputError("runs", len(runs), f"hold no {quantity} to draw at two step sizes or more")
-    return _figure(lambda: figures.draw_against_step_size(lines, QUANTITIES[quantity], slopes))
+    return shown(
+        lambda: figures.draw_against_step_size(lines, QUANTITIES[quantity], slopes, ax), ax
+    )
+
+
+def _energy_error(run: RunResult) -> float:
+    sizes = (abs(Fraction(text)) for text in run.orbit.texts("energy_error") if text)
+    return lg(decimal(max(sizes, default=Fraction(0)), _DIGITS))
+
+
+def _solution_error(run: RunResult) -> float:
+    return lg(run.solution_errors(1)[-1][1].value)
+
+
+_PLACES = {"energy_error": _energy_error, "solution_error": _solution_error}
 
 
 def plot_over_time(run: RunResult) -> Figure:
     """det J, ΔJ and Λ over t of a run that holds a series, as bands between their extremes."""
     if not run.series:
         raise InputError("run", run.scheme, "holds no series; run(…, points=400) keeps one")
-    return _figure(lambda: figures.draw_over_time(run))
+    return shown(lambda: figures.draw_over_time(run))
 
 
-def plot_separation(grid: SeparationGrid) -> Figure:
+def plot_separation(grid: SeparationGrid, *, ax: Any = None) -> Figure:
     """The greatest |truncation| and |rounding| in Λ against the step size, and where they cross."""
     lines, marks = crossover_figure.contents(grid)
     if len(lines) < 2:
         raise InputError(
             "grid", len(grid.points), "does not hold truncation and rounding at two step sizes"
         )
-    return _figure(lambda: crossover_figure.draw_truncation_against_rounding(lines, marks))
+    return shown(lambda: crossover_figure.draw_truncation_against_rounding(lines, marks, ax), ax)
 
 
 def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
@@ -84,7 +115,7 @@ def plot_growth(laws: Sequence[GrowthLawResult]) -> Figure:
     drawable = orbits(laws)
     if not drawable:
         raise InputError("laws", len(laws), "hold no prediction to draw at two step sizes")
-    return _figure(lambda: growth_figure.draw_predicted_against_measured(drawable))
+    return shown(lambda: growth_figure.draw_predicted_against_measured(drawable))
 
 
 def plot_table(claim: ClaimResult) -> Figure:
@@ -93,7 +124,7 @@ def plot_table(claim: ClaimResult) -> Figure:
     printed, computed = rows_of(view) if view.is_table else (figures.Line("", ()), [])
     if len(printed.points) < 2 or not computed:
         raise InputError("claim", claim.id, "is no table with two step sizes to draw")
-    return _figure(lambda: figures.draw_printed_against_computed(computed, printed))
+    return shown(lambda: figures.draw_printed_against_computed(computed, printed))
 
 
 def plot_work_precision(found: WorkPrecisionResult) -> Figure:
@@ -101,33 +132,36 @@ def plot_work_precision(found: WorkPrecisionResult) -> Figure:
     panels = error_panels(found)
     if not panels[0].lines:
         raise InputError("found", len(found.lines), "hold no run with an error and a run time")
-    return _figure(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))
+    return shown(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))
 
 
 def plot_stability(over: StabilityMapResult) -> Figure:
     """Verdicts in the plane of step size and stiffness."""
-    return _figure(lambda: stability_figure.draw_plane(over))
+    return shown(lambda: stability_figure.draw_plane(over))
 
 
 def plot_flow(flow: FlowResult) -> Figure:
     """A region and its images by each map, q to the right and p upwards, on equal axes."""
     if not flow.before or not any(image.outlines for image in flow.images):
         raise InputError("flow", flow.shape, "holds no image to draw")
-    return _figure(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
+    return shown(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
 
 
-def _figure(draw: Callable[[], Figure]) -> Figure:
-    """The figure on white; what a title says is drawn stands at the vertical axis."""
+def shown(draw: Callable[[], Figure], ax: Any = None) -> Figure:
+    """The figure on white; what a title says is drawn stands at the vertical axis.
+
+    `ax`: the caller's axes that it is drawn on; nothing else of their figure is touched.
+    """
     # What the caller sets in place of our labels may be a formula between dollar signs.
     with styled(**{"figure.facecolor": "white", "axes.facecolor": "white"}):
         figure = draw()
-        for axes in figure.axes:
+        for axes in figure.axes if ax is None else [ax]:
             for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
                 text.set_parse_math(True)
             named = axes.get_title(loc="left")
             if axes.get_ylabel():
                 continue
             axes.set_ylabel(re.sub(r"^\([a-z]\) |:.*", "", named))
-            if len(figure.axes) == 1:
+            if ax is not None or len(figure.axes) == 1:
                 axes.set_title("", loc="left")
     return figure

@@ -58,6 +58,9 @@ class Proof:
         """Whether the map agrees with the exact flow up to h, at least."""
         return self.convergence_order is None or self.convergence_order >= 1
 
+    def __repr__(self) -> str:
+        return f"Proof({self.verdict}: {cut(str(self.reason))})"
+
     def _repr_html_(self) -> str:
         return html_table("Proof", (), _rows(self))
 

@@ -32,10 +32,10 @@ from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
+from verify.scenes.results.orbit import MOST_POINTS as MOST_POINTS
 from verify.scenes.results.orbit import OrbitTable
 from verify.scenes.results.run import RunResult
 
-MOST_POINTS = 10_000
 _ATTEMPTS = 6
 _MORE_DIGITS = 15
 _GUARD = 60  # bits, of what cancels in H − H₀; beyond, twice as many are tried

@@ -32,6 +32,10 @@ class Scheme:
     build: Callable[[Hamiltonian], StepMap]
     every_h: BySeries | ByConditions | None = None
 
+    def __repr__(self) -> str:
+        area = "det J ≡ 1" if self.area_preserving else "area not preserved"
+        return f"Scheme({self.name}: order {self.order}, {area})"
+
     @property
     def needs_separable(self) -> bool:
         """Whether it is known to be for H = T(p) + V(q) only."""

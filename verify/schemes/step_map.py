@@ -19,6 +19,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.notebook import aligned_latex, short_latex
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial
 from verify.schemes.stages import chained
 from verify.schemes.substep import Substep as Substep
@@ -34,6 +35,7 @@ _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it s
 SOLVABLE = "the stages have a solution that depends smoothly on (p, q)"
 _AT_STAGES = "H is smooth at the stages"
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
+_UNWRITTEN = "not written in closed form"
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
 _MOST_WRITTEN = 5000  # times that p and q occur in it, of which its terms are made
 
@@ -55,6 +57,18 @@ class StepMap:
     expansion: Callable[[int], Expanded] | None = field(default=None, repr=False)
     known_order: Callable[[], int | None] = field(default=lambda: None, repr=False)
     asked: Domain = field(default=EVERYWHERE, repr=False)
+
+    def __repr__(self) -> str:
+        return f"StepMap of {self.hamiltonian!r}, in {len(self.substeps)} parts"
+
+    def _repr_latex_(self) -> str:
+        """p' and q' in closed form, where that is short enough."""
+        lines = [rf"{name}' &= \text{{({_UNWRITTEN})}}" for name in ("p", "q")]
+        if self.closed is not None:
+            step = self.closed
+            sides = (sympy.latex(grouped(step.ring, x)) for x in (step.p_next, step.q_next))
+            lines = [f"{name}' &= {short_latex(x)}" for name, x in zip("pq", sides, strict=True)]
+        return aligned_latex(lines)
 
     @cached_property
     def domain(self) -> Domain:

@@ -7,11 +7,11 @@ from fractions import Fraction
 from hypothesis import strategies as st
 
 from verify.algebra.formula import parameter_name
-from verify.arithmetic.exact import Exact, magnitude
+from verify.arithmetic.exact import Exact, magnitude, rational
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.values import InitialValue
-from verify.strategies.arguments import exactly, whole
+from verify.strategies.arguments import whole
 from verify.strategies.terms import signed_quotient
 
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
@@ -49,14 +49,14 @@ def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrate
 
     `extreme`: also exact zeros, 10^−300 … 10^300 of either sign, numbers that differ from whole
     ones by 10^−300 … 0.1, and numbers of 40 digits, all of which may be beyond `most`. Raises
-    InputError for most ≤ 0 and for a float.
+    InputError for most ≤ 0.
 
     >>> from hypothesis import find, settings
     >>> found = find(initial_values(), lambda z: z.q > 1, settings=settings(database=None))
     >>> str(found.q), str(found.p)
     ('2', '0')
     """
-    bound = exactly("most", most)
+    bound = rational(most, "most")
     if bound <= 0:
         raise InputError("most", most, "must be greater than 0")
     if not isinstance(extreme, bool):
@@ -92,13 +92,13 @@ def step_sizes(*, least: Exact = "1/1000", most: Exact = "1/10") -> st.SearchStr
     """Step sizes h with least ≤ h ≤ most: decimals of one or two digits, powers of two, thirds of
     decimals, and the two ends. Arguments such as "1e-300" and "1e300" give extreme ones.
 
-    Raises InputError for least ≤ 0, least > most, and for a float.
+    Raises InputError for least ≤ 0, least > most,.
 
     >>> from hypothesis import find, settings
     >>> str(find(step_sizes(), lambda h: h < 1, settings=settings(database=None)))
     '1/10'
     """
-    low, high = exactly("least", least), exactly("most", most)
+    low, high = rational(least, "least"), rational(most, "most")
     if low <= 0:
         raise InputError("least", least, "must be greater than 0")
     if low > high:

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from math import isfinite
+from typing import Any
 
 from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import Mark, decades, grid_lines, line_style, mark_places
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import canvas
+from verify.pages.figures.notebook_figure import canvas_on, legend
 from verify.pages.figures.separation_caption import short, ways_of
 from verify.pages.text.typography import NBSP
 from verify.scenes.results.separation import WAYS, SeparationGrid
@@ -34,9 +35,14 @@ def contents(grid: SeparationGrid) -> tuple[list[Line], list[Mark]]:
     return [each for each in lines if len(each.points) > 1], marks
 
 
-def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Mark]) -> Figure:
-    """The lines on logarithmic axes; a dashed vertical line, labelled above them, for each mark."""
-    figure, axes = canvas(_HEIGHT)
+def draw_truncation_against_rounding(
+    plotted: Sequence[Line], marks: Sequence[Mark], ax: Any = None
+) -> Figure:
+    """The lines on logarithmic axes; a dashed vertical line, labelled above them, for each mark.
+
+    `ax`: axes of the caller's, with the legend inside; a figure of its own without them.
+    """
+    figure, axes = canvas_on(ax, _HEIGHT)
     for index, each in enumerate(plotted):
         plot_line(axes, each, line_style(index, len(plotted)))
     axes.margins(x=0.05, y=0.06)
@@ -46,5 +52,5 @@ def draw_truncation_against_rounding(plotted: Sequence[Line], marks: Sequence[Ma
     decades(axes.yaxis)
     axes.set_xlabel("step size h (logarithmic)")
     axes.set_title("greatest |part of Λ|")
-    figure.legend(loc="outside lower center", ncols=1, handlelength=3.2)
+    legend(figure if ax is None else None, axes)
     return figure

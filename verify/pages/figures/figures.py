@@ -4,7 +4,7 @@ Logarithms are taken in decimals before anything is drawn, so that 1e-500 has it
 not known (no digit of it) or is zero has no place on a logarithmic axis and is left out.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -24,7 +24,7 @@ from verify.pages.figures.axes import (
     whole_numbers,
 )
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import canvas, sheet
+from verify.pages.figures.notebook_figure import canvas, canvas_on, legend, sheet
 from verify.pages.figures.svg import INK, SERIES
 from verify.pages.text.typography import power_of_h, start
 from verify.scenes.results.bounded_value import Value
@@ -48,13 +48,20 @@ class Line:
 
 def lines(runs: Sequence[RunResult], above: str, below: str = "") -> list[Line]:
     """One line an initial value: lg |values[above]|, or lg |values[above] / values[below]|."""
+
+    def place(run: RunResult) -> float:
+        return _lg(run.values.get(above)) - (_lg(run.values.get(below)) if below else 0)
+
+    return lines_of(runs, place)
+
+
+def lines_of(runs: Sequence[RunResult], place: Callable[[RunResult], float]) -> list[Line]:
+    """One line an initial value, of what is finite of the places."""
     groups: dict[str, list[tuple[str, float]]] = {}
     for run in sorted(runs, key=lambda run: Fraction(run.step_size)):
-        place = _lg(run.values.get(above))
-        if below:
-            place -= _lg(run.values.get(below))
-        if isfinite(place):
-            groups.setdefault(start(run), []).append((run.step_size, place))
+        at = place(run)
+        if isfinite(at):
+            groups.setdefault(start(run), []).append((run.step_size, at))
     found = {start(run): groups.get(start(run), []) for run in runs}
     return [Line(label, tuple(points)) for label, points in found.items() if len(points) > 1]
 
@@ -66,13 +73,18 @@ def _lg(found: Value | None) -> float:
 # -- against the step size ------------------------------------------------------------------------
 
 
-def draw_against_step_size(plotted: Sequence[Line], quantity: str, guides: Sequence[int]) -> Figure:
-    """The lines on logarithmic axes, with a grey guide for each slope in `guides`."""
-    figure, axes = canvas(330 if len(plotted) <= MOST_STYLES else 280)
+def draw_against_step_size(
+    plotted: Sequence[Line], quantity: str, guides: Sequence[int], ax: Any = None
+) -> Figure:
+    """The lines on logarithmic axes, with a grey guide for each slope in `guides`.
+
+    `ax`: axes of the caller's, with the legend inside; a figure of its own without them.
+    """
+    figure, axes = canvas_on(ax, 330 if len(plotted) <= MOST_STYLES else 280)
     for index, line in enumerate(plotted):
         plot_line(axes, line, line_style(index, len(plotted)))
     _guides(axes, plotted, guides)
-    _finish(figure, axes, plotted)
+    _finish(figure if ax is None else None, axes, plotted)
     decades(axes.yaxis)
     axes.set_title(quantity)
     return figure
@@ -95,12 +107,12 @@ def plot_line(axes: Any, line: Line, style: dict[str, Any]) -> None:
     axes.plot(x, y, label=line.label, **style)
 
 
-def _finish(figure: Figure, axes: Any, plotted: Sequence[Line]) -> None:
+def _finish(figure: Figure | None, axes: Any, plotted: Sequence[Line]) -> None:
     step_sizes(axes, [h for line in plotted for h, _ in line.points])
     grid_lines(axes)
     axes.margins(y=0.08)
     if len(plotted) <= MOST_STYLES + 1:
-        figure.legend(loc="outside lower center", ncols=2, handlelength=3.2)
+        legend(figure, axes, ncols=2)
 
 
 def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:

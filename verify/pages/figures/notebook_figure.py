@@ -29,3 +29,16 @@ def canvas(height: float) -> tuple[Drawing, Any]:
     """A figure with one plot in it."""
     figure = sheet(height)
     return figure, figure.add_subplot()
+
+
+def canvas_on(ax: Any, height: float) -> tuple[Figure, Any]:
+    """The caller's axes and their figure; a figure with one plot in it where there are none."""
+    return canvas(height) if ax is None else (ax.figure, ax)
+
+
+def legend(figure: Figure | None, axes: Any, ncols: int = 1) -> None:
+    """A legend below the figure of ours; inside the axes where the figure is the caller's."""
+    if figure is None:
+        axes.legend(handlelength=3.2)
+    else:
+        figure.legend(loc="outside lower center", ncols=ncols, handlelength=3.2)

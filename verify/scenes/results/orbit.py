@@ -17,18 +17,20 @@ is 0 in them, as 1e-400 is.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from verify.errors import unknown
+from verify.frames import library, nearest_float
 from verify.notebook import html_table
 
 if TYPE_CHECKING:
     import numpy as np
+    import pandas as pd
 
 COLUMNS = ("t", "p", "q", "energy_error", "delta_j", "lambda")
 HEADS = ("t", "p", "q", "H − H₀", "ΔJ", "Λ")
+MOST_POINTS = 10_000
 _SHOWN = 5  # rows at either end, in a notebook
 
 
@@ -54,7 +56,7 @@ class OrbitTable:
     def _array(self, name: str) -> "np.ndarray":
         import numpy as np
 
-        return np.array([_float(text) for text in self.texts(name)], dtype=np.float64)
+        return np.array([nearest_float(text) for text in self.texts(name)], dtype=np.float64)
 
     @cached_property
     def t(self) -> "np.ndarray":
@@ -86,6 +88,12 @@ class OrbitTable:
         """Λ of the steps that led to the states."""
         return self._array("lambda")
 
+    def to_dataframe(self) -> "pd.DataFrame":
+        """The columns as float64; InputError where pandas is not installed."""
+        pandas = library("pandas", "to_dataframe()")
+        found: pd.DataFrame = pandas.DataFrame({name: self._array(name) for name in COLUMNS})
+        return found
+
     def __len__(self) -> int:
         return len(self.rows)
 
@@ -100,7 +108,3 @@ class OrbitTable:
         if len(rows) > 2 * _SHOWN:
             rows = [*rows[:_SHOWN], ("…",) * len(COLUMNS), *rows[-_SHOWN:]]
         return html_table(caption, HEADS, rows, self.digits)
-
-
-def _float(text: str) -> float:
-    return float(Fraction(text)) if "/" in text else float(text or "nan")

@@ -1,10 +1,16 @@
 """What one run gave, and how it shows itself in a notebook."""
 
-from typing import Literal
+from fractions import Fraction
+from functools import cached_property
+from typing import Literal, Self
 
+from pydantic import PrivateAttr
+
+from verify.lateral import compute
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
 from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.orbit import MOST_POINTS, OrbitTable
 
 _SHOWN = {
     "lambda": ("Λ", r"\Lambda"),
@@ -54,6 +60,36 @@ class RunResult(OfScheme):
     series: tuple[SeriesPoint, ...]
     seconds: Seconds
     source: str = ""
+
+    _points: int = PrivateAttr(MOST_POINTS)
+
+    def with_points(self, points: int) -> Self:
+        """The same, whose `orbit` has so many states at most; as many as it can for 0."""
+        made = self.model_copy()
+        made._points = points or MOST_POINTS
+        return made
+
+    @cached_property
+    def orbit(self) -> OrbitTable:
+        """The states as arrays and exact texts: every step up to 10,000 or `points`, else thinned.
+
+        The run is done again for it when it is first looked at; see `verify.runs.orbit`.
+        """
+        found: OrbitTable = compute("orbit", self, self._points)
+        return found
+
+    def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
+        """(t, |z − φ_t(z₀)|) at so many states at most: how far the exact solution is.
+
+        See `verify.runs.solution_error`. Raises InputError where no exact solution is found.
+        """
+        found: tuple[tuple[Fraction, Value], ...] = compute("solution_errors", self, points)
+        return found
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        what = f"{self.scheme}, {self.steps} steps of h = {self.step_size}, {self.arithmetic}"
+        return f"RunResult({what}: {values or self.status})"
 
     def _repr_html_(self) -> str:
         """The values, each with its error bound."""

@@ -1,11 +1,16 @@
 """Truncation and rounding in Λ as they were found, and how they show themselves in a notebook."""
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+from verify.frames import library, nearest_float
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 ROUNDING = ("input", "trajectory", "determinant", "product")  # the parts of it
 SHOWN = {"lambda_working": "Λ in float64", "truncation": "truncation", "total": "rounding"}
@@ -84,6 +89,13 @@ class SeparationResult(OfScheme):
     error_method: str
     seconds: Seconds
 
+    def __repr__(self) -> str:
+        what = f"{self.scheme}, {self.steps} steps of h = {self.step_size}"
+        if self.plain is None:
+            return f"SeparationResult({what}: {self.status})"
+        parts = self.plain.parts
+        return f"SeparationResult({what}: truncation {parts.truncation}, rounding {parts.total})"
+
     def _repr_html_(self) -> str:
         """The parts of Λ for each way to evaluate it, with their bounds."""
         caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, Λ in float64"
@@ -115,6 +127,33 @@ class SeparationGrid(Frozen):
     plain: CrossoverResult
     closed_form: CrossoverResult
 
+    def __repr__(self) -> str:
+        sizes = ", ".join(point.step_size for point in self.points)
+        return f"SeparationGrid({len(self.points)} step sizes: {sizes})"
+
+    @property
+    def rows(self) -> list[dict[str, str]]:
+        """A row a step size and way to evaluate Λ, its parts and their bounds as exact texts."""
+        return [
+            {"step_size": point.step_size, "steps": str(point.steps), "way": way, **_texts(found)}
+            for point in self.points
+            for way in WAYS
+            if (found := getattr(point, way)) is not None
+        ]
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """The rows, numbers as float64; InputError where pandas is not installed."""
+        pandas = library("pandas", "to_dataframe()")
+        rows = [{k: x if k == "way" else nearest_float(x) for k, x in r.items()} for r in self.rows]
+        found: pd.DataFrame = pandas.DataFrame(rows)
+        return found
+
+    def to_xarray(self) -> "xr.Dataset":
+        """The parts over way and step size; InputError where xarray or pandas is not installed."""
+        library("xarray", "to_xarray()")
+        found: xr.Dataset = self.to_dataframe().set_index(["way", "step_size"]).to_xarray()
+        return found
+
     def _repr_html_(self) -> str:
         """Truncation and rounding of each step size, and where they cross; one alone in full."""
         if len(self.points) == 1:
@@ -124,6 +163,12 @@ class SeparationGrid(Frozen):
         crossed = (f"{label}: {_crossing(getattr(self, way))}" for way, label in WAYS.items())
         foot = "rounding overtakes truncation, " + "; ".join(crossed)
         return html_table("Truncation and rounding in Λ", heads, rows, foot)
+
+
+def _texts(way: EvaluationResult) -> dict[str, str]:
+    parts = {name: getattr(way.parts, name) for name in Parts.model_fields}
+    bounds = {f"{name}_bound": value.bound for name, value in parts.items()}
+    return {name: value.value for name, value in parts.items()} | bounds
 
 
 def _sizes(point: SeparationResult) -> Iterator[str]:

@@ -1,0 +1,54 @@
+"""How far a run is from the exact solution: in closed form, and followed from state to state."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+import verify
+from verify.flows.solution import Solution
+from verify.hamiltonians import known_flows
+from verify.runs import solution_error
+from verify.runs.solution_error import solution_errors
+from verify.scenes.results.run import RunResult
+
+
+@pytest.fixture(scope="module")
+def run() -> RunResult:
+    return verify.run("pendulum", "lie2", q=1, p=0.5, step_size=0.05, steps=20, digits=20)
+
+
+def test_in_the_plane_of_the_oscillator_it_is_what_the_closed_form_says() -> None:
+    found = verify.run("p**2/2 + q**2/2", "euler", q=1, p=0, step_size=0.1, steps=2, digits=30)
+    (t_0, first), (_, _), (t_2, last) = solution_errors(found)
+    assert (t_0, t_2, float(first)) == (0, Fraction(1, 5), 0)
+    # Two Euler steps from (1, 0): q = 0.99, p = -0.2; cos 0.2 and -sin 0.2 to 12 digits.
+    off = ((0.99 - 0.980066577841) ** 2 + (-0.2 + 0.198669330795) ** 2) ** 0.5
+    assert float(last) == pytest.approx(off, rel=1e-6)
+
+
+def test_followed_from_state_to_state_it_is_the_same(
+    run: RunResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed = solution_errors(run, 4)
+    monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
+    followed = solution_errors(run, 4)
+    assert [t for t, _ in closed] == [t for t, _ in followed]
+    for (_, x), (_, y) in zip(closed, followed, strict=True):
+        assert abs(Fraction(x.value) - Fraction(y.value)) <= Fraction(x.bound) + Fraction(y.bound)
+        assert Fraction(y.bound) < Fraction(1, 10**9)
+
+
+def test_what_is_lost_on_the_way_is_in_the_bound(
+    run: RunResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A solution that says more than it knows is found out by the one of a single piece."""
+    true, lost = solution_error.exact_solution, Fraction(1, 10**4)
+
+    def careless(*given: object, time: Fraction, **named: object) -> Solution:
+        found = true(*given, time=time, **named)
+        return found if time == 1 else replace(found, p=found.p + lost)
+
+    monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
+    monkeypatch.setattr(solution_error, "exact_solution", careless)
+    assert all(Fraction(x.bound) > lost for _, x in solution_errors(run, 4))

@@ -1,0 +1,44 @@
+"""`verify.bench`: error against run time."""
+
+from typing import Any
+
+from verify.arithmetic.exact import Exact
+from verify.calls.given import GivenParameters, GivenSystem, listed, scene_of
+from verify.calls.progress import Progress, progress_of
+from verify.scenes.results.work_precision import WorkPrecisionResult
+from verify.studies.work_precision.plan import work_precision_task
+
+
+def bench(
+    system: GivenSystem,
+    scheme: Any,
+    *,
+    q: Exact,
+    p: Exact,
+    step_sizes: Any,
+    time: Exact,
+    parameters: GivenParameters = None,
+    repeats: int = 5,
+    peers: bool = False,
+    progress: Progress = None,
+) -> WorkPrecisionResult:
+    """Solution error at `time` against run time in seconds, and area error, of schemes.
+
+    The arguments are those of `verify.run`; `scheme` may be a list. `step_sizes`: two at least,
+    each of which divides `time`. `repeats`: timings of each point. `peers`: solvers of other
+    libraries beside them, where they are installed. `verify.plot_work_precision` draws it. Raises
+    InputError, one line.
+    """
+    section = {
+        "time": time,
+        "step_sizes": listed("step_sizes", step_sizes),
+        "initial_value": {"q": q, "p": p},
+        "repeats": repeats,
+        "peers": None if peers else False,
+    }
+    scene = scene_of(system, scheme, parameters, work_precision=section)
+    assert scene.work_precision is not None  # noqa: S101 - it was just given
+    task = work_precision_task(scene, scene.work_precision)
+    points = len(task.schemes) * len(task.step_sizes)
+    with progress_of(progress, "errors", points, adding=True) as tell:
+        return task.measure(tell or (lambda _: None))

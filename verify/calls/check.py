@@ -1,0 +1,82 @@
+"""`verify.check`: a step function of one's own, or any scheme, held to what it claims."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from verify.arithmetic.exact import Exact, rational, whole
+from verify.calls.given import (
+    GivenParameters,
+    GivenScheme,
+    GivenSystem,
+    hamiltonian_from,
+    scheme_from,
+    step_map_from,
+)
+from verify.errors import InputError
+from verify.integrators.check import check_integrator
+from verify.integrators.loading import step_from
+from verify.integrators.results import MOST_CLAIMED, Claims, Finding
+from verify.integrators.step import TIME_LIMIT
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
+from verify.schemes.scheme import Scheme
+
+
+def check(
+    system: GivenSystem,
+    step: Callable[..., Any] | GivenScheme,
+    *,
+    parameters: GivenParameters = None,
+    order: int | None = None,
+    area_preserving: bool = False,
+    arguments: str | None = None,
+    p: Exact | None = None,
+    q: Exact | None = None,
+    time_limit: float = TIME_LIMIT,
+) -> Finding | Proof:
+    """Whether a step is a scheme for H and what it preserves: proved, else measured.
+
+    Parameters
+    ----------
+    system, parameters: as in `verify.run`.
+    step: a function step(p, q, h) that returns p' and q', which is called; a scheme's name,
+        'p_next = …; q_next = …', a Scheme or a StepMap is proved.
+    order: the order of convergence that is claimed of it, at least; a scheme's own where left out.
+    area_preserving: whether det J ≡ 1 is claimed of it.
+    arguments: such as "q,p,h", where the function's arguments are not named so.
+    p, q: an initial value to look at beside others; `time_limit`: seconds for all calls.
+
+    Returns a Finding of a function, with its `verdict` and `reason`; a Proof of a scheme. Raises
+    InputError, one line.
+
+    >>> found = check("harmonic", lambda p, q, h: (p - h * q, q + h * p), parameters={"omega": 1})
+    >>> str(found.verdict), found.area_preserving, found.order
+    ('PROVED', False, 2)
+    """
+    exact = hamiltonian_from(system, parameters)
+    if order is not None:
+        order = whole("order", order, 1, MOST_CLAIMED)
+    if not isinstance(area_preserving, bool):
+        raise InputError("area_preserving", area_preserving, "must be True or False")
+    if not callable(step) or isinstance(step, Scheme):
+        found = scheme_from(step)
+        step_map = step_map_from(found, exact)
+        if isinstance(found, Scheme) and order is None and not area_preserving:
+            return prove(step_map, found)
+        return prove(step_map, _claiming(found, order, area_preserving))
+    if (p is None) != (q is None):
+        raise InputError("p, q", p if p is not None else q, "give both or none")
+    start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
+    made, notes = step_from(step, arguments, dict(exact.values), time_limit)
+    claims = Claims(order=order, area_preserving=area_preserving)
+    return check_integrator(made, exact, claims, start).noting(*notes)
+
+
+def _claiming(found: Any, order: int | None, area_preserving: bool) -> Scheme | None:
+    """A scheme that claims just that; None where nothing is claimed."""
+    if isinstance(found, Scheme):
+        return replace(found, order=order or 1, area_preserving=area_preserving)
+    if order is None and not area_preserving:
+        return None
+    return Scheme("the step map", order or 1, area_preserving, True, False, "", lambda _: found)

@@ -1,0 +1,70 @@
+"""`verify.flow`: a region carried by schemes, and what they do to its area."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from verify.arithmetic.exact import Exact
+from verify.calls.given import GivenParameters, GivenSystem, listed, performed, scene_of
+from verify.errors import InputError
+from verify.scenes.results.regions import FlowResult
+from verify.studies.regions.findings import flows_of
+from verify.studies.regions.plan import need_flows
+
+
+def flow(
+    system: GivenSystem,
+    scheme: Any,
+    *,
+    step_size: Exact,
+    steps: Any = None,
+    times: Any = None,
+    parameters: GivenParameters = None,
+    shape: str | None = None,
+    polygon: Sequence[tuple[Exact, Exact]] | None = None,
+    path: str | None = None,
+    centre: tuple[Exact, Exact] = (0, 0),
+    scale: Exact = 1,
+    exact: bool = True,
+    mean_lambda: bool = True,
+    digits: int = 17,
+    workers: int = 1,
+) -> FlowResult:
+    """Carry a region by one scheme or several, and measure what that does to its area.
+
+    Parameters
+    ----------
+    system, scheme, step_size, parameters: as in `verify.run`; `scheme` may be a list.
+    steps, times: one of the two, a number or a list; each time a whole number of steps.
+    shape: a name, circle, square or cat; or `polygon`, corners (q, p); or `path`, as SVG has it.
+        Without any of them a circle.
+    centre: (q, p) of where it is put; `scale`: how many times as large.
+    exact: the exact flow beside them, and the distance from it.
+    mean_lambda: the mean of Λ over the region, of schemes that change area.
+    digits: of areas and distances; `workers`: processes; 1 is this one, and others
+        import the caller's script again, whose call then stands under `__name__ == "__main__"`.
+
+    Returns a FlowResult: `before`, and `images`, one a map and number of steps. Raises InputError.
+
+    >>> found = flow("harmonic", "stormer-verlet", parameters={"omega": 1}, step_size=0.1, steps=3)
+    >>> [(image.map, image.area_preserving) for image in found.images]
+    [('exact flow', True), ('stormer-verlet', True)]
+    """
+    if not isinstance(centre, Sequence) or isinstance(centre, str) or len(centre) != 2:
+        raise InputError("centre", centre, "is no pair (q, p)")
+    if shape is None and polygon is None and path is None:
+        shape = "circle"
+    section = {
+        "shape": shape,
+        "polygon": polygon,
+        "path": path,
+        "centre": {"q": centre[0], "p": centre[1]},
+        "scale": scale,
+        "step_size": step_size,
+        "steps": None if steps is None else listed("steps", steps),
+        "times": None if times is None else listed("times", times),
+        "exact": exact,
+        "mean_lambda": mean_lambda,
+        "digits": digits,
+    }
+    scene = scene_of(system, scheme, parameters, flow=[section])
+    return flows_of(scene, performed(scene, need_flows, workers))[0]

@@ -1,0 +1,52 @@
+"""`verify.prove`: the order of ΔJ and of the map, by exact algebra."""
+
+from verify.calls.given import (
+    GivenParameters,
+    GivenScheme,
+    GivenSystem,
+    hamiltonian_from,
+    scheme_from,
+    step_map_from,
+)
+from verify.errors import InputError
+from verify.proof.order import prove as prove_map
+from verify.proof.order_proof import Proof
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap
+
+
+def prove(
+    system: GivenSystem | StepMap,
+    scheme: GivenScheme | None = None,
+    *,
+    parameters: GivenParameters = None,
+) -> Proof:
+    """Prove the order in h of ΔJ = det J − 1, that of the map, and what the scheme claims.
+
+    Parameters
+    ----------
+    system: a Hamiltonian, a system's name, a formula; or a StepMap, which is then proved itself,
+        with a `scheme` or without one whose claims it is held to.
+    scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
+    parameters: exact values by name; one without a value stays a symbol, and the proof holds for
+        all its values but those that `domain` names.
+
+    Raises InputError, one line, for what is none of this.
+
+    >>> found = prove("duffing", "lie2")
+    >>> str(found.verdict), found.order, found.leading
+    ('PROVED', 3, 3*delta*p*q)
+    """
+    if isinstance(system, StepMap):
+        claims = None if scheme is None else scheme_from(scheme)
+        if isinstance(claims, StepMap) or parameters:
+            name = "parameters" if parameters else "scheme"
+            raise InputError(
+                name, parameters or claims, "does not go with a StepMap that is proved"
+            )
+        return prove_map(system, claims)
+    exact = hamiltonian_from(system, parameters)
+    if scheme is None:
+        raise InputError("scheme", "", "is missing; such as prove('duffing', 'lie2')")
+    found = scheme_from(scheme)
+    return prove_map(step_map_from(found, exact), found if isinstance(found, Scheme) else None)

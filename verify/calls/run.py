@@ -1,0 +1,112 @@
+"""`verify.run`: N steps, each number with its error bound."""
+
+from collections.abc import Sequence
+
+from verify.arithmetic.exact import Exact, positive, whole
+from verify.arithmetic.systems import float64
+from verify.calls.given import (
+    GivenParameters,
+    GivenScheme,
+    GivenSystem,
+    hamiltonian_from,
+    is_list,
+    scheme_name,
+)
+from verify.calls.progress import Progress, progress_of
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.runs.run import run as run_scheme
+from verify.scenes.results.orbit import MOST_POINTS
+from verify.scenes.results.run import RunResult
+from verify.scenes.values import AUTO, CLOSED_FORM, MAX_STEPS
+
+_DIGITS = 17
+
+
+def run(
+    system: GivenSystem,
+    scheme: GivenScheme,
+    *,
+    q: Exact,
+    p: Exact,
+    step_size: Exact,
+    steps: int | None = None,
+    time: Exact | None = None,
+    parameters: GivenParameters = None,
+    arithmetic: str | None = None,
+    digits: int | None = None,
+    observables: Sequence[str] = CLOSED_FORM,
+    points: int = 0,
+    progress: Progress = None,
+    keeper: Keeper = NOTHING,
+) -> RunResult:
+    """Run a scheme from (q, p), and give p, q and the observables, each with its error bound.
+
+    Parameters
+    ----------
+    system: a Hamiltonian, a system's name, or a formula such as "p**2/2 - cos(q)".
+    scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
+    q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10.
+    steps, time: one of the two; N = ⌊time / step_size⌋ steps.
+    parameters: exact values by name, beside those that the Hamiltonian has.
+    arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
+        Left out: float64, or auto where `digits` is given.
+    digits: significant digits wanted; float64 gives those that it knows.
+    observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max.
+    points: so many states, at most, in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
+    progress: None for a bar in a notebook, True for one anywhere, False, or a function that is
+        called with the number of steps done.
+
+    Returns
+    -------
+    A RunResult: `values` by name, each a number with its `bound`; `orbit`, the states as arrays
+    `t`, `p`, `q`, `energy_error`, `delta_j`, `lambda_`, all without units, made when it is looked
+    at.
+
+    Raises InputError, one line, for what is none of this, for h ≤ 0, N < 1, a parameter without a
+    value.
+
+    >>> found = run("duffing", "lie2", parameters={"delta": 1}, q=1.5, p=0, step_size=0.01, steps=9)
+    >>> found.values["lambda"] < 0, found.orbit.t.tolist()[:3], found.orbit.texts("p")[1]
+    (True, [0.0, 0.01, 0.02], '-0.04875')
+    """
+    exact = hamiltonian_from(system, parameters)
+    name = scheme_name(scheme, exact)
+    count = steps_from(steps, time, step_size)
+    whole("points", points, 0, MOST_POINTS)
+    digits = None if digits is None else whole("digits", digits, 1)
+    arithmetic = arithmetic or (float64.NAME if digits is None else AUTO)
+    if not isinstance(arithmetic, str):
+        raise InputError("arithmetic", arithmetic, "is no name of a number system")
+    with progress_of(progress, f"{name[:30]}, steps", count) as tell:
+        result = run_scheme(
+            exact,
+            name,
+            q=q,
+            p=p,
+            step_size=step_size,
+            steps=count,
+            arithmetic=arithmetic,
+            digits=digits or _DIGITS,
+            observables=tuple(observables) if is_list(observables) else (str(observables),),
+            points=int(points),
+            progress=tell,
+            keeper=keeper,
+        )
+    return result.with_points(int(points))
+
+
+def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
+    """N, as it is given or as many whole steps as fit into the time.
+
+    >>> steps_from(None, 1, 0.1), steps_from(None, 1, 0.3)
+    (10, 3)
+    """
+    if (steps is None) == (time is None):
+        raise InputError("steps, time", steps if steps is not None else "", "give one of the two")
+    if time is None:
+        return whole("steps", steps, 1, MAX_STEPS)
+    count = positive(time, "time") // positive(step_size, "step_size")
+    if not 1 <= count <= MAX_STEPS:
+        raise InputError("time", time, f"makes {count} steps; allowed: 1 … {MAX_STEPS}")
+    return count

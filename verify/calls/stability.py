@@ -1,0 +1,42 @@
+"""`verify.stability`: runs judged, stable or not, and whose fault it is."""
+
+from typing import Any
+
+from verify.arithmetic.exact import Exact
+from verify.calls.given import GivenParameters, GivenSystem, listed, performed, scene_of
+from verify.scenes.results.stability import StabilityResult
+from verify.studies.stability.findings import findings_of
+from verify.studies.stability.plan import need_stability
+
+
+def stability(
+    system: GivenSystem,
+    scheme: Any,
+    *,
+    q: Exact,
+    p: Exact,
+    step_size: Any,
+    steps: int | None = None,
+    time: Exact | None = None,
+    parameters: GivenParameters = None,
+    workers: int = 1,
+) -> tuple[StabilityResult, ...]:
+    """Judge runs: stable, drifts, unstable by the scheme or by arithmetic, escapes, overflow, ….
+
+    The arguments are those of `verify.run`; `scheme` and `step_size` may be lists; `workers` are
+    processes, as in `verify.flow`. Returns one result a scheme and step size, with its `verdict`
+    and `detail`. Raises InputError, one line.
+
+    >>> found = stability("harmonic", ["euler", "stormer-verlet"], parameters={"omega": 1},
+    ...                   q=1, p=0, step_size=0.1, time=100)
+    >>> [(run.scheme, run.kind) for run in found]
+    [('euler', 'unstable: scheme'), ('stormer-verlet', 'stable')]
+    """
+    section = {
+        "step_sizes": listed("step_size", step_size),
+        "initial_values": [{"q": q, "p": p}],
+        "steps": steps,
+        "time": time,
+    }
+    scene = scene_of(system, scheme, parameters, stability=[section])
+    return findings_of([scene], performed(scene, need_stability, workers)).runs
