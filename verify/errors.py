@@ -18,7 +18,8 @@ class InputError(ValueError):
         self.name = name
         self.value = value
         self.problem = problem
-        super().__init__(without_controls(f"{name}={_short(value)}: {problem}"))
+        given = f"={_short(value)}" if value != "" else ""  # nothing was given
+        super().__init__(without_controls(f"{name}{given}: {problem}"))
 
     def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
         """As a worker process sends it: by its three parts, not by its message."""

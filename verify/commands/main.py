@@ -8,6 +8,7 @@ import sys
 import click
 
 from verify.commands import commands
+from verify.commands.shared.as_typed import as_typed
 from verify.commands.shared.signals import heard_signals
 from verify.commands.shared.streams import Printable, printable_streams
 from verify.errors import InputError, PlaceError
@@ -39,7 +40,7 @@ def cli(context: click.Context) -> None:
 
 
 for command in commands():
-    cli.add_command(command)
+    cli.add_command(as_typed(command))
 
 
 # -- entry ----------------------------------------------------------------------------------------

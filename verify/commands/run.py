@@ -1,7 +1,7 @@
 """The command `verify run`: N steps, each number with its error bound."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -9,9 +9,12 @@ from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.input import PATH, keepable, scheme_option, with_hamiltonian
+from verify.commands.shared.orbit_file import write_orbit
+from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.scenes.results.run import RunResult
 
 
 @click.command()
@@ -19,7 +22,8 @@ if TYPE_CHECKING:
 @scheme_option
 @answering
 @click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
-@click.option("--steps", required=True, type=int, metavar="N", help="At least 1.")
+@click.option("--steps", type=int, metavar="N", help="At least 1; or:")
+@click.option("--time", metavar="T", help="N is T/H rounded down.")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
@@ -29,54 +33,95 @@ if TYPE_CHECKING:
     "Without it: float64, or auto where --digits is given.",
 )
 @click.option(
+    "--csv",
+    "table",
+    metavar="FILE",
+    help="Write the states there, t, p, q, H − H₀, ΔJ and Λ; - for standard output, and nothing "
+    "else on it.",
+)
+@click.option(
+    "--points",
+    type=int,
+    metavar="N",
+    help="So many states in the file after the initial one, at most.  [default: 10000]",
+)
+@click.option(
     "--keep",
     type=PATH,
     metavar="DIR",
     help="Keep checkpoints there; the same command goes on from them.",
 )
-def run(
+def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
+    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
+
+    With --keep, an interruption costs at most some seconds of work. The file of --csv begins with
+    the initial state and has every step up to 10,000; of more, every second, third, …
+
+    \b
+    verify run --system pendulum --scheme lie2 --step-size 0.01 --time 20 --q 1 --p 0 \\
+           --csv orbit.csv
+    """
+    table, points = options.pop("table"), options.pop("points")
+    if table == "-" and click.get_current_context().params["as_json"]:
+        raise InputError("--csv", table, "does not go with --json: both are for standard output")
+    if points is not None and table is None:
+        raise InputError("--points", points, "goes with --csv")
+    result, note = _result(exact, scheme, **options)
+    if table is not None:
+        write_orbit(result, table, points)
+
+    def shown() -> None:
+        show.print_run(result)
+        if note:
+            click.echo(note)
+
+    return Answer(
+        lambda: show.run_json(result),
+        (lambda: None) if table == "-" else shown,
+        failed=result.status != "finished",
+    )
+
+
+def _result(
     exact: "Hamiltonian",
     scheme: str,
+    *,
+    steps: int | None,
+    time: str | None,
     step_size: str,
-    steps: int,
-    q: str,
-    p: str,
     digits: int | None,
     arithmetic: str | None,
     keep: Path | None,
-) -> Answer:
-    """Run N steps and report Λ, MSE, max |ΔJ| and the last state, each with its error bound.
-
-    With --keep, an interruption costs at most some seconds of work.
-    """
+    **start: str,
+) -> "tuple[RunResult, str]":
+    """The run, and what is to be said of its time."""
+    from verify.arithmetic.exact import positive
+    from verify.calls.run import steps_from
     from verify.commands.shared.progress import counting_bar
     from verify.execution.keeping import Keeper, name_of
     from verify.runs.run import run as run_scheme
-    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED
+    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED, rounded_down
 
     arithmetic = arithmetic or (AUTO if digits else "float64")
+    count = steps_from(steps, time, step_size)
     if keep is not None:
         keepable(keep)
-    asked = (exact.expression, exact.values, scheme, step_size, steps, q, p, digits, arithmetic)
+    asked = (exact.expression, exact.values, scheme, step_size, count, start, digits, arithmetic)
     keeper = Keeper(keep, name_of(asked))
-    with counting_bar("stepping", steps) as tell:
+    with counting_bar("stepping", count) as tell:
         result = run_scheme(
             exact,
             scheme,
-            q=q,
-            p=p,
             step_size=step_size,
-            steps=steps,
+            steps=count,
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
             # The plain way shows what rounding does to it; at many digits that is nothing.
             observables=REPORTED if arithmetic == "float64" else CLOSED_FORM,
             progress=tell,
             keeper=keeper,
+            **start,
         )
     keeper.clear()
-    return Answer(
-        lambda: show.run_json(result),
-        lambda: show.print_run(result),
-        failed=result.status != "finished",
-    )
+    until = None if time is None else positive(time, "time")
+    return result, rounded_down(until, [positive(step_size, "step_size")])

@@ -1,6 +1,6 @@
 """The values that a scene's keys take: exact numbers, counts, initial values."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from fractions import Fraction
 from typing import Annotated
 
@@ -50,11 +50,27 @@ def distinct(name: str, given: Collection[object]) -> None:
 
 
 def steps_of(time: Fraction | None, steps: int | None, h: Fraction, most: int = MAX_STEPS) -> int:
-    """N: as given, or the whole steps of size h that fit into `time`; InputError beyond `most`."""
+    """N: as given, or T/h rounded down to a whole number; InputError beyond `most`.
+
+    That is the rule wherever a time is given: a run ends at t = N·h, and `rounded_down` says so.
+    """
     count = steps if time is None else time // h
     if count is None or not 1 <= count <= most:
         raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {most}")
     return count
+
+
+def rounded_down(time: Fraction | None, step_sizes: Iterable[Fraction]) -> str:
+    """What is said where T/h is not a whole number for some of the h; empty where it is for all.
+
+    >>> rounded_down(Fraction(10), [Fraction(3, 10), Fraction(1, 10)])
+    'T/h is rounded down: h = 0.3 gives N = 33, and t = 9.9 at the end'
+    """
+    rest = [h for h in dict.fromkeys(step_sizes) if time is not None and time % h]
+    if time is None or not rest:
+        return ""
+    told = (f"h = {text(h)} gives N = {time // h}, and t = {text(time // h * h)}" for h in rest)
+    return f"T/h is rounded down: {'; '.join(told)} at the end"
 
 
 @drawn_by("initial_values")

@@ -7,6 +7,7 @@ through `sympy.diff`, numbers through mpmath.
 import math
 import multiprocessing
 import resource
+import signal
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import lru_cache
@@ -187,29 +188,33 @@ def close(x: Any, y: Any, digits: int) -> bool:
 # -- what must end ----------------------------------------------------------------------------
 
 _MEMORY = 4 << 30
+_WAITING = 20  # times as long as the processor may be busy
 
 
-def outcome(work: Callable[[], object], seconds: float = 6) -> str:
-    """What becomes of `work` in a process of its own, with limits on its time and memory.
+def outcome(work: Callable[[], object], seconds: int = 6) -> str:
+    """What becomes of `work` in a process of its own, with limits on its memory and on its seconds
+    of processor time, which a busy machine does not use up.
 
     "done", the name of the exception it raised, "hangs" or "dies".
     """
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=_attempt, args=(work, sender))
+    process = context.Process(target=_attempt, args=(work, seconds, sender))
     process.start()
     sender.close()
     try:
-        return receiver.recv() if receiver.poll(seconds) else "hangs"
+        return receiver.recv() if receiver.poll(_WAITING * seconds) else "hangs"
     except EOFError:
-        return "dies"
+        process.join()
+        return "hangs" if process.exitcode == -signal.SIGXCPU else "dies"
     finally:
         process.kill()
         process.join()
 
 
-def _attempt(work: Callable[[], object], sender: Connection) -> None:
+def _attempt(work: Callable[[], object], seconds: int, sender: Connection) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, 2 * seconds))
     try:
         work()
     except Exception as error:
