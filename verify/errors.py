@@ -8,8 +8,15 @@ from types import MappingProxyType
 CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
+class _NotGiven(str):
+    """The text of what was not given at all; an empty text was."""
+
+
+NOT_GIVEN = _NotGiven()
+
+
 class InputError(ValueError):
-    """Bad input: one line that names the input, its value and what is allowed.
+    """Bad input: one line that names the input, its value, if any was given, and what is allowed.
 
     The command line turns it into exit status 2; nothing has been computed when it is raised.
     """
@@ -18,12 +25,13 @@ class InputError(ValueError):
         self.name = name
         self.value = value
         self.problem = problem
-        given = f"={_short(value)}" if value != "" else ""  # nothing was given
+        given = "" if isinstance(value, _NotGiven) else f"={_short(value)}"
         super().__init__(without_controls(f"{name}{given}: {problem}"))
 
     def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
         """As a worker process sends it: by its three parts, not by its message."""
-        return type(self), (self.name, _short(self.value), self.problem)
+        value = self.value if isinstance(self.value, _NotGiven) else _short(self.value)
+        return type(self), (self.name, value, self.problem)
 
 
 class LimitError(InputError):
@@ -80,7 +88,7 @@ def _short(value: object) -> str:
         text = value if isinstance(value, str) else repr(value)
     except ValueError:  # an integer beyond Python's limit of printed digits
         text = f"(a {type(value).__name__} of very many digits)"
-    text = " ".join(text.split())
+    text = " ".join(text.split()) or repr(text)
     if len(text) > 78:  # both ends: a path is known by its last part
         text = f"{text[:38]}…{text[-39:]}"
     return without_controls(text)

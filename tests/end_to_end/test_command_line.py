@@ -74,10 +74,10 @@ def json_of(output: str) -> Any:
 # -- bad input ------------------------------------------------------------------------------------
 
 BAD = {
-    "h-zero": (arguments("run", RUN, step_size="0"), "step_size=0"),
-    "h-negative": (arguments("run", RUN, step_size="-0.1"), "step_size=-0.1"),
-    "h-nan": (arguments("run", RUN, step_size="nan"), "step_size=nan"),
-    "h-word": (arguments("run", RUN, step_size="small"), "step_size=small"),
+    "h-zero": (arguments("run", RUN, step_size="0"), "--step-size=0"),
+    "h-negative": (arguments("run", RUN, step_size="-0.1"), "--step-size=-0.1"),
+    "h-nan": (arguments("run", RUN, step_size="nan"), "--step-size=nan"),
+    "h-word": (arguments("run", RUN, step_size="small"), "--step-size=small"),
     "h-missing": (arguments("run", RUN, step_size=None), "--step-size"),
     "n-zero": (arguments("run", RUN, steps="0"), "steps=0"),
     "n-negative": (arguments("run", RUN, steps="-3"), "steps=-3"),

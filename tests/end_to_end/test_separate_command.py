@@ -85,14 +85,14 @@ def test_people_are_shown_a_table_and_the_crossover(capsys: pytest.CaptureFixtur
 
 
 BAD = {
-    "h-zero": ({"step_size": "0"}, "step_size=0"),
-    "h-second": ({"step_size": ["0.1", "nan"]}, "step_size=nan"),
-    "h-twice": ({"step_size": ["0.1", "1/10"]}, "step_size=1/10: is given twice"),
+    "h-zero": ({"step_size": "0"}, "--step-size=0"),
+    "h-second": ({"step_size": ["0.1", "nan"]}, "--step-size=nan"),
+    "h-twice": ({"step_size": ["0.1", "1/10"]}, "--step-size=1/10: is given twice"),
     "h-missing": ({"step_size": None}, "--step-size"),
     "n-zero": ({"steps": "0"}, "steps=0"),
     "n-word": ({"steps": "many"}, "--steps"),
-    "n-and-time": ({"time": "3"}, "steps, time=: give one of the two"),
-    "n-nor-time": ({"steps": None}, "steps, time=: give one of the two"),
+    "n-and-time": ({"time": "3"}, "--steps, --time: give one of the two"),
+    "n-nor-time": ({"steps": None}, "--steps, --time: give one of the two"),
     "time-short": ({"steps": None, "time": "0.001"}, "time=0.001: is shorter"),
     "time-negative": ({"steps": None, "time": "-1"}, "time=-1: must be greater than 0"),
     "time-long": ({"steps": None, "time": "1e30"}, "steps="),

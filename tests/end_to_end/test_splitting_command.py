@@ -33,7 +33,7 @@ def test_irrational_coefficients_have_no_certificate_and_that_is_said(
     file = tmp_path / "c.json"
     status, _, err = here(capsys, *EVERY, "yoshida4", "--certificate", str(file))
     assert status == 2
-    assert err.startswith("verify: scheme=yoshida4: ")
+    assert err.startswith("verify: --scheme=yoshida4: ")
     assert err.count("\n") == 1
     assert not file.exists()
     status, _, _ = here(capsys, *EVERY, "ruth3", "--certificate", str(file))

@@ -98,11 +98,11 @@ def test_the_extreme_scenes_end_in_the_verdicts_that_are_right(
 @pytest.mark.parametrize(
     ("given", "problem"),
     [
-        ([], "SCENE=: is missing"),
-        (["--scheme", "lie2"], "SCENE=: is missing"),
-        (["stiff", "--scheme", "lie2"], "goes with --linear"),
+        ([], "SCENE: is missing"),
+        (["--scheme", "lie2"], "--system, --hamiltonian: give one of the two"),
+        (["stiff", "--scheme", "lie2"], "--scheme=lie2: goes without SCENE"),
         (["stiff", "--linear", "--scheme", "lie2"], "does not go with --linear"),
-        (["--linear"], "--scheme=: is missing"),
+        (["--linear"], "--scheme: give one with --linear"),
         (["nowhere.toml"], "No such file"),
     ],
 )

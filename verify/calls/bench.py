@@ -5,6 +5,7 @@ from typing import Any
 from verify.arithmetic.exact import Exact
 from verify.calls.given import GivenParameters, GivenSystem, listed, scene_of
 from verify.calls.progress import Progress, progress_of
+from verify.errors import InputError
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.studies.work_precision.plan import work_precision_task
 
@@ -29,9 +30,12 @@ def bench(
     libraries beside them, where they are installed. `verify.plot_work_precision` draws it. Raises
     InputError, one line.
     """
+    sizes = listed("step_sizes", step_sizes)
+    if len(sizes) < 2:
+        raise InputError("step_sizes", step_sizes, "is one; an order takes two at least")
     section = {
         "time": time,
-        "step_sizes": listed("step_sizes", step_sizes),
+        "step_sizes": sizes,
         "initial_value": {"q": q, "p": p},
         "repeats": repeats,
         "peers": None if peers else False,

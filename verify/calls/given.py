@@ -32,6 +32,7 @@ GivenScheme = Scheme | StepMap | str
 GivenParameters = Mapping[str, Exact | None] | None
 
 _NAME = re.compile(r"[^\W\d]\w*([ -][^\W\d]\w*)*")  # no formula: a word, or words with dashes
+_SOURCE = "arguments"
 _LEAST = 3  # letters of what is taken for a name; `p` is a formula
 _SYSTEM = "is no system; allowed: a name such as duffing, a formula in p and q, a Hamiltonian"
 _SCHEME = (
@@ -133,17 +134,36 @@ def plain(given: Any) -> Any:
 
 
 def scene_of(
-    system: GivenSystem, scheme: object, parameters: GivenParameters, **sections: Any
+    system: GivenSystem,
+    scheme: object,
+    parameters: GivenParameters,
+    *,
+    name: str = "",
+    **sections: Any,
 ) -> Scene:
-    """A scene of the system and one scheme or several with these sections."""
+    """A scene of the system and one scheme or several with these sections, and a name to show."""
     exact = hamiltonian_from(system, parameters)
     data = {
         "hamiltonian": exact.formula,
         "parameters": dict[str, Fraction](exact.values),
         "schemes": schemes_from(scheme, exact),
     }
-    sections = {name: plain(_without_none(given)) for name, given in sections.items()}
-    return scene_from({**data, **sections}, "verify")
+    sections = {key: plain(_without_none(given)) for key, given in sections.items()}
+    try:
+        return scene_from({**data, **sections}, _SOURCE, default_name=name)
+    except InputError as error:
+        raise type(error)(_argument(error.name), error.value, error.problem) from None
+
+
+def _argument(key: str) -> str:
+    """The argument that a scene's key is made of.
+
+    >>> _argument("arguments: flow.0.step_size: step_size"), _argument("arguments: flow.0.scale")
+    ('step_size', 'scale')
+    """
+    path, _, own = key.removeprefix(f"{_SOURCE}: ").partition(": ")
+    last = [part for part in path.split(".") if not part.isdecimal()][-1]
+    return own if own and own != "number" else last
 
 
 def _without_none(given: Any) -> Any:

@@ -8,7 +8,7 @@ from verify.calls.given import (
     scheme_from,
     step_map_from,
 )
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.proof.order import prove as prove_map
 from verify.proof.order_proof import Proof
 from verify.schemes.scheme import Scheme
@@ -47,6 +47,6 @@ def prove(
         return prove_map(system, claims)
     exact = hamiltonian_from(system, parameters)
     if scheme is None:
-        raise InputError("scheme", "", "is missing; such as prove('duffing', 'lie2')")
+        raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     found = scheme_from(scheme)
     return prove_map(step_map_from(found, exact), found if isinstance(found, Scheme) else None)

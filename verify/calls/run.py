@@ -13,7 +13,7 @@ from verify.calls.given import (
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.runs.run import run as run_scheme
 from verify.scenes.results.orbit import MOST_POINTS
@@ -103,7 +103,9 @@ def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
     (10, 3)
     """
     if (steps is None) == (time is None):
-        raise InputError("steps, time", steps if steps is not None else "", "give one of the two")
+        raise InputError(
+            "steps, time", steps if steps is not None else NOT_GIVEN, "give one of the two"
+        )
     if time is None:
         return whole("steps", steps, 1, MAX_STEPS)
     count = positive(time, "time") // positive(step_size, "step_size")

@@ -38,7 +38,7 @@ from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
 from verify.claims.toml_lines import Lines, lines_of
-from verify.errors import InputError, LimitError, unknown
+from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_from
@@ -263,7 +263,7 @@ class _Scenes:
             where = f"{path.name}:{lines.of('scene', index)}: scene"
             name = table.get("name") if isinstance(table, dict) else None
             if not isinstance(name, str) or not name or name in self.found:
-                raise InputError(where, name or "", "each [[scene]] has a name of its own")
+                raise InputError(where, name or NOT_GIVEN, "each [[scene]] has a name of its own")
             self.found[name] = scene_from(table, where)
 
     def get(self, name: Any) -> Scene:

@@ -16,7 +16,7 @@ from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.runs import QUANTITIES, NoValueError
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
@@ -93,7 +93,7 @@ class RunClaim(Claim):
         if grid is None:
             return
         if self.one_run and len(grid.step_sizes) * len(grid.initial_values) > 1:
-            raise InputError("", "", "speaks of one run; give step_size, q and p")
+            raise InputError("", NOT_GIVEN, "speaks of one run; give step_size, q and p")
 
     def _with_grid(
         self, label: str, scene: Scene, base: Grid | None, runs: Mapping[str, Any]
@@ -172,7 +172,7 @@ def _length(keys: RunKeys, base: Grid | None) -> dict[str, Any]:
         raise InputError("steps", keys.steps, "give one of time and steps")
     if keys.time is None and keys.steps is None:
         if base is None:
-            raise InputError("time", "", "is missing: give time or steps")
+            raise InputError("time", NOT_GIVEN, "is missing: give time or steps")
         return {"time": base.time, "steps": base.steps}
     return {"time": keys.time, "steps": keys.steps}
 
@@ -183,17 +183,17 @@ def _step_sizes(keys: RunKeys, base: Grid | None) -> tuple[Any, ...]:
     if keys.step_size is not None:
         return (keys.step_size,)
     if keys.step_sizes is None and base is None:
-        raise InputError("step_size", "", "is missing")
+        raise InputError("step_size", NOT_GIVEN, "is missing")
     return keys.step_sizes or (base.step_sizes if base else ())
 
 
 def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[InitialValue, ...]:
     if keys.q is None and keys.p is None:
         if keys.initial_values is None and base is None:
-            raise InputError("q", "", "is missing: give q and p, or initial_values")
+            raise InputError("q", NOT_GIVEN, "is missing: give q and p, or initial_values")
         return keys.initial_values or (base.initial_values if base else ())
     if keys.initial_values is not None:
-        raise InputError("initial_values", "", "give these, or q and p")
+        raise InputError("initial_values", NOT_GIVEN, "give these, or q and p")
     if keys.q is None or keys.p is None:
-        raise InputError("p" if keys.p is None else "q", "", "is missing: give q and p")
+        raise InputError("p" if keys.p is None else "q", NOT_GIVEN, "is missing: give q and p")
     return (InitialValue(q=keys.q, p=keys.p),)

@@ -20,7 +20,7 @@ A file in which no claim has one of these keys counts claims alone, and no state
 from collections.abc import Sequence
 
 from verify.claims.claim import Claim
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 _KEYS = {"reading_of", "reading", "standing"}
 
@@ -58,6 +58,6 @@ def _of_another(claims: Sequence[Claim], index: int) -> Claim:
     if claim.statement:
         raise InputError("statement", claim.statement, f"is that of {first.id}; say how it is read")
     if not claim.reading:
-        raise InputError("reading", "", f"is missing: how {first.id} is read here")
+        raise InputError("reading", NOT_GIVEN, f"is missing: how {first.id} is read here")
     texts = {key: getattr(claim, key) or getattr(first, key) for key in ("source", "section")}
     return claim.model_copy(update={"statement": first.statement, **texts})

@@ -9,7 +9,7 @@ from pydantic import Field
 from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.execution.study import known_results
 from verify.execution.task import Task
 from verify.prose import Number, Prose, prose
@@ -61,7 +61,7 @@ class FlowClaim(Claim):
     def scene_of_its_own(
         self, label: str, scene: Scene, runs: Mapping[str, Any]
     ) -> tuple[str, Scene]:
-        raise InputError("scene", "", "is missing: a [[flow]] of a scene is spoken of")
+        raise InputError("scene", NOT_GIVEN, "is missing: a [[flow]] of a scene is spoken of")
 
     def scene_on(self, name: str, scene: Scene, runs: Mapping[str, Any]) -> tuple[str, Scene]:
         """Raises InputError where the scene does not carry a region so, or not by that map."""

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import Field
 
 from verify.claims.claim import Claim
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene
 from verify.scenes.values import Number, SystemName
@@ -40,13 +40,15 @@ def scene_for(
     """
     if len([name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys]) != 1:
         given = " and ".join(name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys)
-        raise InputError(given or "scene", "", f"give one of {', '.join(HAMILTONIAN_SOURCES)}")
+        raise InputError(
+            given or "scene", NOT_GIVEN, f"give one of {', '.join(HAMILTONIAN_SOURCES)}"
+        )
     if "scene" not in hamiltonian_keys:
         own = ClaimedHamiltonian.model_validate(hamiltonian_keys)
         scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
         return claim.scene_of_its_own(own.system or "own", scene, runs)
     if "parameters" in hamiltonian_keys:
-        raise InputError("parameters", "", "stand in the scene's own file")
+        raise InputError("parameters", NOT_GIVEN, "stand in the scene's own file")
     name = hamiltonian_keys["scene"]
     return claim.scene_on(name, named(name), runs)
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import PATH, target
+from verify.commands.shared.input import PATH
+from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
 from verify.commands.shared.output import plain_json
 from verify.commands.shared.tasks import cluster_option
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,28 +23,44 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@with_one_line(
+    click.option("--time", metavar="T", help="N is T/H rounded down."),
+    click.option("--repeats", type=int, metavar="N", help="Timings of each.  [default: 5]"),
+    click.option("--peers", is_flag=True, help="Other libraries' solvers beside them."),
+)
+@start_options
 @click.option("-o", "--output", type=PATH, metavar="FILE.svg", help="Draw it there.")
 @cluster_option
 @answering
-def bench(scene: str, output: Path | None, cluster: str | None) -> Answer:
+def bench(scene: str | None, output: Path | None, cluster: str | None, **given: Any) -> Answer:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 
     \b
     verify bench my.toml -o work-precision.svg
+    verify bench --system pendulum --scheme lie2 --scheme rk4 --q 1 --p 0 --time 10 \\
+           --step-size 0.1 --step-size 0.05 --step-size 0.025
     """
     if output is not None and output.suffix != ".svg":
         raise InputError("--output", str(output), "must end in .svg")
-    _, scenes, _ = target(scene)
+    scenes = scenes_of(scene, given, ("q", "p", "time"), _section)
     asked = [each for each in scenes if each.work_precision]
     if not asked:
-        raise InputError("scene", scene, "has no [work_precision]")
+        raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]")
     found = list(_measured(asked) if cluster is None else _measured_on_cluster(asked, cluster))
     if output is not None:
         for name, result in found:
             several = len(found) > 1
             _draw(result, output.with_stem(f"{output.stem}-{name}") if several else output)
     return Answer(lambda: _bench_json(found), lambda: _print(found))
+
+
+def _section(
+    *, q: str, p: str, step_sizes: Sequence[str], peers: bool = False, **rest: Any
+) -> dict[str, Any]:
+    if len(step_sizes) < 2:
+        raise InputError("step_sizes", step_sizes[0], "is one; an order takes two at least")
+    own = {"initial_value": {"q": q, "p": p}, "peers": peers, "step_sizes": step_sizes}
+    return {"work_precision": {**own, **rest}}
 
 
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
@@ -146,6 +163,8 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
         known = f"{system.certified} certified digits" if system.certified else system.reason
         asked = f"{system.arithmetic}, {system.digits} digits"
         console.print(f"{asked}: {known} in {_seconds(system.seconds_median)} s")
+    if result.rounded_down:
+        console.print(result.rounded_down)
     for each in result.comparisons:
         console.print(each.sentence)
     for what, why in result.left_out:

@@ -8,7 +8,7 @@ import click
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import with_hamiltonian
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -70,7 +70,7 @@ def check_integrator(
 
     begun = time.perf_counter()
     if (p is None) != (q is None):
-        raise InputError("--p, --q", p or q or "", "give both or none")
+        raise InputError("--p, --q", p or q or NOT_GIVEN, "give both or none")
     start = None if p is None or q is None else (rational(p, "--p"), rational(q, "--q"))
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")

@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.arithmetic.exact import short
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import target
+from verify.commands.shared.one_line import scenes_of, with_one_line
 from verify.commands.shared.tasks import perform, with_tasks
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
@@ -19,13 +19,25 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@with_one_line(
+    click.option(
+        "--steps", type=int, multiple=True, metavar="N", help="At least 1; repeatable; or:"
+    ),
+    click.option("--time", "times", multiple=True, metavar="T", help="N is T/H rounded down."),
+    click.option("--shape", metavar="NAME", help="circle, square or cat.  [default: circle]"),
+    click.option("--q", metavar="Q", help="Where it is put.  [default: 0]"),
+    click.option("--p", metavar="P", help="[default: 0]"),
+    click.option("--scale", metavar="S", help="How many times as large.  [default: 1]"),
+)
 @with_tasks
-def flow(scene: str, keep: Path | None, where: "Placement") -> Answer:
+def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any) -> Answer:
     """Carry the regions of SCENE by its maps, and measure what these do to their areas.
 
     SCENE is a TOML file with [[flow]] sections, or `paper`; nothing else of it is done. Exit status
     1 where a map's area could not be measured far more finely than it changes.
+
+    \b
+    verify flow --system pendulum --scheme lie2 --shape cat --q 1 --step-size 0.1 --time 1 --time 5
 
     \b
     [[flow]]
@@ -39,10 +51,10 @@ def flow(scene: str, keep: Path | None, where: "Placement") -> Answer:
     from verify.studies.regions.findings import flow_json, flows_of
     from verify.studies.regions.plan import need_flows
 
-    scenes = target(scene)[1]
+    scenes = scenes_of(scene, given, (), _sections)
     plan = plan_of(scenes, need_flows)
     if not plan.tasks:
-        raise InputError("SCENE", scene, "asks for no [[flow]]")
+        raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]")
     results = perform(plan, keep, where)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
     return Answer(
@@ -50,6 +62,14 @@ def flow(scene: str, keep: Path | None, where: "Placement") -> Answer:
         lambda: _print(found),
         failed=any(image.problem for _, flow in found for image in flow.images),
     )
+
+
+def _sections(
+    *, step_sizes: Sequence[str], q: str = "0", p: str = "0", shape: str = "circle", **rest: Any
+) -> dict[str, Any]:
+    """One [[flow]] a step size."""
+    rest |= {"shape": shape, "centre": {"q": q, "p": p}}
+    return {"flow": [{"step_size": h, **rest} for h in step_sizes]}
 
 
 def _print(found: "Sequence[tuple[str, FlowResult]]") -> None:

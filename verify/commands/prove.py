@@ -12,7 +12,7 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import PATH, hamiltonian_of, hamiltonian_options, scheme_option
 from verify.commands.shared.output import cut
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -63,10 +63,12 @@ def prove(
     """
     if not every_hamiltonian:
         if separable:
-            raise InputError("--separable", "", "goes with --every-hamiltonian")
+            raise InputError("--separable", NOT_GIVEN, "goes with --every-hamiltonian")
         return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
     if system is not None or hamiltonian is not None or params:
-        raise InputError("--every-hamiltonian", "", "goes without --system, --hamiltonian, --param")
+        raise InputError(
+            "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
+        )
     from verify.proof.every import prove_every
 
     begun = time.perf_counter()

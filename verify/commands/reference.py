@@ -10,7 +10,7 @@ from verify.commands.reference_compare import compare
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import PATH, writable
 from verify.commands.shared.tasks import perform, with_placement, with_tasks
-from verify.errors import InputError, without_controls
+from verify.errors import NOT_GIVEN, InputError, without_controls
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
@@ -113,7 +113,7 @@ def check(
     if not 0 <= share <= 1:
         raise InputError("--share", share, "must be 0 … 1")
     if everything and share != _SHARE:
-        raise InputError("--all", "", "goes without --share")
+        raise InputError("--all", NOT_GIVEN, "goes without --share")
     if most_steps is None and not everything:
         most_steps = _MOST_STEPS
     seed = SystemRandom().randrange(10**6) if seed is None else seed

@@ -92,7 +92,7 @@ def _result(
     digits: int | None,
     arithmetic: str | None,
     keep: Path | None,
-    **start: str,
+    **start: Any,
 ) -> "tuple[RunResult, str]":
     """The run, and what is to be said of its time."""
     from verify.arithmetic.exact import positive

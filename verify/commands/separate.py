@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     help="Greater than 0; given several times, a grid of them.",
 )
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
-@click.option("--time", metavar="T", help="N = ⌊T/H⌋ steps for each H.")
+@click.option("--time", metavar="T", help="N is T/H rounded down, for each H.")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
@@ -39,10 +39,20 @@ def separate(
 
     With several step sizes also the one below which rounding is the larger part.
     """
+    from verify.arithmetic.exact import positive
     from verify.commands.shared.progress import progress_bar
+    from verify.scenes.values import rounded_down
     from verify.studies.separation.separate import RUNS, grid, separate_grid
 
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)
-    return Answer(lambda: show.separation_json(result), lambda: show.print_separation(result))
+    time = options["time"]
+    note = rounded_down(time and positive(time, "time"), [h for h, _ in counts])
+
+    def shown() -> None:
+        show.print_separation(result)
+        if note:
+            click.echo(note)
+
+    return Answer(lambda: show.separation_json(result), shown)

@@ -1,18 +1,20 @@
 """The command `verify stability`: the runs of a scene, judged, and linear theory, exactly."""
 
 import textwrap
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import SCHEME, target
+from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
 from verify.commands.shared.tasks import perform, with_tasks
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
+    from verify.scenes.scene import Scene
     from verify.studies.stability.findings import StabilityFindings
     from verify.studies.stability.linear import LinearStability
 
@@ -21,21 +23,15 @@ _WIDTH, _IN = 100, " " * 6
 
 
 @click.command()
-@click.argument("scene", required=False, metavar="[SCENE]")
-@click.option("--linear", is_flag=True, help="On the harmonic oscillator, by exact algebra.")
-@click.option(
-    "--scheme",
-    type=SCHEME,
-    metavar="NAME",
-    help="With --linear: lie1, lie2, …, stormer-verlet, rk4, …",
+@with_one_line(
+    click.option("--steps", type=int, metavar="N", help="At least 1; or:"),
+    click.option("--time", metavar="T", help="N is T/H rounded down."),
 )
+@start_options
+@click.option("--linear", is_flag=True, help="One scheme on the harmonic oscillator, by algebra.")
 @with_tasks
 def stability(
-    scene: str | None,
-    linear: bool,
-    scheme: str | None,
-    keep: Path | None,
-    where: "Placement",
+    scene: str | None, linear: bool, keep: Path | None, where: "Placement", **given: Any
 ) -> Answer:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
 
@@ -44,33 +40,57 @@ def stability(
 
     \b
     verify stability stiff
+    verify stability --system pendulum --scheme lie2 --step-size 0.1 --time 100 --q 1 --p 0
     verify stability --linear --scheme lie4
     """
     if linear:
-        if scene is not None:
-            raise InputError("SCENE", scene, "does not go with --linear")
-        if scheme is None:
-            raise InputError("--scheme", "", "is missing")
-        return _linear(scheme)
-    if scene is None:
-        raise InputError("SCENE", "", "is missing; or give --linear --scheme NAME")
-    if scheme is not None:
-        raise InputError("--scheme", scheme, "goes with --linear; a scene names its own schemes")
-    return _of_scenes(scene, keep, where)
+        return _linear(_of_linear(scene, given))
+    scenes = scenes_of(scene, given, ("q", "p"), _section)
+    return _of_scenes(scene, scenes, keep, where)
 
 
-def _of_scenes(scene: str, keep: Path | None, where: "Placement") -> Answer:
+def _of_linear(scene: str | None, given: Mapping[str, Any]) -> str:
+    """The scheme that linear theory is asked of; InputError for whatever else is given."""
+    if scene is not None:
+        raise InputError("SCENE", scene, "does not go with --linear")
+    for name, x in given.items():
+        if name != "schemes" and x not in (None, ()):
+            raise InputError(name, x, "does not go with --linear")
+    if len(given["schemes"]) != 1:
+        shown = ", ".join(given["schemes"]) or NOT_GIVEN
+        raise InputError("schemes", shown, "give one with --linear")
+    return str(given["schemes"][0])
+
+
+def _section(*, q: str, p: str, **rest: Any) -> dict[str, Any]:
+    return {"stability": [{**rest, "initial_values": [{"q": q, "p": p}]}]}
+
+
+def _of_scenes(
+    scene: str | None, scenes: "list[Scene]", keep: Path | None, where: "Placement"
+) -> Answer:
     from verify.execution.study import plan_of
+    from verify.scenes.values import rounded_down
     from verify.studies.stability.findings import findings_of
     from verify.studies.stability.plan import need_stability
 
-    scenes = target(scene)[1]
     plan = plan_of(scenes, need_stability)
     if not plan.tasks:
         problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
-        raise InputError("SCENE", scene, problem)
+        raise InputError("SCENE", scene or NOT_GIVEN, problem)
     found = findings_of(scenes, perform(plan, keep, where))
-    return Answer(found.as_json, lambda: _print(found))
+    notes = [
+        rounded_down(section.time, section.step_sizes)
+        for each in scenes
+        for section in each.stability
+    ]
+
+    def shown() -> None:
+        _print(found)
+        for note in filter(None, dict.fromkeys(notes)):
+            click.echo(note)
+
+    return Answer(found.as_json, shown)
 
 
 def _print(found: "StabilityFindings") -> None:

@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 
 from verify.claims.scenes import slug
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.keeping import name_of
@@ -62,7 +62,7 @@ class Exploration:
             raise InputError("seed", self.seed, "must be 0 or more")
         names = [each.name for each in self.looks]
         if not names:
-            raise InputError("properties", "", "give one at least")
+            raise InputError("properties", NOT_GIVEN, "give one at least")
         for name, count in Counter(names).items():
             if count > 1:
                 raise InputError("properties", name, f"{count} of them have this name")

@@ -23,7 +23,7 @@ from mpmath.ctx_mp import MPContext
 from pydantic import Field, model_validator
 
 from verify.arithmetic.exact import text
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
@@ -123,7 +123,7 @@ class Flow(PlacedShape):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if bool(self.steps) == bool(self.times):
-            raise InputError("flow", "steps, times", "give one of the two")
+            raise InputError("steps, times", NOT_GIVEN, "give one of the two")
         if self.digits > MOST_DIGITS:
             raise InputError("digits", self.digits, f"must be at most {MOST_DIGITS}")
         distinct("steps", self.counts)
@@ -132,13 +132,8 @@ class Flow(PlacedShape):
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """The numbers of steps, ascending. Raises InputError for a time that h does not divide."""
-        found = list(self.steps)
-        for time in self.times:
-            if (time / self.step_size).denominator != 1:
-                problem = f"must divide the time {text(time)}"
-                raise InputError("step_size", text(self.step_size), problem)
-            found.append(int(time / self.step_size))
+        """The numbers of steps, ascending; of a time T/h, rounded down."""
+        found = [*self.steps, *(time // self.step_size for time in self.times)]
         for count in found:
             if not 1 <= count <= MAX_STEPS:
                 raise InputError("steps", count, f"allowed: 1 … {MAX_STEPS}")

@@ -56,7 +56,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.drawable import drawn_by
-from verify.errors import CONTROL, InputError, unknown, without_controls
+from verify.errors import CONTROL, NOT_GIVEN, InputError, unknown, without_controls
 from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -100,7 +100,7 @@ class Grid(Frozen):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
-            raise InputError("grid", "time, steps", "give one of the two")
+            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
         for name in self.observables:
             if name not in OBSERVABLES:
                 raise unknown("observable", name, OBSERVABLES)
@@ -159,7 +159,7 @@ class Series(Frozen):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
-            raise InputError("series", "time, steps", "give one of the two")
+            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
         steps_of(self.time, self.steps, self.step_size)
         return self
 
@@ -196,7 +196,7 @@ class Scene(Frozen):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.system is None) == (self.hamiltonian is None):
-            raise InputError("scene", "system, hamiltonian", "give one of the two")
+            raise InputError("system, hamiltonian", NOT_GIVEN, "give one of the two")
         exact = self.exact_hamiltonian()
         sections = self.sections()
         also = (name for section in sections for name in getattr(section, "schemes", ()))
@@ -315,5 +315,5 @@ def one_line(error: ValidationError, source: str) -> InputError:
         meant = f"; is one of these meant: {', '.join(missing)}?" if missing else ""
         return InputError(f"{source}: {where}", first.get("input"), f"unknown key{meant}")
     if first["type"] == "missing":
-        return InputError(f"{source}: {where}", "", "is missing")
+        return InputError(f"{source}: {where}", NOT_GIVEN, "is missing")
     return InputError(f"{source}: {where}", first.get("input"), first["msg"])

@@ -1,7 +1,7 @@
 """Sections of a scene that ask for a table, a figure or data of their own, next to its runs.
 
 [work_precision]                       # error against run time
-time = 20                              # a whole number of each of the steps
+time = 20                              # N is T/h, rounded down
 step_sizes = [0.1, 0.05, 0.025]
 initial_value = { q = 1.5, p = 0 }
 schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
@@ -27,8 +27,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import text
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.values import (
     AUTO,
@@ -39,6 +38,7 @@ from verify.scenes.values import (
     StepSize,
     Time,
     distinct,
+    steps_of,
 )
 
 MOST_STEPS = 10**8  # of a run that is repeated
@@ -66,7 +66,7 @@ class WorkPrecision(Frozen):
         for h in (*self.step_sizes, *(() if own is None else (own,))):
             self.steps_for(h)
         if bool(self.number_systems) != bool(self.digits):
-            raise InputError("number_systems, digits", "", "give both or neither")
+            raise InputError("number_systems, digits", NOT_GIVEN, "give both or neither")
         if AUTO in self.number_systems:
             raise InputError("number_systems", AUTO, "name the number systems themselves")
         if self.number_systems_scheme is not None:
@@ -74,14 +74,8 @@ class WorkPrecision(Frozen):
         return self
 
     def steps_for(self, h: Fraction) -> int:
-        """N = T/h, which must be a whole number, so that all runs end at T."""
-        count = self.time / h
-        if count.denominator != 1:
-            problem = f"does not divide the time {text(self.time)}; T/h must be a whole number"
-            raise InputError("step_size", text(h), problem)
-        if count > MOST_STEPS:
-            raise InputError("step_size", text(h), f"makes {count} steps; allowed: {MOST_STEPS}")
-        return int(count)
+        """N = T/h, rounded down; the error is that at t = N·h."""
+        return steps_of(self.time, None, h, MOST_STEPS)
 
 
 MOST_ROWS = 100_000  # of a section: they are held in memory, and checked one by one

@@ -28,7 +28,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import decimal, positive, whole
 from verify.arithmetic.systems import mpfr
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.values import (
     InitialValue,
@@ -105,7 +105,7 @@ class Stability(OfSchemes):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
-            raise InputError("stability", "time, steps", "give one of the two")
+            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
         for h in self.step_sizes:
             self.steps_for(h)
         return self

@@ -94,7 +94,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
         lambda: verify.run(DUFFING, lambda p, q, h: (p, q), **START),
         "verify.check takes a step function",
     ),
-    "none": (lambda: verify.prove("duffing"), "scheme=: is missing"),
+    "none": (lambda: verify.prove("duffing"), "scheme: is missing"),
     "a scheme's number": (lambda: verify.run(DUFFING, 2, **START), "scheme=2: is no scheme"),
     "a scheme like one": (lambda: verify.run(DUFFING, "lei2", **START), "is lie2 meant"),
     "another map": (lambda: verify.run(DUFFING, OTHER, **START), "is that of the step map"),
@@ -140,9 +140,13 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
         lambda: verify.bench(DUFFING, "lie2", q=1, p=0, time=1, step_sizes=[]),
         "is empty",
     ),
-    "no divisor": (
-        lambda: verify.bench(DUFFING, "lie2", q=1, p=0, time=1, step_sizes=[0.3, 0.1]),
-        "does not divide",
+    "one size": (
+        lambda: verify.bench(DUFFING, "lie2", q=1, p=0, time=1, step_sizes=[0.1]),
+        "is one; an order takes two",
+    ),
+    "long": (
+        lambda: verify.bench(DUFFING, "lie2", q=1, p=0, time=1, step_sizes=[3, 0.1]),
+        "step_size=3: makes 0 steps",
     ),
     "claims": (lambda: verify.check(DUFFING, "lie2", order=0), "order=0: must be a whole number"),
     "half a point": (

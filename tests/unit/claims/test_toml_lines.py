@@ -101,10 +101,10 @@ TABLE = 'kind = "table"\nstep_sizes = [0.1, 0.2]\nsteps = 9\nq = 1\np = 0\n'
 
 # name -> (the second claim's keys, the line that is named, what else the message holds)
 BAD: dict[str, tuple[str, int, str]] = {
-    "no-kind": ("order = 3\n", 12, "kind=: unknown; allowed: alike, area_preserving"),
+    "no-kind": ("order = 3\n", 12, "kind='': unknown; allowed: alike, area_preserving"),
     "unknown-kind": ('source = "x"\nkind = "feeling"\n', 15, "kind=feeling"),
     "unknown-key": ('kind = "order"\norder = 3\nspeed = 1\n', 16, "speed=1: unknown key"),
-    "missing-key": ('kind = "order"\n', 12, "order=: is missing"),
+    "missing-key": ('kind = "order"\n', 12, "order: is missing"),
     "order-0": ('kind = "order"\n\norder = 0\n', 16, "order=0"),
     "order-text": ('kind = "order"\norder = "3"\n', 15, "order=3"),
     "area-number": ('kind = "area_preserving"\narea_preserving = 1\n', 15, "area_preserving=1"),
@@ -145,7 +145,7 @@ BAD: dict[str, tuple[str, int, str]] = {
     "every-and-system": (
         'kind = "order"\norder = 3\nevery = "hamiltonian"\nsystem = "duffing"\n', 17, "says which"),
     "every-exactly": ('kind = "delta_j"\nformula = "0"\nevery = "hamiltonian"\n', 12,
-                      "up_to=: is missing"),
+                      "up_to: is missing"),
     "every-names": ('kind = "delta_j"\nup_to = 4\nformula = "delta"\nevery = "hamiltonian"\n', 16,
                     "derivatives such as H_pq"),
     "every-parameters": (
@@ -156,12 +156,12 @@ BAD: dict[str, tuple[str, int, str]] = {
     "printed-twice": ('kind = "mse"\nprinted = 1\nlg_printed = 2\n' + RUN, 15, "give one of"),
     "nothing-printed": ('kind = "mse"\n' + RUN, 12, "give one of the two"),
     "h-zero": (MSE.replace("0.1", "0"), 16, "must be greater than 0"),
-    "h-missing": (MSE.replace("step_size = 0.1\n", ""), 12, "step_size=: is missing"),
+    "h-missing": (MSE.replace("step_size = 0.1\n", ""), 12, "step_size: is missing"),
     "n-zero": (MSE.replace("9\nq", "0\nq"), 17, "steps=0"),
     "time-and-steps": (MSE + "time = 9\n", 17, "give one of time and steps"),
-    "no-time": (MSE.replace("steps = 9\n", ""), 12, "time=: is missing"),
+    "no-time": (MSE.replace("steps = 9\n", ""), 12, "time: is missing"),
     "h-beyond-time": (MSE.replace("steps = 9", "time = 0.01"), 16, "makes 0 steps"),
-    "q-missing": (MSE.replace("q = 1\n", ""), 18, "q=: is missing"),
+    "q-missing": (MSE.replace("q = 1\n", ""), 18, "q: is missing"),
     "p-nan": (MSE.replace("p = 0", "p = nan"), 19, "nan"),
     "digits": (MSE + "digits = 0\n", 20, "digits=0"),
     "table-width": (TABLE + 'printed = ["1"]\n', 19, "give 2 values"),
@@ -173,7 +173,7 @@ BAD: dict[str, tuple[str, int, str]] = {
     "growth-short": ('kind = "growth"\ngrowth = "linear"\n' + RUN, 15, "needs 64 steps"),
     "runs-of-a-formula": ('kind = "order"\norder = 3\nstep_size = 0.1\n', 16, "unknown key"),
     "magnitude-no-h": ('kind = "magnitude"\nexponents = { mse = 1 }\nquantifier = "some"\n', 12,
-                       "step_size=: is missing"),
+                       "step_size: is missing"),
 }  # fmt: skip
 
 

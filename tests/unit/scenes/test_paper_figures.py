@@ -64,7 +64,7 @@ BAD = {
     "no-such-series": (('"flow"', '"series"'), r"has no \[\[series\]\] of it"),
     "unknown-kind": (('"flow"', '"film"'), "shows=film"),
     "unknown-key": (("label", "title = 1\nlabel"), "title=1: unknown key"),
-    "no-label": (('label = "Figure 3"\n', ""), "label=: is missing"),
+    "no-label": (('label = "Figure 3"\n', ""), "label: is missing"),
 }
 
 

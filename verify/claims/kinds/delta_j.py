@@ -17,7 +17,7 @@ from verify.claims.findings import Findings
 from verify.claims.formulas import FormulaClaim, gaps, within
 from verify.claims.orders import Order
 from verify.claims.quantified import EVERY_SEPARABLE, QuantifiedClaim
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
@@ -81,7 +81,9 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     def check_every(self) -> None:
         super().check_every()
         if self.up_to is None:
-            raise InputError("up_to", "", "is missing: of every H only the first term is known")
+            raise InputError(
+                "up_to", NOT_GIVEN, "is missing: of every H only the first term is known"
+            )
         every_formula.read(self.formula, self.id)
 
     def judge_every(self, proof: "EveryProof") -> ClaimResult:

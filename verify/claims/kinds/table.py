@@ -13,7 +13,7 @@ from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.printed import Row, cell, holds, places, rounds_to, short
 from verify.claims.runs import QUANTITIES, all_hold, middle, start_of
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Formula, Prose, joined, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
@@ -34,7 +34,7 @@ class TableClaim(RunClaim):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.printed is None) == (self.rows is None):
-            raise InputError("printed, rows", "", "give one of the two")
+            raise InputError("printed, rows", NOT_GIVEN, "give one of the two")
         name = "printed" if self.rows is None else "rows"
         for row in self.rows or (self.printed or (),):
             if len(row) != len(self.step_sizes):

@@ -8,7 +8,7 @@ from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.printed import Printed, holds, shown_to
 from verify.claims.runs import QUANTITIES, all_hold
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 
@@ -28,7 +28,7 @@ class ValueClaim(RunClaim):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.printed is None) == (self.lg_printed is None):
-            raise InputError("printed, lg_printed", "", "give one of the two")
+            raise InputError("printed, lg_printed", NOT_GIVEN, "give one of the two")
         return self
 
     def quantities(self) -> tuple[str, ...]:
@@ -43,7 +43,9 @@ class ValueClaim(RunClaim):
         (quantity,), (printed,) = self.quantities(), self.printed_texts()
         (run, *more), *others = self.run_rows(findings)
         if more or others:
-            raise InputError(f"claim {self.id}", "", "speaks of one run; give step_size, q and p")
+            raise InputError(
+                f"claim {self.id}", NOT_GIVEN, "speaks of one run; give step_size, q and p"
+            )
         rounds = holds(run, quantity, printed)
         known = shown_to(run, quantity, len(printed.partition("e")[0]) + _ALSO_SHOWN)
         evidence = prose(

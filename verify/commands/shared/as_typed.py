@@ -24,9 +24,9 @@ def as_typed(command: click.Command) -> click.Command:
             return callback(*args, **options)
         except InputError as error:
             names = error.name.split(", ")
-            if not set(names) & set(typed):
+            if not set(names) <= set(typed):
                 raise
-            shown = ", ".join(typed.get(name, name) for name in names)
+            shown = ", ".join(typed[name] for name in names)
             raise type(error)(shown, error.value, error.problem) from None
 
     command.callback = told

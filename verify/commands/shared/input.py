@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.content import content
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -113,7 +113,7 @@ def hamiltonian_of(
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
     if (system is None) == (hamiltonian is None):
-        raise InputError("--system, --hamiltonian", system or "", "give one of the two")
+        raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
     values: dict[str, str] = {}
     for text in params:
         name, given, value = text.partition("=")

@@ -12,7 +12,7 @@ import sympy
 
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.proof.certificates.checker import see_witness
 from verify.proof.certificates.every import map_of, terms
 from verify.proof.certificates.file import FORMAT, Certificate
@@ -83,7 +83,9 @@ def _witness(data: Certificate, known: Mapping[str, Fraction]) -> dict[str, str]
             except ValueError:
                 continue
             return witness
-    raise InputError("proof", "", "no certificate: no point is found where no denominator is 0")
+    raise InputError(
+        "proof", NOT_GIVEN, "no certificate: no point is found where no denominator is 0"
+    )
 
 
 def _coefficients(ring: Ring, x: Poly) -> list[Poly]:

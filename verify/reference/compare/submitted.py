@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from verify.arithmetic.exact import rational
-from verify.errors import InputError, unknown, without_controls
+from verify.errors import NOT_GIVEN, InputError, unknown, without_controls
 from verify.kernels.tangent_map import nearest_double
 from verify.reference.compare.published import KEYS, Published, PublishedRun
 from verify.reference.compare.table import Table, opened
@@ -193,7 +193,7 @@ class _Keys:
                 if len(values) > 1:
                     has = f"{scene} has: {', '.join(values[:8])}"
                     wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
-                    raise InputError(f"--{_option(name)}", "", wanted)
+                    raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
                 inputs[name] = values[0]
         exact = tuple(self._number(inputs[n], n) for n in KEYS[1:])
         h, q, p = map(nearest_double, exact)
@@ -217,7 +217,9 @@ class _Keys:
         matching = [scene for scene in every if any(map(fits, self.ours.scene(scene)))]
         if len(matching) > 1:
             names = ", ".join(matching)
-            raise InputError("--scene", "", f"is wanted: {len(matching)} have such runs: {names}")
+            raise InputError(
+                "--scene", NOT_GIVEN, f"is wanted: {len(matching)} have such runs: {names}"
+            )
         return matching[0] if matching else None
 
     def _is(self, run: PublishedRun, name: str, text: str) -> bool:

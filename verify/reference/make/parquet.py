@@ -3,7 +3,7 @@
 import io
 from importlib.util import find_spec
 
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.files import MOST_BYTES
 from verify.reference.make.reading import MOST_CELLS
 from verify.reference.make.writing import Row
@@ -17,7 +17,9 @@ def installed() -> bool:
 def require() -> None:
     """InputError where pyarrow is not installed."""
     if not installed():
-        raise InputError("--parquet", "", "pyarrow is not installed; the extra `parquet` has it")
+        raise InputError(
+            "--parquet", NOT_GIVEN, "pyarrow is not installed; the extra `parquet` has it"
+        )
 
 
 def parquet_bytes(rows: list[Row]) -> bytes:

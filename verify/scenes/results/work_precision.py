@@ -1,9 +1,11 @@
 """What was found of error against run time: frozen results, exact decimal strings."""
 
+from fractions import Fraction
 from typing import Literal
 
 from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
+from verify.scenes.values import rounded_down
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
 
@@ -11,7 +13,8 @@ LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"
 class WorkPoint(Frozen):
     """One run over [0, T]: of a scheme with `step_size`, or of a peer with `tolerance`.
 
-    `error`: |z_N − z(T)|, Euclidean in (p, q), of the float64 state from the exact flow.
+    `error`: |z_N − z(N·h)|, Euclidean in (p, q), of the float64 state from the exact flow, where
+    N is T/h, rounded down.
     `truncation`: the same of the scheme in exact arithmetic; `rounding`: how far the float64 state
     is from that. `energy`: |H(z_N) − H(z_0)|. `lam`: Λ in float64 by the closed form of ΔJ, exactly
     0 where that is proved; `lam_plain`: by the plain product of determinants. `limited_by` is of
@@ -163,3 +166,10 @@ class WorkPrecisionResult(Frozen):
     systems_step_size: str
     left_out: tuple[tuple[str, str], ...]
     seconds: Seconds
+
+    @property
+    def rounded_down(self) -> str:
+        """What is said where T/h is not a whole number: the error is then that at t = N·h."""
+        points = (point for line in self.lines for point in line.points if point.step_size)
+        steps = (Fraction(point.step_size or 1) for point in points)
+        return rounded_down(Fraction(self.time), steps)

@@ -38,7 +38,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
 from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
 from verify.arithmetic.systems import float64
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import check
@@ -175,7 +175,7 @@ def grid(
 ) -> list[tuple[Fraction, int]]:
     """Each step size with its number of steps; see `separate_grid`."""
     if (steps is None) == (time is None):
-        raise InputError("steps, time", "", "give one of the two")
+        raise InputError("steps, time", NOT_GIVEN, "give one of the two")
     if not step_sizes:
         raise InputError("step_sizes", step_sizes, "give one at least")
     found: dict[Fraction, int] = {}

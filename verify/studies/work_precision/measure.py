@@ -18,7 +18,6 @@ from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.execution.keeping import machine
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
@@ -34,10 +33,10 @@ from verify.studies.work_precision.runs import (
     Problem,
     distance,
     failed,
+    reference,
 )
 from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
 
-_REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
 Advance = Callable[[int], None]  # called with a number of points just done
 
 
@@ -117,7 +116,7 @@ def work_precision(
 
 def _problem(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> Problem:
     try:
-        exact = exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS)
+        exact = reference(hamiltonian, p, q, time)
     except NoFlowError as error:
         raise InputError("work_precision.time", text(time), str(error)) from None
     return Problem(hamiltonian, p, q, time, exact)
@@ -208,7 +207,7 @@ def _system_points(
     def go(name: str, digits: int) -> RunResult:
         return run(
             problem.hamiltonian, scheme, q=problem.q, p=problem.p, step_size=h,
-            steps=int(problem.time / h), arithmetic=name, digits=digits, observables=(),
+            steps=problem.time // h, arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 
     first = [go(*each) for each in pairs]

@@ -21,7 +21,8 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
-from verify.flows.solution import Solution
+from verify.flows.solution import Solution, exact_solution
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
@@ -37,9 +38,15 @@ ROUNDING_SHARE = Fraction(1, 20)  # of the error: a larger rounding part limits 
 EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
 SHOWN = 12  # digits of an error at most
 _BITS = 400
+_REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
 _ROOT_BITS = 160
 
 State = tuple[Fraction, Fraction]  # p, q
+
+
+def reference(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> Solution:
+    """The exact solution that errors are held against; NoFlowError where it is not reached."""
+    return exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS)
 
 
 @dataclass(frozen=True)
@@ -47,6 +54,17 @@ class Problem(InitialValueProblem):
     """An initial value problem with its exact solution at the time."""
 
     solution: Solution
+
+    @cached_property
+    def _ends(self) -> dict[Fraction, Solution]:
+        return {self.time: self.solution}
+
+    def solution_after(self, h: Fraction) -> Solution:
+        """The exact solution at t = N·h, N = T/h rounded down, where the steps end."""
+        end = self.time // h * h
+        if end not in self._ends:
+            self._ends[end] = reference(self.hamiltonian, self.p, self.q, end)
+        return self._ends[end]
 
     @property
     def start(self) -> State:
@@ -63,10 +81,11 @@ class Problem(InitialValueProblem):
         ends = self.start, (self.solution.p, self.solution.q)
         return decimal(max(distance(z, (Fraction(0), Fraction(0)))[0] for z in ends), 3)
 
-    def error(self, state: State) -> tuple[Fraction, Fraction]:
-        """|state − z(T)| with its bound."""
-        size, own = distance(state, (self.solution.p, self.solution.q))
-        return size, own + 2 * self.solution.bound  # of each of p and q
+    def error(self, state: State, h: Fraction | None = None) -> tuple[Fraction, Fraction]:
+        """|state − z(T)| with its bound; with h, the distance from z(N·h)."""
+        exact = self.solution if h is None else self.solution_after(h)
+        size, own = distance(state, (exact.p, exact.q))
+        return size, own + 2 * exact.bound  # of each of p and q
 
     def energy_error(self, state: State) -> Value | None:
         """|H(state) − H(z₀)|; None where H is not defined there, or out of reach."""
@@ -102,7 +121,7 @@ class Ladder:
 
     def _kernel_run(self, h: Fraction, observables: frozenset[str]) -> KernelRun:
         of = self.problem
-        start, steps = {"p": of.p, "q": of.q, "h": h}, int(of.time / h)
+        start, steps = {"p": of.p, "q": of.q, "h": h}, of.time // h
         return KernelRun(of.hamiltonian, self.name, start, steps, observables, points=0)
 
     def _loop(self, h: Fraction) -> ChunkedLoop:
@@ -129,14 +148,14 @@ class Ladder:
         return self._finished(h, steps, (last["p"], last["q"]))
 
     def _finished(self, h: Fraction, steps: int, last: State) -> WorkPoint:
-        error = self.problem.error(last)
+        error = self.problem.error(last, h)
         exact = self._exactly(h)
         truncation = rounding = None
         limited: LimitedBy = "undecided"
         reason = ""
         if exact.status == "finished" and {"p", "q"} <= set(exact.values):
             (p, p_bound), (q, q_bound) = exact.values["p"], exact.values["q"]
-            size, bound = self.problem.error((p, q))
+            size, bound = self.problem.error((p, q), h)
             truncation = size, bound + p_bound + q_bound
             size, bound = distance(last, (p, q))
             rounding = size, bound + p_bound + q_bound

@@ -186,7 +186,7 @@ def test_an_arc_of_a_very_large_circle_keeps_its_ends() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        ("", r"path=: draws no curve"),
+        ("", r"path='': draws no curve"),
         (" \n", r"draws no curve"),
         ("M 3 4", r"draws no curve"),
         ("L 1 1", r"path=L 1 1: at character 1: path data begins with M or m"),

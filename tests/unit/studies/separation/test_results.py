@@ -66,8 +66,8 @@ def test_bad_input_is_named_before_anything_runs(changes: dict[str, Any], named:
 
 
 GRIDS: dict[str, tuple[dict[str, Any], str]] = {
-    "both": ({"steps": 3, "time": 1}, "steps, time=: give one"),
-    "neither": ({}, "steps, time=: give one"),
+    "both": ({"steps": 3, "time": 1}, "steps, time: give one"),
+    "neither": ({}, "steps, time: give one"),
     "none": ({"step_sizes": [], "steps": 3}, "step_sizes="),
     "twice": ({"step_sizes": ["0.001", "1/1000"], "steps": 3}, "step_size=1/1000: is given twice"),
     "short": ({"time": "0.004"}, "time=0.004: is shorter than the step size 0.005"),

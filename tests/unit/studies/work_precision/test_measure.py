@@ -27,7 +27,7 @@ DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 
 
-def problem(hamiltonian: Hamiltonian, q: str = "1", time: int = 1) -> Problem:
+def problem(hamiltonian: Hamiltonian, q: str = "1", time: Fraction | int = 1) -> Problem:
     start = Fraction(0), Fraction(q)
     exact = exact_solution(hamiltonian, p=start[0], q=start[1], time=Fraction(time), digits=33)
     return Problem(hamiltonian, *start, Fraction(time), exact)
@@ -43,6 +43,16 @@ def number(value: Any) -> Fraction:
 
 
 # -- errors ---------------------------------------------------------------------------------------
+
+
+def test_where_h_does_not_divide_the_time_the_error_is_that_where_the_steps_end() -> None:
+    h = Fraction(3, 10)
+    rounded, whole = Ladder(problem(PENDULUM), "rk4"), problem(PENDULUM, time=Fraction(9, 10))
+    point, same = rounded.point(h), Ladder(whole, "rk4").point(h)
+    assert point.steps == same.steps == 3
+    assert (point.error, point.truncation) == (same.error, same.truncation)
+    at_the_time = rounded.problem.error((whole.solution.p, whole.solution.q))[0]
+    assert at_the_time > 100 * number(point.error)  # what it would be from z(T)
 
 
 def test_the_error_and_its_parts_are_those_of_closed_forms() -> None:

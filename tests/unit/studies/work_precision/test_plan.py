@@ -37,8 +37,7 @@ def task_of(plan: Plan) -> WorkPrecisionTask:
 BAD = {
     "unknown-key": (GOOD + "speed = 3", "work_precision.speed=3: unknown key"),
     "no-time": (HEAD + SECTION.replace("time = 1\n", ""), "work_precision.time"),
-    "not-whole": (GOOD.replace("0.005", "0.3"), "step_size=0.3: does not divide the time 1"),
-    "longer-than-time": (GOOD.replace("0.005", "2"), "step_size=2: does not divide the time 1"),
+    "longer-than-time": (GOOD.replace("0.005", "2"), "step_size=2: makes 0 steps"),
     "too-many-steps": (GOOD.replace("0.005", "1e-9"), "makes 1000000000 steps"),
     "one-step-size": (GOOD.replace("0.01, ", ""), "work_precision.step_sizes"),
     "twice": (GOOD.replace("0.005", '"1/100"'), "step_sizes=2: one of them stands twice"),
@@ -53,7 +52,7 @@ BAD = {
     "auto": (GOOD + 'number_systems = ["auto"]\ndigits = [20]', "number_systems=auto: name the"),
     "unknown-system": (GOOD + 'number_systems = ["float16"]\ndigits = [20]', "arithmetic=float16"),
     "systems-scheme": (GOOD + 'number_systems_scheme = "rk5"', "scheme=rk5: unknown"),
-    "systems-step": (GOOD + "number_systems_step_size = 0.3", "step_size=0.3: does not divide"),
+    "systems-step": (GOOD + "number_systems_step_size = 3", "step_size=3: makes 0 steps"),
     "symbol": (DUFFING + SECTION, "parameter=delta"),
 }
 

@@ -14,7 +14,7 @@ from verify.arithmetic.exact import decimal, text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import all_hold, start_of
-from verify.errors import InputError
+from verify.errors import NOT_GIVEN, InputError
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit import exact_orbit
 from verify.flows.solution import exact_solution
@@ -54,7 +54,7 @@ class SolutionErrorClaim(RunClaim):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.within is None) == (self.beyond is None):
-            raise InputError("within, beyond", "", "give one of the two")
+            raise InputError("within, beyond", NOT_GIVEN, "give one of the two")
         return self
 
     def quantities(self) -> tuple[str, ...]:

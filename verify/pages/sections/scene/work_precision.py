@@ -64,6 +64,8 @@ def _finding(found: WorkPrecisionResult) -> Iterator[str]:
         "against the exact solution, which is known to within "
         f"{number(found.reference_bound)}."
     )
+    if found.rounded_down:
+        yield f"{found.rounded_down}."
     points = [point for line in found.lines if not line.peer for point in line.points]
     rounded = sum(point.limited_by == "rounding" for point in points)
     lost = sum(point.limited_by == "failed" for point in points)

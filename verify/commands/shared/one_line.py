@@ -1,0 +1,86 @@
+"""A scene in one line: the options of commands that otherwise take a file."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.input import SCHEME, hamiltonian_of, hamiltonian_options, target
+from verify.errors import NOT_GIVEN, InputError
+
+if TYPE_CHECKING:
+    from verify.scenes.scene import Scene
+
+_SYSTEM = ("system", "hamiltonian", "params")
+_NEEDED = ("schemes", "step_sizes")
+schemes_option = click.option(
+    "--scheme",
+    "schemes",
+    type=SCHEME,
+    multiple=True,
+    metavar="NAME",
+    help="lie1, lie2, …, stormer-verlet, rk4, …, or 'p_next = …; q_next = …'; repeatable.",
+)
+_START = (
+    click.option("--q", metavar="Q", help="Initial displacement."),
+    click.option("--p", metavar="P", help="Initial momentum."),
+)
+_STEPS = (
+    click.option(
+        "--step-size", "step_sizes", multiple=True, metavar="H", help="Greater than 0; repeatable."
+    ),
+)
+
+
+def with_one_line(*own: Callable[..., Any]) -> Callable[..., Any]:
+    """Makes a command take SCENE, or these options in its place: which system, schemes and step
+    sizes, and those of its own. It gets them as keyword arguments that `scenes_of` takes.
+    """
+
+    def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
+        for option in reversed((schemes_option, *_STEPS, *own)):
+            command = option(command)
+        argument = click.argument("scene", required=False, metavar="[SCENE]")
+        return argument(hamiltonian_options(command))
+
+    return decorated
+
+
+def start_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with --q and --p."""
+    for option in reversed(_START):
+        command = option(command)
+    return command
+
+
+def scenes_of(
+    scene: str | None,
+    given: Mapping[str, Any],
+    needed: tuple[str, ...],
+    sections: Callable[..., Mapping[str, Any]],
+) -> "list[Scene]":
+    """The scenes of SCENE, or the one that the options in `given` are.
+
+    `needed`: which of them cannot be left out, beside schemes and step sizes. `sections` makes the
+    scene's sections of those that are not the system's nor the schemes. InputError where both are
+    given, or neither, or one is missing.
+    """
+    asked = {name: x for name, x in given.items() if x not in (None, (), False)}
+    if scene is not None:
+        if asked:
+            name, x = next(iter(asked.items()))
+            raise InputError(name, x[0] if isinstance(x, tuple) else x, "goes without SCENE")
+        return target(scene)[1]
+    if not asked:
+        raise InputError(
+            "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
+        )
+    exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
+    for name in (*_NEEDED, *needed):
+        if name not in asked:
+            raise InputError(name, NOT_GIVEN, "is missing")
+    from verify.calls.given import scene_of
+
+    own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes")}
+    name = given["system"] or exact.formula
+    return [scene_of(exact, asked["schemes"], None, name=name, **sections(**own))]
