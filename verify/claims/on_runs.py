@@ -21,7 +21,8 @@ from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.scene import Grid, Scene
+from verify.scenes.run_sections import Grid
+from verify.scenes.scene import Scene
 from verify.scenes.values import AUTO, Digits, InitialValue, Number, Steps, StepSize, Time
 from verify.studies.kinds.grid import grid_tasks
 from verify.verdict import Verdict

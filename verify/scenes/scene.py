@@ -48,7 +48,6 @@ Numbers are exact: `0.001` in the file is 1/1000.
 
 import tomllib
 from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -56,116 +55,22 @@ from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.drawable import drawn_by
-from verify.errors import CONTROL, NOT_GIVEN, InputError, unknown, without_controls
+from verify.errors import CONTROL, NOT_GIVEN, InputError, without_controls
 from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
 from verify.scenes.region_sections import Flow
+from verify.scenes.run_sections import Grid, SeparationOver, Series
 from verify.scenes.sections import Reference, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
 from verify.scenes.values import (
-    CLOSED_FORM,
-    OBSERVABLES,
-    ArithmeticName,
-    Digits,
-    InitialValue,
     Number,
     SchemeName,
-    Steps,
-    StepSize,
     SystemName,
-    Time,
-    distinct,
-    steps_of,
 )
 
 _MAX_DEPTH = 12
-
-
-class Grid(Frozen):
-    """Runs of every scheme for every step size and initial value, over `time` or `steps`."""
-
-    time: Time | None = None
-    steps: Steps | None = None
-    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
-    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    arithmetic: ArithmeticName = "float64"
-    digits: Digits = 17
-    observables: tuple[str, ...] = CLOSED_FORM
-    separate: bool = False
-    growth: bool = False
-    growth_explains: Annotated[str, Field(max_length=200)] = ""
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
-        for name in self.observables:
-            if name not in OBSERVABLES:
-                raise unknown("observable", name, OBSERVABLES)
-        if self.growth and "lambda" not in self.observables:
-            raise InputError("growth", self.growth, "wants lambda among the observables")
-        distinct("step_sizes", self.step_sizes)
-        if len(set(self.initial_values)) < len(self.initial_values):
-            raise InputError("initial_values", len(self.initial_values), "one stands twice")
-        for h in self.step_sizes:
-            self.steps_for(h)
-        return self
-
-    def steps_for(self, h: Fraction) -> int:
-        """N: as given, or the whole steps of size h that fit into `time`."""
-        return steps_of(self.time, self.steps, h)
-
-
-class SeparationOver(Frozen):
-    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
-
-    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
-    initial_value: InitialValue
-    time: Time | None = None
-    steps: Steps | None = None
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        self.as_grid()
-        return self
-
-    def as_grid(self) -> Grid:
-        """The same as a grid, which checks it."""
-        return Grid(
-            time=self.time,
-            steps=self.steps,
-            step_sizes=self.step_sizes,
-            initial_values=(self.initial_value,),
-        )
-
-
-class Series(Frozen):
-    """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
-
-    `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
-    """
-
-    step_size: StepSize
-    initial_value: InitialValue
-    time: Time | None = None
-    steps: Steps | None = None
-    points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
-    arithmetic: ArithmeticName = "float64"
-    digits: Digits = 17
-    source: Annotated[str, Field(max_length=80)] = ""
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
-        steps_of(self.time, self.steps, self.step_size)
-        return self
-
-    @property
-    def count(self) -> int:
-        return steps_of(self.time, self.steps, self.step_size)
 
 
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "schemes")

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable
 from fractions import Fraction
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
@@ -41,6 +41,12 @@ def _known_arithmetic(name: str) -> str:
 
 
 ArithmeticName = Annotated[str, AfterValidator(_known_arithmetic)]
+
+
+def auto_for_digits(data: Any) -> Any:
+    """A section's keys, with `arithmetic` auto where digits are asked for and no arithmetic is."""
+    wanted = isinstance(data, dict) and "digits" in data and "arithmetic" not in data
+    return {**data, "arithmetic": AUTO} if wanted else data
 
 
 def distinct(name: str, given: Collection[object]) -> None:

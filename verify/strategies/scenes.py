@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.scene import Grid, Scene
+from verify.scenes.run_sections import Grid
+from verify.scenes.scene import Scene
 from verify.scenes.values import MAX_STEPS, InitialValue
 from verify.schemes.scheme import Scheme
 from verify.strategies import numbers

@@ -27,6 +27,7 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import RatioResult
 from verify.scenes.scene import Scene, load_scene
 from verify.scenes.values import MAX_STEPS
+from verify.studies.plan import plan_scenes
 
 PAPER = ROOT / "reports" / "paper"
 H = "p**2/2 + q**4/4"
@@ -153,6 +154,25 @@ def test_decimals_of_a_scene_are_exact(tmp_path: Path) -> None:
     start = scene.grid.initial_values[0]
     assert (start.q, start.p) == (Fraction(7, 10), Fraction(-7, 3))
     assert [scene.grid.steps_for(h) for h in scene.grid.step_sizes] == [3000, 1500, 9]
+
+
+@pytest.mark.parametrize(
+    ("asked", "arithmetic"),
+    [
+        ("", "float64"),
+        ("digits = 30\n", "auto"),
+        ('arithmetic = "float64"\ndigits = 30\n', "float64"),
+        ('arithmetic = "mpfr"\n', "mpfr"),
+    ],
+)
+def test_digits_alone_ask_for_the_fastest_arithmetic_that_certifies_them(
+    tmp_path: Path, asked: str, arithmetic: str
+) -> None:
+    scene = load(tmp_path, HEAD + GRID + asked + SERIES + asked)
+    assert scene.grid is not None
+    assert {scene.grid.arithmetic, *(x.arithmetic for x in scene.series)} == {arithmetic}
+    assert {task["arithmetic"] for task in plan_scenes([scene]).as_json()["tasks"]
+            if task["kind"] == "run"} == {arithmetic}  # fmt: skip
 
 
 def test_the_steps_are_the_whole_ones_that_fit_into_the_time(tmp_path: Path) -> None:

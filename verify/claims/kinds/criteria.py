@@ -10,7 +10,8 @@ from verify.claims.on_runs import RunClaim
 from verify.execution.task import Task
 from verify.prose import joined, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.scene import Grid, Scene
+from verify.scenes.run_sections import Grid
+from verify.scenes.scene import Scene
 from verify.scenes.values import CLOSED_FORM
 from verify.studies.kinds.proofs import proof_task
 from verify.verdict import Verdict

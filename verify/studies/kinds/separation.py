@@ -6,7 +6,8 @@ from typing import Any
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
-from verify.scenes.scene import Grid, Scene
+from verify.scenes.run_sections import Grid
+from verify.scenes.scene import Scene
 from verify.studies.separation.separate import as_grid
 from verify.studies.separation.task import SeparationTask
 

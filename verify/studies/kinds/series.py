@@ -7,7 +7,8 @@ from verify.execution.plan import Plan
 from verify.execution.study import Results, Study, called, known_results, toml_section
 from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
-from verify.scenes.scene import Scene, Series
+from verify.scenes.run_sections import Series
+from verify.scenes.scene import Scene
 from verify.scenes.values import CLOSED_FORM
 
 

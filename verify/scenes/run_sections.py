@@ -1,0 +1,111 @@
+"""Sections of a scene that ask for runs of its schemes: a grid of them, separations, series."""
+
+from fractions import Fraction
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.scenes.frozen import Frozen
+from verify.scenes.values import (
+    CLOSED_FORM,
+    OBSERVABLES,
+    ArithmeticName,
+    Digits,
+    InitialValue,
+    Steps,
+    StepSize,
+    Time,
+    auto_for_digits,
+    distinct,
+    steps_of,
+)
+
+
+class Grid(Frozen):
+    """Runs of every scheme for every step size and initial value, over `time` or `steps`."""
+
+    time: Time | None = None
+    steps: Steps | None = None
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
+    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
+    arithmetic: ArithmeticName = "float64"
+    digits: Digits = 17
+    observables: tuple[str, ...] = CLOSED_FORM
+    separate: bool = False
+    growth: bool = False
+    growth_explains: Annotated[str, Field(max_length=200)] = ""
+
+    _auto = model_validator(mode="before")(auto_for_digits)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        for name in self.observables:
+            if name not in OBSERVABLES:
+                raise unknown("observable", name, OBSERVABLES)
+        if self.growth and "lambda" not in self.observables:
+            raise InputError("growth", self.growth, "wants lambda among the observables")
+        distinct("step_sizes", self.step_sizes)
+        if len(set(self.initial_values)) < len(self.initial_values):
+            raise InputError("initial_values", len(self.initial_values), "one stands twice")
+        for h in self.step_sizes:
+            self.steps_for(h)
+        return self
+
+    def steps_for(self, h: Fraction) -> int:
+        """N: as given, or the whole steps of size h that fit into `time`."""
+        return steps_of(self.time, self.steps, h)
+
+
+class SeparationOver(Frozen):
+    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
+
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
+    initial_value: InitialValue
+    time: Time | None = None
+    steps: Steps | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        self.as_grid()
+        return self
+
+    def as_grid(self) -> Grid:
+        """The same as a grid, which checks it."""
+        return Grid(
+            time=self.time,
+            steps=self.steps,
+            step_sizes=self.step_sizes,
+            initial_values=(self.initial_value,),
+        )
+
+
+class Series(Frozen):
+    """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
+
+    `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
+    """
+
+    step_size: StepSize
+    initial_value: InitialValue
+    time: Time | None = None
+    steps: Steps | None = None
+    points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
+    arithmetic: ArithmeticName = "float64"
+    digits: Digits = 17
+    source: Annotated[str, Field(max_length=80)] = ""
+
+    _auto = model_validator(mode="before")(auto_for_digits)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        steps_of(self.time, self.steps, self.step_size)
+        return self
+
+    @property
+    def count(self) -> int:
+        return steps_of(self.time, self.steps, self.step_size)
