@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.group import Group
 from verify.commands.shared.input import PATH
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 _LONGEST = 400  # characters of a formula on a terminal
 
 
-@click.group()
+@click.group(cls=Group)
 def certificate() -> None:
     """Certificates of proofs: `verify prove … --certificate FILE` writes one."""
 

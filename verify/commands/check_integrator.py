@@ -27,7 +27,7 @@ _CLAIMED = click.IntRange(1, 12)
     "it the names of its arguments tell.",
 )
 @click.option("--q", "q", metavar="Q", help="An initial value to look at beside others.")
-@click.option("--p", "p", metavar="P")
+@click.option("--p", "p", metavar="P", help="Its momentum.")
 @click.option("--order", type=_CLAIMED, metavar="K", help="Claimed order of convergence.")
 @click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
 @click.option("--area-order", type=_CLAIMED, metavar="K", help="Claimed: ΔJ = O(h^K).")
@@ -35,7 +35,6 @@ _CLAIMED = click.IntRange(1, 12)
     "--time-limit",
     type=click.FloatRange(0.01),
     default=60.0,
-    show_default=True,
     metavar="SECONDS",
     help="For all calls of the function.",
 )

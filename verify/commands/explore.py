@@ -28,7 +28,7 @@ _SEEDS = 2**32
     metavar="NAME",
     help="Only this property; repeatable. A wrong name lists them.",
 )
-@click.option("--examples", type=int, default=1000, metavar="N", help="Scenes; 1000.")
+@click.option("--examples", type=int, default=1000, metavar="N", help="Scenes.")
 @click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
 @click.option(
     "--scheme",
@@ -45,20 +45,22 @@ _SEEDS = 2**32
     metavar="KIND",
     help="polynomial, trigonometric, exponential or rational H only; repeatable.",
 )
-@click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most; 6.")
+@click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most.")
 @click.option(
     "--maximise",
     metavar="MEASURE",
     help="Hunt for the worst scenes instead: rounding-share, digits-lost or growth.",
 )
-@click.option("--steps", type=int, metavar="N", help="Of each scene that is hunted; 100.")
+@click.option(
+    "--steps", type=int, metavar="N", help="Of each scene that is hunted.  [default: 100]"
+)
 @click.option(
     "-o",
     "--output",
     type=PATH,
     default=Path("explored"),
     metavar="DIR",
-    help="Where scenes that fail are written, and looked at again first; explored.",
+    help="Where scenes that fail are written, and looked at again first.",
 )
 @with_tasks
 def explore(

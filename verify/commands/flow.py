@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     click.option(
         "--steps", type=int, multiple=True, metavar="N", help="At least 1; repeatable; or:"
     ),
-    click.option("--time", "times", multiple=True, metavar="T", help="N is T/H rounded down."),
+    click.option(
+        "--time", "times", multiple=True, metavar="T", help="N is T/H rounded down; repeatable."
+    ),
     click.option("--shape", metavar="NAME", help="circle, square or cat.  [default: circle]"),
     click.option("--q", metavar="Q", help="Where it is put.  [default: 0]"),
     click.option("--p", metavar="P", help="[default: 0]"),

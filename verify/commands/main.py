@@ -9,6 +9,7 @@ import click
 
 from verify.commands import commands
 from verify.commands.shared.as_typed import as_typed
+from verify.commands.shared.group import Group
 from verify.commands.shared.signals import heard_signals
 from verify.commands.shared.streams import Printable, printable_streams
 from verify.errors import InputError, PlaceError
@@ -18,8 +19,13 @@ BAD_INPUT = 2
 
 
 @click.group(
+    cls=Group,
     invoke_without_command=True,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    context_settings={
+        "help_option_names": ["-h", "--help"],
+        "max_content_width": 100,
+        "show_default": True,
+    },
 )
 @click.version_option(package_name="areaproof", prog_name="verify")
 @click.pass_context

@@ -8,6 +8,7 @@ import click
 
 from verify.commands.reference_compare import compare
 from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.group import Group
 from verify.commands.shared.input import PATH, writable
 from verify.commands.shared.tasks import perform, with_placement, with_tasks
 from verify.errors import NOT_GIVEN, InputError, without_controls
@@ -20,7 +21,7 @@ _SHARE = 0.05
 _MOST_STEPS = 10**6  # a minute or two
 
 
-@click.group()
+@click.group(cls=Group)
 def reference() -> None:
     """Reference data: numbers whose every digit is known, to test an integrator against."""
 
@@ -30,7 +31,13 @@ reference.add_command(compare)
 
 @reference.command()
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
-@click.option("-o", "--output", type=PATH, metavar="DIR")
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    metavar="DIR",
+    help="Write them there.  [default: SCENE-reference, or reference-data]",
+)
 @click.option("--parquet", is_flag=True, help="The tables as Parquet, too; wants pyarrow.")
 @with_tasks
 def make(
@@ -79,15 +86,18 @@ def make(
 
 @reference.command()
 @click.argument("folder", required=False, type=PATH, metavar="[DIR]")
-@click.option("--share", default=_SHARE, metavar="X", help="Of the data, recomputed; 0.05.")
+@click.option("--share", default=_SHARE, metavar="X", help="Of the data, recomputed.")
 @click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
 @click.option(
     "--most-steps",
     type=click.IntRange(1),
     metavar="N",
-    help=f"Of all runs recomputed; the others are named. {_MOST_STEPS:,}; none with --all.",
+    help="Of all runs recomputed; the others are named.  "
+    f"[default: {_MOST_STEPS:,}; none with --all]",
 )
-@click.option("--seed", type=click.IntRange(0), help="Of the random sample; without it, any.")
+@click.option(
+    "--seed", type=click.IntRange(0), metavar="S", help="Of the random sample; without it, any."
+)
 @with_placement
 @answering
 def check(

@@ -22,15 +22,17 @@ _INTEGRATORS = "integrators"
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
-@click.option("-o", "--output", default=None, type=PATH, metavar="DIR")
+@click.option(
+    "-o", "--output", type=PATH, metavar="DIR", help="Write it there.  [default: SCENE-report]"
+)
 @click.option(
     "--format",
     "formats",
     type=click.Choice(["html", "md"]),
     multiple=True,
     default=["html"],
-    help="html, DIR/index.html (the default), or md, DIR/report.md with DIR/figures, for a "
-    "repository; given twice, both.",
+    help="html, DIR/index.html, or md, DIR/report.md with DIR/figures, for a "
+    "repository; repeatable.",
 )
 @click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
 @with_placement

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     required=True,
     multiple=True,
     metavar="H",
-    help="Greater than 0; given several times, a grid of them.",
+    help="Greater than 0; repeatable, for a grid of them.",
 )
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
 @click.option("--time", metavar="T", help="N is T/H rounded down, for each H.")

@@ -68,7 +68,11 @@ _HAMILTONIAN_OPTIONS = (
     ),
     click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
     click.option(
-        "--param", "params", multiple=True, metavar="NAME=VALUE", help="A parameter's exact value."
+        "--param",
+        "params",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="A parameter's exact value; repeatable.",
     ),
 )
 _KEPT = "kept"  # the folder of what is finished

@@ -25,7 +25,10 @@ keep_option = click.option(
     help="Keep what is finished there; the same command goes on from it.",
 )
 workers_option = click.option(
-    "--workers", type=click.IntRange(1, 256), help="Processes; by the work there is."
+    "--workers",
+    type=click.IntRange(1, 256),
+    metavar="N",
+    help="Processes; without it, as many as the work is worth.",
 )
 cluster_option = click.option(
     "--cluster",
