@@ -17,7 +17,8 @@ Task = Mapping[str, Any]  # as JSON has it
 def plan(scene: str) -> Answer:
     """Show what SCENE needs computed, what is left out, and why.
 
-    SCENE is a TOML file, `paper`, `stiff` or `extreme`.
+    SCENE is a TOML file, `paper`, `stiff` or `extreme`. The processor time is estimated by what
+    such tasks cost, within a factor of four or so; workers share it.
     """
     from verify.studies.plan import plan_scenes
 
@@ -27,12 +28,28 @@ def plan(scene: str) -> Answer:
 
 
 def _print(planned: dict[str, Any]) -> None:
-    click.echo(f"{len(planned['tasks'])} tasks")
+    click.echo(f"{len(planned['tasks'])} tasks, {_about(float(planned['seconds']))}")
     for task in planned["tasks"]:
         click.echo(f"  {_LINES[task['kind']](task)} ({'; '.join(task['reasons'])})")
     click.echo(f"{len(planned['left_out'])} left out")
     for item in planned["left_out"]:
         click.echo(f"  {item['what']}: {item['why']}")
+
+
+def _about(seconds: float) -> str:
+    """The processor time in words, to one digit or two.
+
+    >>> _about(9.42), _about(4200)
+    ('about 9 s of processor time', 'about 1.2 h of processor time')
+    """
+    if seconds < 1:
+        return "less than 1 s of processor time"
+    _, size, unit = next(each for each in _UNITS if seconds >= each[0])
+    shown = f"{seconds / size:.0f}" if unit == "s" else f"{seconds / size:.1f}"
+    return f"about {shown} {unit} of processor time"
+
+
+_UNITS = ((2 * 86400, 86400, "days"), (3600, 3600, "h"), (120, 60, "min"), (1, 1, "s"))
 
 
 def _run(task: Task) -> str:

@@ -28,7 +28,7 @@ from verify.scenes.frozen import Frozen
 
 OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
 
-_WORTH_A_POOL = 20_000_000  # float64 steps below which starting workers costs more than it gains
+_WORTH_A_POOL = 250_000_000  # float64 steps below which starting workers costs more than it gains
 
 
 class Store:

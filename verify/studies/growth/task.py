@@ -6,6 +6,8 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import InitialValueTask
 from verify.scenes.results.growth import AverageResult
 
+_COST = 25_000_000  # of its law and time average, about
+
 
 class GrowthTask(InitialValueTask):
     """The growth law of Λ on one orbit, with the time average in it."""
@@ -14,6 +16,11 @@ class GrowthTask(InitialValueTask):
     imports = ("verify.studies.growth.prediction",)
     kind: Literal["growth"] = "growth"
     digits: int
+
+    @property
+    def cost(self) -> int:
+        """About how many float64 steps it is worth."""
+        return _COST
 
     def compute(self, keeper: Keeper) -> AverageResult:
         """The law, its average enclosed."""

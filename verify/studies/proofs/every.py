@@ -6,6 +6,8 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import Task
 from verify.scenes.results.proof import EveryResult
 
+_COST = 20_000_000  # of a proof, about
+
 
 class EveryTask(Task):
     """What is proved of a scheme for every H."""
@@ -14,6 +16,11 @@ class EveryTask(Task):
     imports = ("verify.proof.every",)
     kind: Literal["every"] = "every"
     scheme: str
+
+    @property
+    def cost(self) -> int:
+        """About how many float64 steps it is worth."""
+        return _COST
 
     def compute(self, keeper: Keeper) -> EveryResult:
         """The proof for every H, as a result."""

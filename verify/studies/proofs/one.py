@@ -12,6 +12,8 @@ from verify.scenes.results.proof import ProofResult
 from verify.schemes import get
 from verify.schemes.step_map import grouped
 
+_COST = 10_000_000  # of a proof, about
+
 
 class ProofTask(SchemeTask):
     """Prove the order of ΔJ and of the map for one H and one scheme.
@@ -22,6 +24,11 @@ class ProofTask(SchemeTask):
     result = ProofResult
     kind: Literal["proof"] = "proof"
     formulas: bool = True
+
+    @property
+    def cost(self) -> int:
+        """About how many float64 steps it is worth."""
+        return _COST
 
     def compute(self, keeper: Keeper) -> ProofResult:
         """The proof for this H, as a result."""

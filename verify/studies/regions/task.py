@@ -8,7 +8,7 @@ from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import FlowImage
 from verify.scenes.values import StepSize
 
-_COST, _POINTS = 20_000_000, 20_000  # of a region, and how many points of it are carried
+_COST, _POINTS = 40_000_000, 40_000  # of a region, and how many points of it are carried
 
 
 class FlowTask(HamiltonianTask):

@@ -12,8 +12,9 @@ from verify.scenes.results.stability import (
 )
 from verify.scenes.values import Number, StepSize
 
-_RUN_COST = 2_000_000  # about what a run costs that is judged, however short
-_RUNS_OF_BISECTION = 20
+_RUN_COST = 40_000_000  # about what a run costs that is judged, however short
+_BISECTION_COST = 3 * _RUN_COST
+_CELL_COST = _RUN_COST // 8  # of a map, most of whose cells are judged by one short run
 
 
 class StabilityTask(InitialValueTask):
@@ -47,7 +48,7 @@ class LargestStepTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
-        return _RUN_COST * _RUNS_OF_BISECTION
+        return _BISECTION_COST
 
     def compute(self, keeper: Keeper) -> LargestStepResult:
         from verify.studies.stability.limits import largest_step
@@ -68,7 +69,7 @@ class StabilityMapTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
-        return _RUN_COST * len(self.values) * len(self.step_sizes)
+        return _CELL_COST * len(self.values) * len(self.step_sizes)
 
     def compute(self, keeper: Keeper) -> StabilityMapResult:
         from verify.studies.stability.limits import stability_map

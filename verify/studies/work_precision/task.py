@@ -8,7 +8,7 @@ from verify.execution.task import HamiltonianTask
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.scenes.values import Number, StepSize
 
-_POINT_COST = 30_000_000  # of a point of error against run time: some tenths of a second
+_POINT_COST = 80_000_000  # of a point of error against run time: some tenths of a second
 
 
 class WorkPrecisionTask(HamiltonianTask):
