@@ -139,6 +139,7 @@ class Scene(Frozen):
         """The Hamiltonian with the scene's parameter values."""
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
+        systems.check_is_formula(self.hamiltonian or "")
         return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
 
 

@@ -128,6 +128,7 @@ def hamiltonian_of(
         values[name] = value
     if system is not None:
         return systems.get(system).hamiltonian(values)
+    systems.check_is_formula(hamiltonian or "")
     return Hamiltonian.parse(hamiltonian or "", values)
 
 

@@ -6,7 +6,7 @@
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import plain_name, unknown
+from verify.errors import InputError, plain_name, unknown
 
 if TYPE_CHECKING:
     from verify.hamiltonians.named_system import System
@@ -28,6 +28,14 @@ def canonical(name: str) -> str:
     """The system's name, given in any case and with spaces; the name itself where there is none."""
     plain = plain_name(name) if isinstance(name, str) else name
     return plain if plain in _FILES else name
+
+
+def check_is_formula(text: str) -> None:
+    """InputError where a formula is asked for, and the text is a system's name."""
+    name = canonical(text)
+    if name in _FILES:
+        write = f'write system = "{name}" in a scene, or --system {name}'
+        raise InputError("hamiltonian", text, f"is no formula but a system; {write}")
 
 
 def get(name: str) -> "System":
