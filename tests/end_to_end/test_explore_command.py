@@ -104,7 +104,7 @@ def test_a_false_claim_is_shrunk_to_a_scene_that_report_takes(
     ("more", "said"),
     [
         (("--examples", "0"), "examples=0"),
-        (("--examples", "1e6"), "not a valid integer"),
+        (("--examples", "1e6"), "--examples=1e6: must be a whole number; write 1000000"),
         (("--seed", "-1"), "seed=-1"),
         (("--property", "nothing"), "property=nothing: unknown; allowed: area-errors-compose"),
         (("--kind", "blue"), "kinds=blue: unknown; allowed: polynomial"),

@@ -85,6 +85,8 @@ def to_text(expression: sympy.Expr) -> str:
 
 def parameter_name(name: str) -> str:
     """The name itself, where it may name a parameter; else InputError."""
+    if strange := foreign_character(name):
+        raise InputError("parameter", name, strange)
     if not _PARAMETER.fullmatch(name) or name in RESERVED:
         raise InputError(
             "parameter",

@@ -20,9 +20,7 @@ def number_mistake(text: str) -> str:
         return f"is no number as it is written; write {meant}"
     plain = _plain(text).lower()
     if re.search(r"pi|π|sqrt|√", plain) or re.fullmatch(r"[+-]?(\d+\*)?e", plain):
-        more = (
-            "numbers are rational; write as many digits as are wanted, as 1.5707963"
-        )
+        more = "numbers are rational; write as many digits as are wanted, as 1.5707963"
     elif re.search(r"°|deg|rad", plain):
         more = "numbers have no unit; write an angle in radians, by its digits"
     elif re.search(r"inf|nan|∞", plain):

@@ -3,6 +3,7 @@
 `double_well.py` has the system `double-well`. Adding a system is adding one file.
 """
 
+import re
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
@@ -42,6 +43,7 @@ def get(name: str) -> "System":
     """The system of that name; InputError where there is none."""
     name = canonical(name)
     if name not in _FILES:
-        raise unknown("system", name, names())
+        more = "; a formula goes with --hamiltonian" if re.search(r"[*^+/()=]", str(name)) else ""
+        raise unknown("system", name, names(), more)
     system: System = _FILES.module(name).SYSTEM
     return system
