@@ -157,6 +157,9 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     f"{RUN} --step-size 0.1 --steps 10 --digits 1e2": ("--digits=1e2: ", "write 100"),
     f"{RUN} --step-size 0.1 --steps 10 --arithmetic double": ("is float64 meant?",),
     f"{RUN} --step-size 0.1 --steps 10 --keep ok.toml": ("--keep=ok.toml: ", "give a folder"),
+    f"{RUN} --step-size 0.3 --time 0.1": ("--time=0.1: makes 0 steps; allowed: 1 … ",),
+    f"{RUN} --step-size 1 --steps 3 -o x.csv": ("-o: no such option; write --csv",),
+    f"{RUN} --step-size 1 --steps 3 --csv folder": ("file=folder: is a folder",),
     f"{RUN} --json=yes": ("--json: takes no value; write --json",),
     "run --system duffing --scheme lie2 --step-size 1 --steps 1 --q 1 --p 0":
         ("parameter=delta: has no value; a run needs one, as delta=1",),
@@ -208,9 +211,12 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "explore nope.toml": ("CLAIMS=nope.toml: is no file; give a TOML file with [[claim]]",),
     "flow ok.toml": ("SCENE=ok.toml: asks for no [[flow]]; add one",),
     "flow --form cat": ("--form: no such option",),
+    "flow --system pendulum --scheme lie2": ("--step-size: is missing",),
+    "bench ok.toml --system pendulum": ("--system=pendulum: goes without SCENE",),
+    "stability --system pendulum --scheme lie2 --step-size 1 --time 1 --q 1": ("--p: is missing",),
     "stability stif": ("SCENE=stif: unknown; is stiff meant?",),
     "stability --linear": ("--scheme: give one with --linear",),
-    "stability ok.toml --linear --scheme lie2": ("=ok.toml: does not go with --linear; leave it out",),
+    "stability ok.toml --linear --scheme lie2": ("does not go with --linear; leave it out",),
     "bench ok.toml": ("SCENE=ok.toml: has no [work_precision]; add one",),
     "bench ok.toml -o out.pdf": ("--output=out.pdf: must end in .",),
     "reference": ("verify reference: a command is missing; allowed: check, compare, make",),
@@ -311,5 +317,5 @@ def test_a_right_formula_is_taken(formula: str, capsys: pytest.CaptureFixture[st
 
 
 def test_they_are_as_many_as_is_claimed() -> None:
-    assert len(FORMULAS) + len(SCHEMES) + len(NUMBERS) + len(COMMANDS) + len(SCENES) >= 160
+    assert len(FORMULAS) + len(SCHEMES) + len(NUMBERS) + len(COMMANDS) + len(SCENES) >= 168
     assert len(RIGHT) + len(RIGHT_FORMULAS) >= 30

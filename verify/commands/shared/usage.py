@@ -19,6 +19,7 @@ _OPTIONS = {
     "--digits": ("precision", "prec", "dps"),
     "--param": ("params", "parameter", "parameters"),
     "--output": ("o", "out", "outdir", "output-dir"),
+    "--csv": ("o", "out", "output", "file"),
     "--maximise": ("maximize",),
 }
 _COMMANDS = {
