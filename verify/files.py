@@ -9,7 +9,6 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from difflib import get_close_matches
 from pathlib import Path
 from typing import BinaryIO
 
@@ -49,6 +48,8 @@ def _instead(path: Path, error: OSError) -> str:
         return "; an address is not fetched: save it as a file"
     if "\\" in str(path) and os.sep == "/":
         return "; write / for \\ in a path"
+    from difflib import get_close_matches
+
     here: dict[str, Path] = {}
     with suppress(OSError):
         # Of two with one stem the last is taken: that of the same kind.

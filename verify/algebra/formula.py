@@ -12,6 +12,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
+from types import ModuleType
 
 import sympy
 from sympy.printing.str import StrPrinter
@@ -19,20 +20,6 @@ from sympy.printing.str import StrPrinter
 from verify.algebra.constant_size import FUNCTIONS as NAMES
 from verify.algebra.constant_size import within_reach
 from verify.algebra.limits import check_power, checked
-from verify.algebra.mistakes.characters import control_character, foreign_character
-from verify.algebra.mistakes.nodes import (
-    exponent_with_names,
-    no_number,
-    not_allowed,
-    operator_not_allowed,
-    reserved_name,
-    stop_of,
-    unknown_function,
-    unknown_name,
-    wrong_arguments,
-)
-from verify.algebra.mistakes.place import index_of, place
-from verify.algebra.mistakes.syntax import syntax_mistake
 from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.arithmetic.exact import rational
@@ -85,8 +72,10 @@ def to_text(expression: sympy.Expr) -> str:
 
 def parameter_name(name: str) -> str:
     """The name itself, where it may name a parameter; else InputError."""
-    if strange := foreign_character(name):
-        raise InputError("parameter", name, strange)
+    if not name.isascii():
+        from verify.algebra.mistakes.characters import strange_character
+
+        raise InputError("parameter", name, strange_character(name))
     if not _PARAMETER.fullmatch(name) or name in RESERVED:
         raise InputError(
             "parameter",
@@ -116,8 +105,10 @@ def read(
         raise InputError(source, text, "empty; write a formula such as p**2/2 + q**2/2")
     if len(text) > MAX_LENGTH:
         raise LimitError(source, text, f"longer than {MAX_LENGTH} characters")
-    if strange := foreign_character(text) or control_character(text):
-        raise InputError(source, text, strange)
+    if not (text.isascii() and " ".join(text.split()).isprintable()):
+        from verify.algebra.mistakes.characters import strange_character
+
+        raise InputError(source, text, strange_character(text))
     line = " ".join(text.replace("^", "**").split())
     tree = _tree(line, text, source)
     known = None if names is None else frozenset(names)
@@ -139,7 +130,16 @@ def _tree(line: str, text: str, source: str) -> ast.expr:
         offset = error.offset and error.offset - 1
     except (ValueError, RecursionError, MemoryError):
         pass
+    from verify.algebra.mistakes.syntax import syntax_mistake
+
     raise InputError(source, text, syntax_mistake(text, FUNCTIONS, offset))
+
+
+def _nodes() -> ModuleType:
+    """What is said of a part that no formula has: not imported for a formula that is read."""
+    from verify.algebra.mistakes import nodes
+
+    return nodes
 
 
 class _Reader:
@@ -159,6 +159,8 @@ class _Reader:
         """The problem, with the place in the text of that node or offset of the line."""
         if at is None:
             return problem
+        from verify.algebra.mistakes.place import index_of, place
+
         offset = at if isinstance(at, int) else at.col_offset
         return f"at {place(self.text, index_of(self.text, offset))}: {problem}"
 
@@ -178,13 +180,15 @@ class _Reader:
                 return self.operation(node, depth)
             case ast.Call():
                 return self.call(node, depth)
-        raise self.fail(not_allowed(node, self.line, FUNCTIONS), stop_of(node, self.line))
+        raise self.fail(
+            _nodes().not_allowed(node, self.line, FUNCTIONS), _nodes().stop_of(node, self.line)
+        )
 
     def number(self, node: ast.Constant) -> sympy.Expr:
         # The source text, not node.value: that is already a rounded float.
         written = self.line[node.col_offset : node.end_col_offset]
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
-            raise self.fail(no_number(node.value, written), node)
+            raise self.fail(_nodes().no_number(node.value, written), node)
         if written.isdecimal() and len(written) <= _SHORT:
             return sympy.Integer(int(written))
         try:
@@ -201,10 +205,10 @@ class _Reader:
             without = "an H that depends on time is not covered yet; write one without t"
             raise self.fail(f"t is not allowed: {without}", at)
         if self.names is not None and name not in self.names:
-            raise self.fail(unknown_name(name, self.names, FUNCTIONS), at)
+            raise self.fail(_nodes().unknown_name(name, self.names, FUNCTIONS), at)
         if self.names is None and name not in ("p", "q"):
             if name in RESERVED:
-                raise self.fail(reserved_name(name, FUNCTIONS), at)
+                raise self.fail(_nodes().reserved_name(name, FUNCTIONS), at)
             parameter_name(name)
         return symbol(name)
 
@@ -215,10 +219,10 @@ class _Reader:
             raise self.beyond(f"{name} is not smooth, and H must be; allowed: {listed}", node)
         if name not in FUNCTIONS:
             known = hasattr(math, name) or isinstance(getattr(sympy, name, None), type(sympy.sin))
-            problem = unknown_function(node, self.line, FUNCTIONS)
+            problem = _nodes().unknown_function(node, self.line, FUNCTIONS)
             raise self.beyond(problem, node) if known else self.fail(problem, node)
         if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):
-            raise self.fail(wrong_arguments(name, node, self.line), node)
+            raise self.fail(_nodes().wrong_arguments(name, node, self.line), node)
         argument = self.read(node.args[0], depth + 1)
         self.required += of_function(name, argument)
         # sympy sums and simplifies as it builds: infinities must not get into it.
@@ -250,7 +254,7 @@ class _Reader:
             return self.power(base, exponent, node.right)
         kinds = next((kinds for kinds in _CHAINS if isinstance(node.op, kinds)), None)
         if kinds is None:
-            raise self.fail(operator_not_allowed(node), stop_of(node, self.line))
+            raise self.fail(_nodes().operator_not_allowed(node), _nodes().stop_of(node, self.line))
         chain, first = [node], node.left
         while isinstance(first, ast.BinOp) and isinstance(first.op, kinds):
             chain.append(first)
@@ -290,7 +294,7 @@ class _Reader:
         self, base: sympy.Expr, exponent: sympy.Expr, at: ast.expr | None = None
     ) -> sympy.Expr:
         if not exponent.is_Rational:
-            raise self.beyond(exponent_with_names(to_text(base), to_text(exponent)), at)
+            raise self.beyond(_nodes().exponent_with_names(to_text(base), to_text(exponent)), at)
         check_power(base, exponent, self.source, self.text)
         if exponent.q != 1 and not base.free_symbols and not within_reach(base):
             raise self.beyond("a root of a constant that is too large, or not defined")

@@ -15,7 +15,6 @@ from typing import Protocol, TypeGuard
 
 import gmpy2
 
-from verify.arithmetic.number_mistakes import number_mistake
 from verify.errors import InputError
 
 Exact = int | str | float | Decimal | Fraction
@@ -82,6 +81,8 @@ def _from_text(text: str, name: str) -> Fraction:
     match = _NUMBER.fullmatch(stripped)
     # `\d` matches the digits of every script; a number here is written in ASCII.
     if match is None or not stripped.isascii():
+        from verify.arithmetic.number_mistakes import number_mistake
+
         raise InputError(name, text, number_mistake(stripped))
     if match[2] and abs(int(match[2][1:])) > _MAX_EXPONENT:
         raise InputError(name, text, f"exponent beyond ±{_MAX_EXPONENT}")

@@ -18,7 +18,7 @@ def number_mistake(text: str) -> str:
     meant = next(_meant(text), None) if len(text) <= _LONGEST else None
     if meant is not None:
         return f"is no number as it is written; write {meant}"
-    plain = _plain(text).lower()
+    plain = _plain(text[:_LONGEST]).lower()
     if re.search(r"pi|π|sqrt|√", plain) or re.fullmatch(r"[+-]?(\d+\*)?e", plain):
         more = "numbers are rational; write as many digits as are wanted, as 1.5707963"
     elif re.search(r"°|deg|rad", plain):

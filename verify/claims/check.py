@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from itertools import compress
 from operator import not_
@@ -68,6 +67,8 @@ def prepare(file: ClaimsFile, only: Sequence[str] = ()) -> Check:
     """
     for wanted in only:
         if not any(_named(claim, wanted) for claim in file.claims):
+            from difflib import get_close_matches
+
             names = [claim.id for claim in file.claims]
             near = get_close_matches(wanted.lower(), names, n=1, cutoff=0.6)
             meant = f"is {near[0]} meant? " if near else ""

@@ -15,26 +15,19 @@ _GREEK = re.compile(r"GREEK (?:SMALL |CAPITAL )?(?:LETTER )?(?:FINAL |LUNATE )?(
 _POWER = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+")
 
 
-def foreign_character(text: str) -> str | None:
-    """Of the first character outside ASCII: what it is, where, and what to write; None without."""
-    index = next((k for k, c in enumerate(text) if not c.isascii()), None)
-    if index is None:
-        return None
-    c = text[index]
+def strange_character(text: str) -> str:
+    """Of the first character that is outside ASCII, else of the first that is not printed."""
+    foreign = next((k for k, c in enumerate(text) if not c.isascii()), None)
+    if foreign is None:
+        unseen = (k for k, c in enumerate(text) if not (c.isprintable() or c.isspace()))
+        index = next(unseen, 0)
+        where = f"U+{ord(text[index]):04X} at {place(text, index)}"
+        return f"is not a formula: {where} is not allowed; leave it out"
+    c = text[foreign]
     name = unicodedata.name(c, "without a name").lower()
     shown = c if c.isprintable() and c.strip() else f"U+{ord(c):04X}"
-    return (
-        f"at {place(text, index)}: {shown} ({name}) is outside ASCII; {_instead(c, text[index:])}"
-    )
-
-
-def control_character(text: str) -> str | None:
-    """Of the first one that is not printed, such as a null; None without, and for blanks."""
-    index = next((k for k, c in enumerate(text) if not (c.isprintable() or c.isspace())), None)
-    if index is None:
-        return None
-    where = place(text, index)
-    return f"is not a formula: U+{ord(text[index]):04X} at {where} is not allowed; leave it out"
+    instead = _instead(c, text[foreign:])
+    return f"at {place(text, foreign)}: {shown} ({name}) is outside ASCII; {instead}"
 
 
 def _instead(c: str, rest: str) -> str:
