@@ -160,6 +160,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     f"{RUN} --step-size 0.3 --time 0.1": ("--time=0.1: makes 0 steps; allowed: 1 … ",),
     f"{RUN} --step-size 1 --steps 3 -o x.csv": ("-o: no such option; write --csv",),
     f"{RUN} --step-size 1 --steps 3 --csv folder": ("file=folder: is a folder",),
+    f"{RUN} --q 2": ("stands once",),
     f"{RUN} --json=yes": ("--json: takes no value; write --json",),
     "run --system duffing --scheme lie2 --step-size 1 --steps 1 --q 1 --p 0":
         ("parameter=delta: has no value; a run needs one, as delta=1",),
@@ -295,8 +296,8 @@ RIGHT = (
     "prove --system pendulum --scheme 'p_next = p - h*sin(q); q_next = q + h*p_next'",
     "prove --system pendulum --scheme 'kick 1/2; drift 1; kick 1/2'",
     f"{RUN} --step-size 1e-1 --steps 3",
-    f"{RUN} --step-size=1/10 --steps=3 --p -1",
-    f"{RUN} --step-size .5 --steps 3 --p +1.",
+    f"run {PENDULUM} --q 1 --p -1 --step-size=1/10 --steps=3",
+    f"run {PENDULUM} --q 1 --p +1. --step-size .5 --steps 3",
     "plan ./ok.toml",
     "plan crlf.toml",
     "check-integrator mine.py:step --hamiltonian p**2/2+q**2/2",
