@@ -63,7 +63,9 @@ def unknown(
 
     names = list(allowed)
     plain = {**aliases, **{plain_name(each): each for each in reversed(names)}}
-    near = get_close_matches(plain_name(str(name)), plain, n=1, cutoff=0.6)
+    given = plain_name(str(name))
+    near = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", given)]
+    near = sorted(near, key=len, reverse=True) or get_close_matches(given, plain, 1, 0.6)
     meant = f"is {plain[near[0]]} meant? " if near else ""
     return InputError(source, name, f"unknown; {meant}allowed: {', '.join(names)}{more}")
 

@@ -8,7 +8,7 @@ import os
 import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -34,7 +34,29 @@ def opened(path: Path) -> Iterator[BinaryIO]:
                 raise InputError("file", str(path), "is no regular file")
             yield file
     except OSError as error:
-        raise InputError("file", str(path), error.strerror or "cannot be read") from None
+        problem = error.strerror or "cannot be read"
+        raise InputError("file", str(path), problem + _instead(path, error)) from None
+
+
+def _instead(path: Path, error: OSError) -> str:
+    """What to give for a file that cannot be opened, where that can be told."""
+    if isinstance(error, IsADirectoryError):
+        return "; give a file"
+    if not isinstance(error, FileNotFoundError):
+        return ""
+    if "://" in str(path) or str(path).startswith(("http:/", "https:/")):
+        return "; an address is not fetched: save it as a file"
+    if "\\" in str(path) and os.sep == "/":
+        return "; write / for \\ in a path"
+    from difflib import get_close_matches
+
+    here: dict[str, Path] = {}
+    with suppress(OSError):
+        # Of two with one stem the last is taken: that of the same kind.
+        there = sorted(path.parent.iterdir(), key=lambda each: (each.suffix == path.suffix, each))
+        here = {each.stem.lower(): each for each in there}
+    near = get_close_matches(path.stem.strip().lower(), here, n=1, cutoff=0.7)
+    return f"; is {here[near[0]]} meant?" if near else "; give a file that is there"
 
 
 def read_bytes(path: Path, most: int | None = MOST_BYTES) -> bytes:
@@ -56,7 +78,9 @@ def text_of(content: bytes, name: str) -> str:
     try:
         return content.decode()
     except UnicodeDecodeError as error:
-        raise InputError("file", name, f"is not UTF-8 text, at byte {error.start}") from None
+        raise InputError(
+            "file", name, f"is not UTF-8 text, at byte {error.start}; save it as UTF-8"
+        ) from None
 
 
 def check_replaceable(path: Path) -> None:

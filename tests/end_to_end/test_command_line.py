@@ -183,7 +183,7 @@ def test_bad_input_is_the_same_in_a_process_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "bad.toml").write_bytes(b"\xff\xfe")
     done = apart("plan", "bad.toml", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "verify: file=bad.toml: is not UTF-8 text, at byte 0\n"
+    assert done.stderr == "verify: file=bad.toml: is not UTF-8 text, at byte 0; save it as UTF-8\n"
 
 
 # -- what is printed ------------------------------------------------------------------------------

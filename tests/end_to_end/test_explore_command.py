@@ -104,10 +104,10 @@ def test_a_false_claim_is_shrunk_to_a_scene_that_report_takes(
     ("more", "said"),
     [
         (("--examples", "0"), "examples=0"),
-        (("--examples", "1e6"), "not a valid integer"),
+        (("--examples", "1e6"), "--examples=1e6: must be a whole number; write 1000000"),
         (("--seed", "-1"), "seed=-1"),
         (("--property", "nothing"), "property=nothing: unknown; allowed: area-errors-compose"),
-        (("--kind", "blue"), "kinds=blue: unknown; allowed: polynomial"),
+        (("--kind", "blue"), "--kind=blue: unknown; allowed: polynomial"),
         (("--degree", "0"), "degree=0"),
         (("--scheme", "lie0"), "scheme=lie0"),
         (("missing.toml",), "CLAIMS=missing.toml: is no file"),

@@ -12,13 +12,14 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
+from types import ModuleType
 
 import sympy
 from sympy.printing.str import StrPrinter
 
 from verify.algebra.constant_size import FUNCTIONS as NAMES
 from verify.algebra.constant_size import within_reach
-from verify.algebra.identities.absolute_values import without_absolute_values
+from verify.algebra.limits import check_power, checked
 from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.arithmetic.exact import rational
@@ -26,9 +27,6 @@ from verify.errors import InputError, LimitError
 
 MAX_LENGTH = 4000
 MAX_DEPTH = 60
-MAX_EXPONENT = 64
-MAX_NUMBER_BITS = 4000
-MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
 
 FUNCTIONS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
     name: getattr(sympy, name) for name in (*NAMES, "sqrt")
@@ -38,8 +36,6 @@ NOT_SMOOTH = frozenset(
 )
 _NOT_NUMBERS = frozenset({"nan", "NaN", "inf", "Inf", "infinity", "Infinity", "oo"})
 RESERVED = frozenset({"p", "q", "h", "t", "pi", *FUNCTIONS, *NOT_SMOOTH, *_NOT_NUMBERS})
-_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
-_NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
 _CHAINS = ((ast.Add, ast.Sub), (ast.Mult, ast.Div))
 _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Mult: operator.mul,
@@ -76,6 +72,10 @@ def to_text(expression: sympy.Expr) -> str:
 
 def parameter_name(name: str) -> str:
     """The name itself, where it may name a parameter; else InputError."""
+    if not name.isascii():
+        from verify.algebra.mistakes.characters import strange_character
+
+        raise InputError("parameter", name, strange_character(name))
     if not _PARAMETER.fullmatch(name) or name in RESERVED:
         raise InputError(
             "parameter",
@@ -105,17 +105,12 @@ def read(
         raise InputError(source, text, "empty; write a formula such as p**2/2 + q**2/2")
     if len(text) > MAX_LENGTH:
         raise LimitError(source, text, f"longer than {MAX_LENGTH} characters")
-    if not text.isascii():
-        raise InputError(source, text, "has a character outside ASCII; write delta for δ")
+    if not (text.isascii() and " ".join(text.split()).isprintable()):
+        from verify.algebra.mistakes.characters import strange_character
+
+        raise InputError(source, text, strange_character(text))
     line = " ".join(text.replace("^", "**").split())
-    if "#" in line or not line.isprintable():
-        raise InputError(source, text, "is not a formula: a character in it is not allowed")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Python's own remarks on the text, such as '1if'
-            tree = ast.parse(line, mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise InputError(source, text, "not a formula; allowed: + - * / ** and functions") from None
+    tree = _tree(line, text, source)
     known = None if names is None else frozenset(names)
     reader = _Reader(source, text, line, known)
     result = reader.read(tree, 0)
@@ -124,61 +119,27 @@ def read(
     return result, reader.required
 
 
-def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
-    """The expression itself, where it is finite, real, smooth and of bounded size."""
-    numbers, powers, others = _by_kind(result)
-    if any(isinstance(node, sympy.Abs) for node in others):
-        result = without_absolute_values(result)
-        numbers, powers, others = _by_kind(result)
-    if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
-        raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
-    if any(isinstance(node, _NOT_SMOOTH_NODES) for node in others):
-        raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
-    for number in numbers:
-        if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
-            raise LimitError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
-    for power in powers:
-        if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
-            check_power(power.base, power.exp, source, text)
-    logarithms = (node for node in others if isinstance(node, sympy.log))
-    if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
-        raise InputError(source, text, "is not real, so it is not defined")
-    return result
+def _tree(line: str, text: str, source: str) -> ast.expr:
+    offset = None
+    try:
+        if "#" not in line:  # what follows would be a comment, and not be read
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # Python's own remarks on the text, such as '1if'
+                return ast.parse(line, mode="eval").body
+    except SyntaxError as error:
+        offset = error.offset and error.offset - 1
+    except (ValueError, RecursionError, MemoryError):
+        pass
+    from verify.algebra.mistakes.syntax import syntax_mistake
+
+    raise InputError(source, text, syntax_mistake(text, FUNCTIONS, offset))
 
 
-def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:
-    """The rational numbers, the powers, and what is no sum, product or name, within it."""
-    numbers, powers, others = [], [], []
-    waiting = [expression]
-    while waiting:
-        node = waiting.pop()
-        if node.is_Rational:
-            numbers.append(node)
-            continue
-        if node.is_Pow:
-            powers.append(node)
-        elif not (node.is_Add or node.is_Mul or node.is_Symbol):
-            others.append(node)
-        waiting += node.args
-    return numbers, powers, others
+def _nodes() -> ModuleType:
+    """What is said of a part that no formula has: not imported for a formula that is read."""
+    from verify.algebra.mistakes import nodes
 
-
-def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
-    """InputError where that rational power is not real, or may be too large for sympy."""
-    if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
-        raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
-    if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
-        raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
-    if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
-        raise LimitError(source, text, "a root of a number in it has too many digits")
-
-
-def _root_bits(base: sympy.Expr) -> int:
-    """Bits of the largest number among its constant factors, times the indices of their roots."""
-    constant, _ = base.as_independent(*base.free_symbols, as_Add=False)
-    numbers, powers, _ = _by_kind(constant)
-    bits = max((max(n.p.bit_length(), n.q.bit_length()) for n in numbers), default=0)
-    return bits * math.prod(int(power.exp.q) for power in powers if power.exp.is_Rational)
+    return nodes
 
 
 class _Reader:
@@ -188,11 +149,20 @@ class _Reader:
         self.source, self.text, self.line, self.names = source, text, line, names
         self.required: list[Requirement] = []
 
-    def fail(self, problem: str) -> InputError:
-        return InputError(self.source, self.text, problem)
+    def fail(self, problem: str, at: ast.expr | int | None = None) -> InputError:
+        return InputError(self.source, self.text, self.placed(problem, at))
 
-    def beyond(self, problem: str) -> LimitError:
-        return LimitError(self.source, self.text, problem)
+    def beyond(self, problem: str, at: ast.expr | None = None) -> LimitError:
+        return LimitError(self.source, self.text, self.placed(problem, at))
+
+    def placed(self, problem: str, at: ast.expr | int | None) -> str:
+        """The problem, with the place in the text of that node or offset of the line."""
+        if at is None:
+            return problem
+        from verify.algebra.mistakes.place import index_of, place
+
+        offset = at if isinstance(at, int) else at.col_offset
+        return f"at {place(self.text, index_of(self.text, offset))}: {problem}"
 
     def read(self, node: ast.expr, depth: int) -> sympy.Expr:
         if depth > MAX_DEPTH:
@@ -201,7 +171,7 @@ class _Reader:
             case ast.Constant():
                 return self.number(node)
             case ast.Name(id=name):
-                return self.name(name)
+                return self.name(name, node)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return -self.read(operand, depth + 1)
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
@@ -210,46 +180,49 @@ class _Reader:
                 return self.operation(node, depth)
             case ast.Call():
                 return self.call(node, depth)
-        shown = (ast.get_source_segment(self.line, node) or type(node).__name__)[:60]
-        raise self.fail(f"{shown!r} is not allowed; allowed: + - * / ** and functions")
+        raise self.fail(
+            _nodes().not_allowed(node, self.line, FUNCTIONS), _nodes().stop_of(node, self.line)
+        )
 
     def number(self, node: ast.Constant) -> sympy.Expr:
         # The source text, not node.value: that is already a rounded float.
         written = self.line[node.col_offset : node.end_col_offset]
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
-            raise self.fail(f"{written!r} is not a number")
+            raise self.fail(_nodes().no_number(node.value, written), node)
         if written.isdecimal() and len(written) <= _SHORT:
             return sympy.Integer(int(written))
         try:
             value = rational(written, self.source)
         except InputError as error:
-            known = LimitError if _DECIMAL.fullmatch(written) else InputError
-            raise known(error.name, error.value, error.problem) from None
+            known = self.beyond if _DECIMAL.fullmatch(written) else self.fail
+            raise known(f"{written[:40]}: {error.problem}", node) from None
         return sympy.Rational(value.numerator, value.denominator)
 
-    def name(self, name: str) -> sympy.Expr:
+    def name(self, name: str, at: ast.expr | None = None) -> sympy.Expr:
         if name == "pi":
             return sympy.pi
         if name == "t" and (self.names is None or "t" not in self.names):
-            raise self.fail("t is not allowed: the Hamiltonian may not depend on time")
+            without = "an H that depends on time is not covered yet; write one without t"
+            raise self.fail(f"t is not allowed: {without}", at)
         if self.names is not None and name not in self.names:
-            raise self.fail(f"unknown name {name!r}; allowed: {', '.join(sorted(self.names))}")
+            raise self.fail(_nodes().unknown_name(name, self.names, FUNCTIONS), at)
         if self.names is None and name not in ("p", "q"):
             if name in RESERVED:
-                raise self.fail(f"{name!r} stands for something else here")
+                raise self.fail(_nodes().reserved_name(name, FUNCTIONS), at)
             parameter_name(name)
         return symbol(name)
 
     def call(self, node: ast.Call, depth: int) -> sympy.Expr:
         name = node.func.id if isinstance(node.func, ast.Name) else "?"
         if name in NOT_SMOOTH:
-            raise self.beyond(f"{name} is not smooth")
+            listed = ", ".join(sorted(FUNCTIONS))
+            raise self.beyond(f"{name} is not smooth, and H must be; allowed: {listed}", node)
         if name not in FUNCTIONS:
             known = hasattr(math, name) or isinstance(getattr(sympy, name, None), type(sympy.sin))
-            problem = f"unknown function {name!r}; allowed: {', '.join(sorted(FUNCTIONS))}"
-            raise self.beyond(problem) if known else self.fail(problem)
+            problem = _nodes().unknown_function(node, self.line, FUNCTIONS)
+            raise self.beyond(problem, node) if known else self.fail(problem, node)
         if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):
-            raise self.fail(f"{name} takes one argument")
+            raise self.fail(_nodes().wrong_arguments(name, node, self.line), node)
         argument = self.read(node.args[0], depth + 1)
         self.required += of_function(name, argument)
         # sympy sums and simplifies as it builds: infinities must not get into it.
@@ -278,10 +251,10 @@ class _Reader:
         """A chain of + and −, or of * and /, read from its left end: its length is no depth."""
         if isinstance(node.op, ast.Pow):
             base, exponent = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
-            return self.power(base, exponent)
+            return self.power(base, exponent, node.right)
         kinds = next((kinds for kinds in _CHAINS if isinstance(node.op, kinds)), None)
         if kinds is None:
-            raise self.fail("an operator is not allowed; allowed: + - * / **")
+            raise self.fail(_nodes().operator_not_allowed(node), _nodes().stop_of(node, self.line))
         chain, first = [node], node.left
         while isinstance(first, ast.BinOp) and isinstance(first.op, kinds):
             chain.append(first)
@@ -300,9 +273,9 @@ class _Reader:
             # sympy remembers a product of names, and makes a number times it at once.
             value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
             return self.finite(-value if minus else value)
-        for op, right in factors:
+        for (op, right), step in zip(factors, reversed(chain), strict=True):
             if op is ast.Div and right.is_zero:
-                raise self.fail("division by zero")
+                raise self.fail("division by zero", step.right)
             self.required += of_divisor(right) if op is ast.Div else ()
             value = self.apply(_APPLY[op], value, right, shown="a product or quotient in it")
         return self.finite(-value if minus else value)
@@ -317,9 +290,11 @@ class _Reader:
                 yield term if sign > 0 else -term
         yield from plain.terms()
 
-    def power(self, base: sympy.Expr, exponent: sympy.Expr) -> sympy.Expr:
+    def power(
+        self, base: sympy.Expr, exponent: sympy.Expr, at: ast.expr | None = None
+    ) -> sympy.Expr:
         if not exponent.is_Rational:
-            raise self.beyond(f"exponent {exponent} must be a rational number; or exp(x*log(y))")
+            raise self.beyond(_nodes().exponent_with_names(to_text(base), to_text(exponent)), at)
         check_power(base, exponent, self.source, self.text)
         if exponent.q != 1 and not base.free_symbols and not within_reach(base):
             raise self.beyond("a root of a constant that is too large, or not defined")

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import sympy
 
 from verify.algebra.constant_size import within_reach
-from verify.algebra.formula import MAX_EXPONENT, check_power, checked
+from verify.algebra.limits import MAX_EXPONENT, check_power, checked
 from verify.errors import InputError
 
 

@@ -13,6 +13,12 @@ if TYPE_CHECKING:
     from verify.arithmetic.number_system import Arithmetic, NumberSystem
 
 AUTO = "auto"  # the fastest number system that certifies the digits
+ALIASES = {  # what others call them
+    **dict.fromkeys(("double", "float", "binary64"), "float64"),
+    **dict.fromkeys(("quad", "float128", "bigfloat", "multiprecision"), "mpfr"),
+    **dict.fromkeys(("interval", "arb"), "ball"),
+    "decimal": "mpmath",
+}
 _FILES = Catalogue(f"{__name__}.systems", [f"{folder}/systems" for folder in __path__])
 
 
@@ -38,7 +44,7 @@ def about(name: str) -> "NumberSystem":
     (17, None)
     """
     if name not in _FILES:
-        raise unknown("arithmetic", name, names())
+        raise unknown("arithmetic", name, (AUTO, *names()), aliases=ALIASES)
     system: NumberSystem = _FILES.module(name).NUMBER_SYSTEM
     return system
 

@@ -81,7 +81,9 @@ def _from_text(text: str, name: str) -> Fraction:
     match = _NUMBER.fullmatch(stripped)
     # `\d` matches the digits of every script; a number here is written in ASCII.
     if match is None or not stripped.isascii():
-        raise InputError(name, text, "not a finite number; allowed: 0.001, 1e-3, 7/3")
+        from verify.arithmetic.number_mistakes import number_mistake
+
+        raise InputError(name, text, number_mistake(stripped))
     if match[2] and abs(int(match[2][1:])) > _MAX_EXPONENT:
         raise InputError(name, text, f"exponent beyond ±{_MAX_EXPONENT}")
     mantissa, _, divisor = stripped.partition("/")

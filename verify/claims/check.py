@@ -67,8 +67,13 @@ def prepare(file: ClaimsFile, only: Sequence[str] = ()) -> Check:
     """
     for wanted in only:
         if not any(_named(claim, wanted) for claim in file.claims):
-            names = ", ".join(claim.id for claim in file.claims)
-            raise InputError("--only", wanted, f"no claim has this id; there are: {names}")
+            from difflib import get_close_matches
+
+            names = [claim.id for claim in file.claims]
+            near = get_close_matches(wanted.lower(), names, n=1, cutoff=0.6)
+            meant = f"is {near[0]} meant? " if near else ""
+            problem = f"no claim has this id; {meant}there are: {', '.join(names)}"
+            raise InputError("--only", wanted, problem)
     chosen = [c for c in file.claims if not only or any(_named(c, name) for name in only)]
     plan = Plan()
     known = add_claims(plan, chosen, file.scenes)

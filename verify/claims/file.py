@@ -40,8 +40,9 @@ from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_fo
 from verify.claims.toml_lines import Lines, lines_of
 from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
+from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
-from verify.scenes.scene import Scene, load_scene, one_line, read_toml, scene_from
+from verify.scenes.scene import Scene, load_scene, read_toml, scene_from
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
@@ -93,7 +94,9 @@ def load_claims(path: Path) -> ClaimsFile:
     found = ClaimsFile(path.name, "", lines=lines_of(read_text(path)))
     tables = data.get("claim")
     if not isinstance(tables, list) or not tables:
-        raise InputError("file", path.name, "must hold [[claim]] tables")
+        raise InputError(
+            "file", path.name, "must hold [[claim]] tables; a scene goes with verify report"
+        )
     for key in sorted(set(data) - set(_ROOT)):
         at = found.lines.of("", 0, key) if key in found.lines.tables[""][0].keys else (
             found.lines.of(key)

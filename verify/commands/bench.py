@@ -45,7 +45,7 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **given: 
     scenes = scenes_of(scene, given, ("q", "p", "time"), _section)
     asked = [each for each in scenes if each.work_precision]
     if not asked:
-        raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]")
+        raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]; add one")
     found = list(_measured(asked) if cluster is None else _measured_on_cluster(asked, cluster))
     if output is not None:
         for name, result in found:

@@ -105,7 +105,9 @@ def explore(
     drawn = SampleSpace(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
     if maximise is not None:
         if claims or names:
-            raise InputError("--maximise", maximise, "takes no CLAIMS and no --property")
+            raise InputError(
+                "--maximise", maximise, "takes no CLAIMS and no --property; leave them out"
+            )
         steps = STEPS if steps is None else steps
         return hunt(maximise, seed, examples, steps, drawn, output, keep, where)
     if steps is not None:
@@ -144,7 +146,7 @@ def _looks(claims: str | None, names: Sequence[str]) -> tuple[dict[str, Any], di
         return {"properties": named or properties.names()}, {}
     path = Path(claims)
     if not path.is_file():
-        raise InputError("CLAIMS", claims, "is no file")
+        raise InputError("CLAIMS", claims, "is no file; give a TOML file with [[claim]] tables")
     given = load_claims(path).claims
     return {"properties": named, "claims": claim_texts(given)}, claims_left_out(given)
 

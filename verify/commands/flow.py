@@ -56,7 +56,7 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     scenes = scenes_of(scene, given, (), _sections)
     plan = plan_of(scenes, need_flows)
     if not plan.tasks:
-        raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]")
+        raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]; add one")
     results = perform(plan, keep, where)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
     return Answer(

@@ -68,7 +68,9 @@ def main(arguments: list[str] | None = None) -> None:
         except (InputError, PlaceError) as error:
             _fail(str(error))
         except click.ClickException as error:
-            _fail(error.format_message())
+            from verify.commands.shared.usage import usage_mistake
+
+            _fail(usage_mistake(error, sys.argv[1:] if arguments is None else arguments))
         except (KeyboardInterrupt, click.Abort):
             sys.exit(INTERRUPTED)
         except BrokenPipeError:

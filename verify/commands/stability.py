@@ -52,10 +52,10 @@ def stability(
 def _of_linear(scene: str | None, given: Mapping[str, Any]) -> str:
     """The scheme that linear theory is asked of; InputError for whatever else is given."""
     if scene is not None:
-        raise InputError("SCENE", scene, "does not go with --linear")
+        raise InputError("SCENE", scene, "does not go with --linear; leave it out")
     for name, x in given.items():
         if name != "schemes" and x not in (None, ()):
-            raise InputError(name, x, "does not go with --linear")
+            raise InputError(name, x, "does not go with --linear; leave it out")
     if len(given["schemes"]) != 1:
         shown = ", ".join(given["schemes"]) or NOT_GIVEN
         raise InputError("schemes", shown, "give one with --linear")
@@ -76,7 +76,7 @@ def _of_scenes(
 
     plan = plan_of(scenes, need_stability)
     if not plan.tasks:
-        problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]"
+        problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]; add one"
         raise InputError("SCENE", scene or NOT_GIVEN, problem)
     found = findings_of(scenes, perform(plan, keep, where))
     notes = [

@@ -1,4 +1,4 @@
-"""Names that are likely meant for a coordinate which H lacks: x for q, v for p."""
+"""Names likely meant for something else where H lacks a coordinate: x for q, pq for p*q."""
 
 import re
 from collections.abc import Collection
@@ -8,9 +8,11 @@ import sympy
 from verify.errors import InputError
 
 _LIKELY = {
-    "p": re.compile(r"[vPy]|[pPv]_?([1-9xyzr]|theta|phi)|(mom|vel)\w*|[xq]_?dot"),
-    "q": re.compile(r"[xyzQXYZ]|[xyzqQ]_?[1-9xyzr]|theta|phi|varphi|angle|pos\w*"),
+    "p": re.compile(r"[vPy]|[pPv]_?([1-9xyzr]|theta|phi)|(mom|vel)\w*|[xpq]_?dot|dp|dx"),
+    "q": re.compile(r"[xyzQXYZ]|[xyzqQ]_?[1-9xyzr]|theta|phi|varphi|angle|pos\w*|dq"),
 }
+_PRODUCT = re.compile(r"[pq]{2,}")
+_CALL = re.compile(r"(sinh?|cosh?|tanh?|exp|log|ln|sqrt|atan)_?([pq])")
 
 
 def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collection[str]) -> None:
@@ -20,6 +22,8 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
     """
     present = {s.name for s in expression.free_symbols}
     missing = [name for name in _LIKELY if name not in present]
+    if missing:
+        _check_words(formula, " and no ".join(missing), parameters)
     meant = [x for x in parameters if any(_LIKELY[name].fullmatch(x) for name in missing)]
     if meant:
         lacks, names = " and no ".join(missing), ", ".join(meant)
@@ -29,3 +33,16 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
             f"has no {lacks}, and {names} would be no coordinate; write {' and '.join(missing)}, in"
             " one degree of freedom, or give a parameter its value",
         )
+
+
+def _check_words(formula: str, lacks: str, parameters: Collection[str]) -> None:
+    """InputError where a parameter's name is a product or a call written in one."""
+    for name in parameters:
+        write = ""
+        if _PRODUCT.fullmatch(name):
+            write = f"write {'*'.join(name)}"
+        elif called := _CALL.fullmatch(name):
+            write = f"write {called[1].replace('ln', 'log')}({called[2]})"
+        if write:
+            problem = f"has no {lacks}, and {name} would be a parameter; {write}"
+            raise InputError("hamiltonian", formula, f"{problem}, or give {name} its value")

@@ -34,6 +34,8 @@ def load(target: str) -> Callable[..., Theirs]:
     place, _, name = target.rpartition(":")
     if not place or not name:
         raise InputError("integrator", target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
+    if place.endswith(":"):
+        raise InputError("integrator", target, f"write one : in it, as {place[:-1]}:{name}")
     with quiet():
         module = _module(place, target)
         found: Theirs = module
@@ -63,12 +65,18 @@ def _module(place: str, target: str) -> ModuleType:
             sys.modules[path.stem] = module  # as pickles and dataclasses in it expect
             spec.loader.exec_module(module)
             return module
+        if path.is_file() or "/" in place:
+            problem = f"{place} is no Python file; write file.py:FUNCTION"
+            raise InputError("integrator", target, problem)
         sys.path.insert(0, str(Path.cwd()))
         return importlib.import_module(place)
     except (InputError, KeyboardInterrupt):
         raise
     except BaseException as error:  # SystemExit too: it is the user's code
-        raise InputError("integrator", target, f"does not import: {last_line(error)}") from None
+        unknown = isinstance(error, ModuleNotFoundError) and error.name == place.split(".")[0]
+        hint = "; write the path of its file, as file.py:FUNCTION" if unknown else ""
+        problem = f"does not import: {last_line(error)}{hint}"
+        raise InputError("integrator", target, problem) from None
 
 
 # -- its signature --------------------------------------------------------------------------------

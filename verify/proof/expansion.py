@@ -9,7 +9,7 @@ import sympy
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
-from verify.algebra.formula import checked
+from verify.algebra.limits import checked
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.algebra.series.quotient_series import QuotientSeries

@@ -141,7 +141,8 @@ def _run(
 def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:
     """Raises InputError for what no run is made of: a parameter without value, out of range."""
     if hamiltonian.symbols:
-        raise InputError("parameter", hamiltonian.symbols[0], "has no value; a run needs one")
+        name = hamiltonian.symbols[0]
+        raise InputError("parameter", name, f"has no value; a run needs one, as {name}=1")
     for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
         whole(name, value, 1, most)
     for name in observables:

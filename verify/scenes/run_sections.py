@@ -49,7 +49,9 @@ class Grid(Frozen):
             raise InputError("growth", self.growth, "wants lambda among the observables")
         distinct("step_sizes", self.step_sizes)
         if len(set(self.initial_values)) < len(self.initial_values):
-            raise InputError("initial_values", len(self.initial_values), "one stands twice")
+            raise InputError(
+                "initial_values", len(self.initial_values), "one of them stands twice; leave it out"
+            )
         for h in self.step_sizes:
             self.steps_for(h)
         return self

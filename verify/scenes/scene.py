@@ -60,6 +60,8 @@ from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
+from verify.scenes.mistakes.syntax import toml_mistake
+from verify.scenes.mistakes.values import one_line
 from verify.scenes.region_sections import Flow
 from verify.scenes.run_sections import Grid, SeparationOver, Series
 from verify.scenes.sections import Reference, WorkPrecision
@@ -111,7 +113,9 @@ class Scene(Frozen):
         if all(isinstance(section, StabilityMap) for section in sections):
             free -= {over.parameter for over in self.stability_map}
         if sections and free:
-            raise InputError("parameter", min(free), "has no value; a run needs one")
+            raise InputError(
+                "parameter", min(free), f"has no value; a run needs one, as {min(free)}=1"
+            )
         for over in self.stability_map:
             if over.parameter not in exact.parameters:
                 known = ", ".join(exact.parameters) or "none"
@@ -139,6 +143,7 @@ class Scene(Frozen):
         """The Hamiltonian with the scene's parameter values."""
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
+        systems.check_is_formula(self.hamiltonian or "")
         return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
 
 
@@ -159,7 +164,7 @@ def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> 
     try:
         scene = Scene.model_validate(dict(data))
     except ValidationError as error:
-        raise one_line(error, source) from None
+        raise one_line(error, source, Scene) from None
     return (
         scene if scene.name else scene.model_copy(update={"name": without_controls(default_name)})
     )
@@ -174,7 +179,7 @@ def _from_toml(content: str, source: str) -> dict[str, Any]:
     try:
         data = tomllib.loads(content, parse_float=str)
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
-        raise InputError("file", source, f"is not TOML: {error}") from None
+        raise InputError("file", source, toml_mistake(content, str(error))) from None
     if not _shallow(data):
         raise InputError("file", source, f"is nested deeper than {_MAX_DEPTH}")
     _check_texts(data, source)
@@ -185,7 +190,8 @@ def _check_texts(data: Any, source: str, where: str = "") -> None:
     """InputError where a key or a text holds a character that a terminal would act on."""
     if isinstance(data, str):
         if found := CONTROL.search(data):
-            problem = f"holds U+{ord(found[0]):04X}, a control character"
+            instead = "write a text with a \\ in it between '…'"
+            problem = f"holds U+{ord(found[0]):04X}, a control character; {instead}"
             raise InputError(f"{source}: {where}", data, problem)
     elif isinstance(data, dict):
         for key, value in data.items():
@@ -203,22 +209,3 @@ def _shallow(data: Any) -> bool:
             x for v in level if isinstance(v, list) for x in v
         ]
     return not level
-
-
-def one_line(error: ValidationError, source: str) -> InputError:
-    """The first of pydantic's errors in one line, which names the key and its value."""
-    errors = error.errors(include_url=False)
-    # A mistyped key is also a missing one: name what was typed.
-    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
-    cause = first.get("ctx", {}).get("error")
-    where = ".".join(str(part) for part in first["loc"])
-    if isinstance(cause, InputError):
-        prefix = f"{source}: {where}: " if where else f"{source}: "
-        return type(cause)(prefix + cause.name, cause.value, cause.problem)
-    if first["type"] == "extra_forbidden":
-        missing = [str(e["loc"][-1]) for e in errors if e["type"] == "missing"]
-        meant = f"; is one of these meant: {', '.join(missing)}?" if missing else ""
-        return InputError(f"{source}: {where}", first.get("input"), f"unknown key{meant}")
-    if first["type"] == "missing":
-        return InputError(f"{source}: {where}", NOT_GIVEN, "is missing")
-    return InputError(f"{source}: {where}", first.get("input"), first["msg"])

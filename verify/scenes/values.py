@@ -36,7 +36,9 @@ Steps = Annotated[int, Field(ge=1, le=MAX_STEPS, strict=True)]
 
 def _known_arithmetic(name: str) -> str:
     if name != AUTO and name not in number_systems.names():
-        raise unknown("arithmetic", name, (AUTO, *number_systems.names()))
+        raise unknown(
+            "arithmetic", name, (AUTO, *number_systems.names()), aliases=number_systems.ALIASES
+        )
     return name
 
 
@@ -52,7 +54,7 @@ def auto_for_digits(data: Any) -> Any:
 def distinct(name: str, given: Collection[object]) -> None:
     """InputError where one of the values under this key stands twice."""
     if len(set(given)) < len(given):
-        raise InputError(name, len(given), "one of them stands twice")
+        raise InputError(name, len(given), "one of them stands twice; leave it out")
 
 
 def steps_of(time: Fraction | None, steps: int | None, h: Fraction, most: int = MAX_STEPS) -> int:

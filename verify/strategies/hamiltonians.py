@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from verify.algebra.formula import MAX_EXPONENT
+from verify.algebra.limits import MAX_EXPONENT
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import whole, yes_no_either

@@ -67,4 +67,4 @@ def test_what_is_repeatable_and_what_is_refused_anyhow_are_as_before(
 ) -> None:
     given = "prove --scheme lie2 --hamiltonian a*p**2+b*q**2 --param a=1 --param b=2"
     assert here(capsys, *given.split())[0] == 0
-    assert "No such option" in here(capsys, "run", "--nonsense")[2]
+    assert "no such option" in here(capsys, "run", "--nonsense")[2]

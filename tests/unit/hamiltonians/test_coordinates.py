@@ -16,6 +16,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
         ("p**2/2 - cos(theta)", "has no q, and theta"),
         ("vx*q", "has no p, and vx"),
         ("y**2/2 + q**2/2", "has no p, and y"),
+        ("dq/dt + p", "has no q, and dq"),
+        ("p**2/2 + pq", r"has no q, and pq would be a parameter; write p\*q"),
+        ("p**2/2 - cosq", r"and cosq would be a parameter; write cos\(q\)"),
     ],
 )
 def test_it_is_refused_with_that_meaning(formula: str, named: str) -> None:
@@ -26,7 +29,8 @@ def test_it_is_refused_with_that_meaning(formula: str, named: str) -> None:
 @pytest.mark.parametrize(
     "formula",
     ["p**2/2", "p**2/(2*m)", "m*g*q", "omega**2*q**2", "a + b", "3", "p*v", "phi*q",
-     "alpha*p**2", "M*g*q", "p**2/2 + q**2/2 + x*q + v*p", "p**2/2 + q0", "V*q"],
+     "alpha*p**2", "M*g*q", "p**2/2 + q**2/2 + x*q + v*p", "p**2/2 + q0", "V*q",
+     "p*q + pq", "p + cosq*q", "pendulum*p + q", "mu*p**2"],
 )  # fmt: skip
 def test_what_may_well_be_a_parameter_is_one(formula: str) -> None:
     assert Hamiltonian.parse(formula).parameters is not None

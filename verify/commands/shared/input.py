@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.content import content
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import NOT_GIVEN, InputError, unknown
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -125,9 +125,13 @@ def hamiltonian_of(
             raise InputError("--param", text, "has no value; write NAME=VALUE, or leave it out")
         if name in values:
             raise InputError("--param", text, f"{name} is given twice")
-        values[name] = value
+        if "=" in value and re.search("[,;]", value):
+            instead = " --param ".join(part.strip() for part in re.split("[,;]", text))
+            raise InputError("--param", text, f"is more than one; write --param {instead}")
+        values[name.strip()] = value
     if system is not None:
         return systems.get(system).hamiltonian(values)
+    systems.check_is_formula(hamiltonian or "")
     return Hamiltonian.parse(hamiltonian or "", values)
 
 
@@ -143,6 +147,12 @@ def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
     if scene in suites():
         return suites()[scene], _suite(scene), None
     if scene != "paper":
+        if not scene.strip():
+            raise InputError("SCENE", scene, "is empty; give paper, a suite or a TOML file")
+        if not Path(scene).suffix and not Path(scene).exists():
+            here = {path.stem: path.name for path in sorted(Path.cwd().glob("*.toml"))}
+            named = ("paper", *suites())
+            raise unknown("SCENE", scene, named, ", or a TOML file", here)
         loaded = load_scene(Path(scene))
         return loaded.title or loaded.name, [loaded], None
     from verify.claims.file import load_claims
@@ -169,13 +179,16 @@ def writable(folder: Path, option: str = "--output") -> None:
     """Makes the folder, and sees that a file can be made in it; InputError where that cannot be."""
     from tempfile import TemporaryFile
 
+    if folder.exists() and not folder.is_dir():
+        raise InputError(option, str(folder), "File exists, and is no folder; give a folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):
             pass
     except OSError as error:
         problem = error.strerror or "cannot be written to"
-        raise InputError(option, str(folder), problem) from None
+        advice = "give a folder that can be written to"
+        raise InputError(option, str(folder), f"{problem}; {advice}") from None
 
 
 def check_ours(folder: Path, own: re.Pattern[str] | None = None, *, advice: str = "") -> None:

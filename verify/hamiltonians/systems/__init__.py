@@ -3,10 +3,11 @@
 `double_well.py` has the system `double-well`. Adding a system is adding one file.
 """
 
+import re
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
-from verify.errors import plain_name, unknown
+from verify.errors import InputError, plain_name, unknown
 
 if TYPE_CHECKING:
     from verify.hamiltonians.named_system import System
@@ -30,10 +31,19 @@ def canonical(name: str) -> str:
     return plain if plain in _FILES else name
 
 
+def check_is_formula(text: str) -> None:
+    """InputError where a formula is asked for, and the text is a system's name."""
+    name = canonical(text)
+    if name in _FILES:
+        write = f'write system = "{name}" in a scene, or --system {name}'
+        raise InputError("hamiltonian", text, f"is no formula but a system; {write}")
+
+
 def get(name: str) -> "System":
     """The system of that name; InputError where there is none."""
     name = canonical(name)
     if name not in _FILES:
-        raise unknown("system", name, names())
+        more = "; a formula goes with --hamiltonian" if re.search(r"[*^+/()=]", str(name)) else ""
+        raise unknown("system", name, names(), more)
     system: System = _FILES.module(name).SYSTEM
     return system

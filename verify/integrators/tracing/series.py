@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import sympy
 
-from verify.algebra.formula import checked
+from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from verify.algebra.formula import checked
+from verify.algebra.limits import checked
 from verify.algebra.ring import Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError

@@ -10,7 +10,8 @@ from typing import Any, TypeVar
 
 import sympy
 
-from verify.algebra.formula import FUNCTIONS, MAX_EXPONENT, symbol
+from verify.algebra.formula import FUNCTIONS, symbol
+from verify.algebra.limits import MAX_EXPONENT
 from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
 
 MOST_NODES = 20_000

@@ -131,7 +131,9 @@ def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -
 
 def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[Data, str]]:
     if not folder.is_dir():
-        raise InputError("DIR", str(folder), "is no folder")
+        raise InputError(
+            "DIR", str(folder), "is no folder; give one that `verify reference make` wrote"
+        )
     manifest = _model(Manifest, MANIFEST_FORMAT, read_bytes(folder / MANIFEST), MANIFEST, found)
     if manifest is None:
         return

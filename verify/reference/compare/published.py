@@ -108,12 +108,18 @@ def load(folder: Path, scene: str | None) -> Published:
     ['0.1', '0.5', '1.5', '0']
     """
     if not folder.is_dir():
-        raise InputError("--data", str(folder), "is no folder")
+        raise InputError(
+            "--data", str(folder), "is no folder; give one that `verify reference make` wrote"
+        )
     names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
     if not names:
-        raise InputError("--data", str(folder), "has no reference data")
+        raise InputError(
+            "--data",
+            str(folder),
+            "has no reference data; give a folder that `verify reference make` wrote",
+        )
     return Published(run for name in sorted(names) for run in _runs(folder, name))
 
 

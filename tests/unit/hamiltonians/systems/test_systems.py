@@ -16,6 +16,7 @@ from tests.helpers.flow_checks import (
     motion_defect,
     start_defect,
 )
+from verify.errors import InputError
 from verify.flows.closed_form import blow_up
 from verify.flows.extrapolation import Flow
 from verify.hamiltonians import elliptic, systems
@@ -246,3 +247,10 @@ def test_the_planted_modules_are_those_that_the_systems_use() -> None:
     assert pendulum.jacobi is elliptic.jacobi  # type: ignore[attr-defined]
     assert morse.SYSTEM.flow is not None
     assert twist_module.SYSTEM.flow is not None
+
+
+@pytest.mark.parametrize("text", ["pendulum", "double_well", "Toda oscillator"])
+def test_a_systems_name_is_no_formula(text: str) -> None:
+    with pytest.raises(InputError, match="is no formula but a system; write system"):
+        systems.check_is_formula(text)
+    systems.check_is_formula(f"{text}*q")

@@ -8,6 +8,7 @@ from verify.errors import InputError
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 
+_FORM = "write it as 'p_next = …; q_next = …', or as 'kick 1/2; drift 1; kick 1/2'"
 EXAMPLES = ()  # its names are the users' own
 
 
@@ -18,7 +19,7 @@ def make(name: str) -> Scheme | None:
     parts = [part.partition("=") for part in name.split(";") if part.strip()]
     formulas = {left.strip(): right.strip() for left, _, right in parts}
     if len(parts) != 2 or set(formulas) != {"p_next", "q_next"}:
-        raise InputError("scheme", name, "write it as 'p_next = …; q_next = …'")
+        raise InputError("scheme", name, _FORM)
     p_next, q_next = formulas["p_next"], formulas["q_next"]
     return Scheme(
         name=f"p_next = {p_next}; q_next = {q_next}",

@@ -19,6 +19,8 @@ def make(name: str) -> Scheme | None:
     """The scheme for a text that begins with kick or drift; InputError for a bad one."""
     words = [part.split(maxsplit=1) for part in name.split(";") if part.strip()]
     if not words or words[0][0] not in LETTERS:
+        if words and words[0][0].lower() in LETTERS:
+            raise InputError("scheme", name, f"write it in small letters: {_FORM}")
         return None
     if any(len(part) < 2 for part in words) or len(words) > _MOST_PARTS:
         raise InputError("scheme", name, _FORM)
@@ -45,6 +47,8 @@ def _order(name: str, text: str) -> int:
 def _part(name: str, kind: str, size: str) -> Part:
     if kind not in LETTERS:
         raise InputError("scheme", name, f"{kind}: unknown; {_FORM}")
+    if "," in size:
+        raise InputError("scheme", name, f"a , parts nothing; {_FORM}")
     return kind, parse(size, (), source=kind)
 
 

@@ -1,0 +1,72 @@
+"""What an expression must be to be handled exactly: finite, real, smooth and of bounded size."""
+
+import math
+
+import sympy
+
+from verify.algebra.identities.absolute_values import without_absolute_values
+from verify.errors import InputError, LimitError
+
+MAX_EXPONENT = 64
+MAX_NUMBER_BITS = 4000
+MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
+
+_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
+_NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
+
+
+def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
+    """The expression itself, where it is finite, real, smooth and of bounded size."""
+    numbers, powers, others = _by_kind(result)
+    if any(isinstance(node, sympy.Abs) for node in others):
+        result = without_absolute_values(result)
+        numbers, powers, others = _by_kind(result)
+    if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
+        raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
+    if any(isinstance(node, _NOT_SMOOTH_NODES) for node in others):
+        raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
+    for number in numbers:
+        if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
+            raise LimitError(source, text, f"a number in it has more than {MAX_NUMBER_BITS} bits")
+    for power in powers:
+        if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
+            check_power(power.base, power.exp, source, text)
+    logarithms = (node for node in others if isinstance(node, sympy.log))
+    if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
+        raise InputError(source, text, "is not real, so it is not defined")
+    return result
+
+
+def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:
+    """The rational numbers, the powers, and what is no sum, product or name, within it."""
+    numbers, powers, others = [], [], []
+    waiting = [expression]
+    while waiting:
+        node = waiting.pop()
+        if node.is_Rational:
+            numbers.append(node)
+            continue
+        if node.is_Pow:
+            powers.append(node)
+        elif not (node.is_Add or node.is_Mul or node.is_Symbol):
+            others.append(node)
+        waiting += node.args
+    return numbers, powers, others
+
+
+def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) -> None:
+    """InputError where that rational power is not real, or may be too large for sympy."""
+    if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
+        raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
+    if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
+        raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
+    if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
+        raise LimitError(source, text, "a root of a number in it has too many digits")
+
+
+def _root_bits(base: sympy.Expr) -> int:
+    """Bits of the largest number among its constant factors, times the indices of their roots."""
+    constant, _ = base.as_independent(*base.free_symbols, as_Add=False)
+    numbers, powers, _ = _by_kind(constant)
+    bits = max((max(n.p.bit_length(), n.q.bit_length()) for n in numbers), default=0)
+    return bits * math.prod(int(power.exp.q) for power in powers if power.exp.is_Rational)

@@ -1,0 +1,78 @@
+"""What is likely meant by a text that is no number: the number to write instead."""
+
+import re
+import unicodedata
+from collections.abc import Iterator
+from fractions import Fraction
+
+ALLOWED = "allowed: 0.001, 1e-3, 7/3"
+_DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(rf"[+-]?{_DECIMAL}(?:/\d+)?", re.ASCII)
+_QUOTIENT = re.compile(rf"([+-]?{_DECIMAL})/({_DECIMAL})", re.ASCII)
+_GROUPED = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
+_LONGEST = 60  # characters of a text for which a number is looked for
+
+
+def number_mistake(text: str) -> str:
+    """Why the text is no exact number, and what to write."""
+    meant = next(_meant(text), None) if len(text) <= _LONGEST else None
+    if meant is not None:
+        return f"is no number as it is written; write {meant}"
+    plain = _plain(text[:_LONGEST]).lower()
+    if re.search(r"pi|π|sqrt|√", plain) or re.fullmatch(r"[+-]?(\d+\*)?e", plain):
+        more = "numbers are rational; write as many digits as are wanted, as 1.5707963"
+    elif re.search(r"°|deg|rad", plain):
+        more = "numbers have no unit; write an angle in radians, by its digits"
+    elif re.search(r"inf|nan|∞", plain):
+        more = "every number is finite"
+    elif re.search(r"\d[ij]", plain):
+        more = "numbers are real"
+    elif re.search(r"[-+*/^(]", plain[1:]) and re.search(r"\d", plain):
+        more = "nothing is calculated here; write the result"
+    else:
+        return f"not a finite number; {ALLOWED}"
+    return f"not a finite number: {more}; {ALLOWED}"
+
+
+def _meant(text: str) -> Iterator[str]:
+    """Numbers that the text may be meant for, the likeliest first."""
+    plain = _plain(text)
+    if _GROUPED.fullmatch(plain):
+        thousands = plain.replace(",", "")
+        yield thousands if plain.count(",") > 1 else f"{thousands} or {plain.replace(',', '.')}"
+    if "," in plain and "." in plain:
+        last = max(",", ".", key=plain.rfind)
+        other = "," if last == "." else "."
+        plain = plain.replace(other, "").replace(last, ".")
+    tries = (
+        plain.replace(",", "."),
+        re.sub(r"[dD]([+-]?\d+)$", r"e\1", plain),
+        re.sub(r"(?<=[\d.])[fFlLmM]$", "", plain),
+        plain.replace("_", ""),
+        re.sub(r"\*?10(?:\*\*|\^)\(?([+-]?\d+)\)?$", r"e\1", plain.replace("·", "*")),
+    )
+    for found in tries:
+        if _NUMBER.fullmatch(found):
+            yield found
+    if plain.endswith("%") and _NUMBER.fullmatch(plain[:-1] + "/100"):
+        yield plain[:-1] + "/100"
+    if re.fullmatch(r"0[xXbBoO][0-9a-fA-F]+", plain):
+        yield from _of_other_base(plain)
+    if (parts := _QUOTIENT.fullmatch(plain)) and not re.search(r"[eE][+-]?\d{3}", plain):
+        above, below = map(Fraction, parts.groups())
+        if below:
+            yield str(above / below)
+
+
+def _of_other_base(text: str) -> Iterator[str]:
+    try:
+        yield str(int(text, 0))
+    except ValueError:
+        return
+
+
+def _plain(text: str) -> str:
+    """In ASCII where there is such a character, without quotation marks and brackets around it."""
+    found = re.sub("[−‐-―]", "-", unicodedata.normalize("NFKC", text)).replace("⁄", "/")
+    found = re.sub(r"\s*([/*^])\s*|^([+-])\s+", r"\1\2", found)
+    return re.sub(r"""^[\s=({\['"“„‘]+|[\s)}\]'"”’;]+$""", "", found)

@@ -1,0 +1,163 @@
+"""A command line that click refuses, in one line: what was typed, and what to type instead."""
+
+import re
+from collections.abc import Sequence
+from difflib import get_close_matches
+
+import click
+
+from verify.errors import plain_name, unknown
+
+# What others call an option, by what it is called here.
+_OPTIONS = {
+    "--step-size": ("h", "dt", "step", "stepsize", "delta-t", "tau", "timestep", "time-step"),
+    "--steps": ("n", "nsteps", "n-steps", "num-steps", "iterations"),
+    "--time": ("t", "tmax", "t-max", "tend", "t-end", "tf", "duration", "total-time"),
+    "--q": ("x", "x0", "q0", "position"),
+    "--p": ("v", "v0", "p0", "velocity", "momentum"),
+    "--scheme": ("method", "integrator", "solver", "schemes"),
+    "--digits": ("precision", "prec", "dps"),
+    "--param": ("params", "parameter", "parameters"),
+    "--output": ("o", "out", "outdir", "output-dir"),
+    "--csv": ("o", "out", "output", "file"),
+    "--maximise": ("maximize",),
+}
+_COMMANDS = {
+    "help": "--help", "simulate": "run", "integrate": "run", "solve": "run", "compute": "run",
+    "proof": "prove", "verify": "check", "test": "check", "list": "schemes", "method": "schemes",
+    "methods": "schemes", "split": "separate", "benchmark": "bench", "plot": "report",
+    "make": "reference", "compare": "reference", "export": "certificate",
+}  # fmt: skip
+
+
+def usage_mistake(error: click.ClickException, typed: Sequence[str]) -> str:
+    """The one line for an error of click's; `typed`: the arguments of the command line."""
+    if found := re.match(r"Option '(.*?)' (requires|does not)", error.message):
+        needs = (
+            "has no value; write {} VALUE" if found[2] == "requires" else "takes no value; write {}"
+        )
+        return f"{found[1]}: {needs.format(found[1])}"
+    context = getattr(error, "ctx", None)
+    if context is None or not isinstance(error, click.UsageError):
+        return error.format_message()
+    message = error.message
+    if type(error).__name__ == "NoArgsIsHelpError":
+        listed = ", ".join(context.command.list_commands(context))
+        return f"{context.command_path}: a command is missing; allowed: {listed}"
+    if isinstance(error, click.NoSuchOption):
+        return _no_such_option(error.option_name, context, typed)
+    if isinstance(error, click.MissingParameter) and error.param is not None:
+        return _missing(error.param, context, typed)
+    if isinstance(error, click.BadParameter) and error.param is not None:
+        return _bad_value(error.param, message)
+    if found := re.match(r"No such command '(.*?)'\.", message):
+        names = context.command.list_commands(context)
+        return str(unknown("command", found[1], names, aliases=_COMMANDS))
+    if found := re.match(r"Got unexpected extra arguments? \((.*)\)", message):
+        return _one_too_many(found[1], context, typed)
+    return f"{message} `{context.command_path} --help` lists what is allowed"
+
+
+def _no_such_option(name: str, context: click.Context, typed: Sequence[str]) -> str:
+    if len(name) == 2:  # click takes -system for -s -y …
+        name = next((x for x in typed if x.startswith(name)), name).partition("=")[0]
+    allowed = _options(context.command)
+    plain = plain_name(name.lstrip("-"))
+    aliases = {other: ours for ours, others in _OPTIONS.items() if ours in allowed
+               for other in others}  # fmt: skip
+    if name == "--H" and "--hamiltonian" in allowed:
+        aliases["h"] = "--hamiltonian"
+    known = {**aliases, **{option.lstrip("-"): option for option in allowed}}
+    if plain in known:
+        return f"{name}: no such option; write {known[plain]}"
+    if elsewhere := _elsewhere(plain, context):
+        return f"{name}: no such option here; it is one of {elsewhere}"
+    near = get_close_matches(plain, known, n=1, cutoff=0.6)
+    if not near and "--param" in allowed:
+        return f"{name}: no such option; a parameter of H is given as --param {plain}=VALUE"
+    asked = f"is {known[near[0]]} meant? " if near else ""
+    return f"{name}: no such option; {asked}allowed: {', '.join([*allowed, '--help'])}"
+
+
+def _options(command: click.Command) -> list[str]:
+    return [option for each in command.params for option in each.opts if option.startswith("-")]
+
+
+def _elsewhere(plain: str, context: click.Context) -> str:
+    """The other commands that have the option, under its name or another that it goes by."""
+    ours = {f"--{plain}", *(name for name, others in _OPTIONS.items() if plain in others)}
+    root = context.find_root().command
+    if not isinstance(root, click.Group) or context.command is root:
+        return ""
+    having = [each.name for each in root.commands.values() if ours & set(_options(each))]
+    return ", ".join(f"verify {name}" for name in having)
+
+
+def _missing(parameter: click.Parameter, context: click.Context, typed: Sequence[str]) -> str:
+    name = _name(parameter)
+    if name in typed[1:]:  # it was taken for the value of the option before it
+        before = typed[typed.index(name) - 1]
+        return f"{before}={name}: has no value; write {_written(_option(before, context))}"
+    if isinstance(parameter, click.Option):
+        return f"{name}: is missing; write {_written(parameter)}"
+    return f"{name}: is missing; write {context.command_path} {name}"
+
+
+def _bad_value(parameter: click.Parameter, message: str) -> str:
+    name, kind = _name(parameter), parameter.type
+    if found := re.match(r"'?(.*?)'? is not (a valid (integer|float)|in the range)", message, re.S):
+        low, high = getattr(kind, "min", None), getattr(kind, "max", None)
+        whole = isinstance(kind, click.types.IntParamType)
+        allowed = "" if low is None else f", {low} or more" if high is None else f", {low} … {high}"
+        must = f"must be a {'whole ' if whole else ''}number{allowed}"
+        return f"{name}={found[1]}: {must}{_as_whole(found[1]) if whole else ''}"
+    if isinstance(kind, click.Choice):
+        value = message.partition("'")[2].partition("'")[0]
+        return str(unknown(name, value, list(map(str, kind.choices))))
+    return f"{name}: {message}"
+
+
+def _as_whole(value: str) -> str:
+    """What to write for 1e6, 10.0 and 1,000; nothing where it is no whole number."""
+    from verify.arithmetic.exact import rational
+    from verify.errors import InputError
+
+    try:
+        number = rational(value.replace(",", "").replace("_", ""))
+    except InputError:
+        return ""
+    written = str(number)
+    return f"; write {written}" if number.denominator == 1 and written != value else ""
+
+
+def _one_too_many(extra: str, context: click.Context, typed: Sequence[str]) -> str:
+    at = next((k for k, x in enumerate(typed) if extra == x or extra.startswith(f"{x} ")), 0)
+    option = _option(typed[at - 2], context) if at >= 2 else None
+    if isinstance(option, click.Option) and not option.is_flag:
+        value = typed[at - 1]
+        if option.opts[0] == "--param":
+            meant = extra if "=" in extra else f"{value}={extra}"
+            return f"{extra}: is one too many; write --param {meant}"
+        again = f", and {option.opts[0]} again for another" if option.multiple else ""
+        write = f"write a value with spaces in quotation marks{again}"
+        return f"{extra}: is one too many; {write}, and nothing without its option"
+    arguments = [_name(each) for each in context.command.params if isinstance(each, click.Argument)]
+    takes = " ".join([context.command_path, *arguments, "[OPTIONS]"])
+    return f"{extra}: is one too many; write {takes}"
+
+
+def _option(name: str, context: click.Context) -> click.Parameter | None:
+    return next((each for each in context.command.params if name in each.opts), None)
+
+
+def _name(parameter: click.Parameter) -> str:
+    if isinstance(parameter, click.Option):
+        return max(parameter.opts, key=len)
+    return (parameter.metavar or parameter.name or "").strip("[]")
+
+
+def _written(parameter: click.Parameter | None) -> str:
+    """The option with what stands for its value."""
+    if parameter is None:
+        return "a value"
+    return f"{_name(parameter)} {parameter.metavar or 'VALUE'}"

@@ -1,0 +1,126 @@
+"""A key or a value that a model refuses, in words: what it must be, and what to write."""
+
+from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from verify.errors import NOT_GIVEN, InputError, plain_name
+
+_LONGEST = 30  # characters of what is quoted
+# What others call a key, by what it is called here.
+_KEYS = {
+    "h": "step_size", "dt": "step_size", "params": "parameters", "center": "centre",
+    "method": "schemes", "integrator": "schemes", "x": "q", "v": "p", "t": "time", "n": "steps",
+    "tmax": "time", "precision": "digits", "size": "scale",
+}  # fmt: skip
+Error = Mapping[str, Any]  # one of pydantic's `errors()`
+
+
+def one_line(
+    error: ValidationError, source: str, model: type[BaseModel] | None = None
+) -> InputError:
+    """The first of pydantic's errors in one line, which names the key and its value.
+
+    `model`: what was read, where its keys are to be told.
+    """
+    errors = error.errors(include_url=False)
+    # A mistyped key is also a missing one: name what was typed.
+    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
+    cause = first.get("ctx", {}).get("error")
+    where = ".".join(str(part) for part in first["loc"])
+    if isinstance(cause, InputError):
+        prefix = f"{source}: {where}: " if where else f"{source}: "
+        return type(cause)(prefix + cause.name, cause.value, cause.problem)
+    if first["type"] == "extra_forbidden":
+        missing = [str(e["loc"][-1]) for e in errors if e["type"] == "missing"]
+        problem = _unknown_key(first["loc"], missing, model)
+        return InputError(f"{source}: {where}", first.get("input"), problem)
+    if first["type"] == "missing":
+        return InputError(
+            f"{source}: {where}", NOT_GIVEN, f"is missing; write {first['loc'][-1]} = …"
+        )
+    return InputError(f"{source}: {where}", first.get("input"), _value_mistake(first))
+
+
+def _value_mistake(error: Error) -> str:
+    """What the value under a key must be, in place of pydantic's words."""
+    given, context = error.get("input"), error.get("ctx", {})
+    name = next((str(part) for part in reversed(error["loc"]) if isinstance(part, str)), "")
+    most, least = context.get("max_length"), context.get("min_length")
+    known: dict[str, Callable[[], str]] = {
+        "tuple_type": lambda: _list(name, given),
+        "list_type": lambda: _list(name, given),
+        "model_type": lambda: _table(name, given),
+        "dict_type": lambda: f"must be a table; write {name} = {{ NAME = VALUE }}",
+        "too_short": lambda: f"must be a list of {least} or more",
+        "too_long": lambda: f"must be a list of {most} or fewer",
+        "int_type": lambda: f"must be a whole number{_whole(name, given)}",
+        "greater_than_equal": lambda: f"must be {context['ge']} or more",
+        "less_than_equal": lambda: f"must be {context['le']} or less",
+        "string_type": lambda: "must be a text, in quotation marks",
+        "string_too_long": lambda: f"must be a text of {most} characters at most",
+        "string_pattern_mismatch": lambda: "must be of letters, digits, _ and - alone",
+        "bool_type": lambda: "must be true or false, without quotation marks",
+        "bool_parsing": lambda: "must be true or false, without quotation marks",
+        "literal_error": lambda: f"must be {context['expected']}",
+    }
+    says = known.get(error["type"])
+    return says() if says else str(error["msg"])
+
+
+def _list(name: str, given: object) -> str:
+    if isinstance(given, Mapping):
+        return f"must be a list of tables; write [[{name}]] for [{name}]"
+    is_word = isinstance(given, str) and not given[:1].isdigit()
+    shown = "…" if is_word and name != "schemes" else f'"{given}"' if is_word else str(given)
+    return f"must be a list; write {name} = [{shown[:_LONGEST]}]"
+
+
+def _table(name: str, given: object) -> str:
+    if isinstance(given, list) and given and isinstance(given[0], Mapping):
+        return f"must be one table; write [{name}] for [[{name}]]"
+    keys = " with q and p, as { q = 1, p = 0 }" if name.startswith("initial_value") else ""
+    return f"must be a table{keys}"
+
+
+def _whole(name: str, given: object) -> str:
+    from verify.arithmetic.exact import rational
+
+    try:
+        number = rational(str(given))
+    except InputError:
+        return ""
+    bare = " without quotation marks" if str(number) == given else ""
+    return f"; write {name} = {number}{bare}" if number.denominator == 1 else ""
+
+
+def _unknown_key(
+    loc: Sequence[str | int], missing: Sequence[str], model: type[BaseModel] | None
+) -> str:
+    """What is said of a key that is not known: those that it may be meant for, or all there are."""
+    if missing:
+        return f"unknown key; is one of these meant: {', '.join(missing)}?"
+    allowed = _keys_at(loc[:-1], model)
+    if not allowed:
+        return "unknown key"
+    key = plain_name(str(loc[-1])).replace("-", "_")
+    other = [ours for ours in (_KEYS.get(key), f"{_KEYS.get(key)}s") if ours in allowed]
+    near = other or get_close_matches(key, allowed, n=1, cutoff=0.6)
+    meant = f"is {near[0]} meant? " if near else ""
+    return f"unknown key; {meant}allowed: {', '.join(allowed)}"
+
+
+def _keys_at(loc: Sequence[str | int], model: type[BaseModel] | None) -> list[str]:
+    for part in loc:
+        if isinstance(part, str) and model is not None:
+            field = model.model_fields.get(part)
+            model = _model_in(field.annotation) if field else None
+    return list(model.model_fields) if model else []
+
+
+def _model_in(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next((found for each in get_args(annotation) if (found := _model_in(each))), None)
