@@ -69,7 +69,7 @@ FORMULAS = {
     "p**2/2 + 1j*q": "'1j' is not a number; H is real",
     "p**2/2 + fabs(q)": "fabs is not smooth",
     "p**2/2 + pow(q,2)": "write (q**2)",
-    "v**2/2 + x**2/2": "has no p and no q, and v, x would be no coordinate; write p and q",
+    "v**2/2 + x**2/2": "has no p and no q; are v, x meant? write p and q",
     "p1**2/2 + p2**2/2 + q1*q2": "write p and q, in one degree of freedom",
     "p**2/2 + pq": "has no q, and pq would be a parameter; write p*q",
     "pendulum": "is no formula but a system; write",

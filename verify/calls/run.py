@@ -8,6 +8,7 @@ from verify.calls.given import (
     GivenParameters,
     GivenScheme,
     GivenSystem,
+    check_start,
     hamiltonian_from,
     is_list,
     scheme_name,
@@ -71,6 +72,7 @@ def run(
     (True, [0.0, 0.01, 0.02], '-0.04875')
     """
     exact = hamiltonian_from(system, parameters)
+    check_start(exact, q, p)
     name = scheme_name(scheme, exact)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)

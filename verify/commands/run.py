@@ -96,12 +96,14 @@ def _result(
 ) -> "tuple[RunResult, str]":
     """The run, and what is to be said of its time."""
     from verify.arithmetic.exact import positive
+    from verify.calls.given import check_start
     from verify.calls.run import steps_from
     from verify.commands.shared.progress import counting_bar
     from verify.execution.keeping import Keeper, name_of
     from verify.runs.run import run as run_scheme
     from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED, rounded_down
 
+    check_start(exact, **start)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
     if keep is not None:

@@ -30,8 +30,8 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
         raise InputError(
             "hamiltonian",
             formula,
-            f"has no {lacks}, and {names} would be no coordinate; write {' and '.join(missing)}, in"
-            " one degree of freedom, or give a parameter its value",
+            f"has no {lacks}; {'is' if len(meant) == 1 else 'are'} {names} meant? write"
+            f" {' and '.join(missing)}, in one degree of freedom, or give a parameter its value",
         )
 
 
