@@ -2,6 +2,7 @@
 
 import csv
 import io
+import shlex
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -155,3 +156,23 @@ def test_a_run_that_ends_early_writes_what_was_finite_and_fails(
     status, out, _ = here(capsys, *given, "--step-size", "1", "--steps", "100", "--csv", "-")
     assert status == 1
     assert 5 < len(table(out)) < 20
+
+
+def test_a_page_for_a_scheme_of_ones_own(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    folder = tmp_path / "mine"
+    given = ["--hamiltonian", "p**2/2 - cos(q)", "--scheme",
+             "p_next = p - h*sin(q); q_next = q + h*p", *START,
+             "--step-size", "0.1", "--step-size", "0.2", "--time", "1"]  # fmt: skip
+    status, out, _ = here(capsys, "report", *given, "-o", str(folder), "--json")
+    assert status == 0
+    made = json_of(out)
+    (scene,) = made["scenes"]
+    assert [(run["step_size"], run["steps"]) for run in scene["runs"]] == [("0.1", 10), ("0.2", 5)]
+    assert {x["step_size"] for each in scene["separations"] for x in each["points"]} == {
+        "0.1", "0.2"
+    }  # fmt: skip
+    assert scene["series"][0]["step_size"] == "0.2"
+    assert {*given} <= {*shlex.split(made["provenance"]["command"])}
+    assert (folder / "index.html").exists()

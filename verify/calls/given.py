@@ -183,9 +183,9 @@ def _argument(key: str) -> str:
 
 def _without_none(given: Any) -> Any:
     """Sections without the keys that were left out."""
-    if isinstance(given, list):
-        return [_without_none(each) for each in given]
-    return {key: x for key, x in given.items() if x is not None}
+    if isinstance(given, Mapping):
+        return {key: x for key, x in given.items() if x is not None}
+    return [_without_none(each) for each in given] if isinstance(given, list) else given
 
 
 def performed(scene: Scene, need: Need, workers: int) -> dict[str, Frozen]:

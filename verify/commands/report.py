@@ -1,27 +1,41 @@
 """The command `verify report`: a page, and the same results as JSON beside it."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.input import PATH, check_ours, keepable, target, writable
+from verify.commands.shared.one_line import (
+    goes_alone,
+    line_of,
+    scenes_of,
+    start_options,
+    with_one_line,
+)
 from verify.commands.shared.tasks import kept_tasks, with_placement
 from verify.errors import InputError
 
 if TYPE_CHECKING:
+    from verify.claims.file import ClaimsFile
     from verify.execution.executors import Placement
     from verify.scenes.results.report import Report
+    from verify.scenes.scene import Scene
 
 _INTEGRATORS = "integrators"
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@with_one_line(
+    click.option("--steps", type=int, metavar="N", help="At least 1; or:"),
+    click.option("--time", metavar="T", help="N is T/H rounded down."),
+)
+@start_options
 @click.option(
     "-o", "--output", type=PATH, metavar="DIR", help="Write it there.  [default: SCENE-report]"
 )
@@ -38,15 +52,21 @@ _INTEGRATORS = "integrators"
 @with_placement
 @answering
 def report(
-    scene: str,
+    scene: str | None,
     output: Path | None,
     formats: tuple[str, ...],
     force: bool,
     where: "Placement",
+    **given: Any,
 ) -> Answer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
-    SCENE is a TOML file, `paper`, `stiff`, `extreme` or `integrators`.
+    SCENE is a TOML file, `paper`, `stiff`, `extreme` or `integrators`; or a scheme of one's own and
+    where it starts, in one line:
+
+    \b
+    verify report --system duffing --param delta=1 --scheme lie2 --step-size 0.01 --time 100 \\
+           --q 1 --p 0 -o mine
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
 
@@ -54,35 +74,72 @@ def report(
     against what is found: scipy, heyoka, galpy, rebound and nodepy, where they are installed, and
     coefficient tables of splitting methods as they are printed. It runs their code.
     """
-    asked = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
-    folder, made = (_integrators if scene == _INTEGRATORS else _scene)(
-        scene, output, asked, where, force
-    )
+    more = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
+    if scene == _INTEGRATORS:
+        folder, made = _integrators(scene, output, more, where, force)
+    else:
+        folder, made = _scene(_asked(scene, given), output, more, where, force)
     written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
     return Answer(lambda: made.model_dump(mode="json"), lambda: show.print_report(made, *written))
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What is to be verified, `typed` as the command line has it; `name`: of the folder."""
+
+    typed: str
+    name: str
+    title: str
+    scenes: "list[Scene]"
+    claims: "ClaimsFile | None" = None
+
+
+def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
+    if scene is None:
+        scenes = scenes_of(None, given, ("q", "p"), _sections)
+        name = given["system"] or "hamiltonian"
+        return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
+    goes_alone(given)
+    title, scenes, file = target(scene)
+    return _Asked(scene, scenes[0].name if len(scenes) == 1 else scene, title, scenes, file)
+
+
+def _sections(*, q: str, p: str, step_sizes: Sequence[str], **length: Any) -> dict[str, Any]:
+    """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
+    from verify.arithmetic.exact import positive
+
+    start = {"q": q, "p": p}
+    grid = {"step_sizes": step_sizes, "initial_values": [start], "separate": True, "growth": True}
+    largest = max(positive(h, "step_size") for h in step_sizes)
+    return {
+        "criteria": [1, 2, 3, 4],
+        "every_hamiltonian": True,
+        "grid": {**grid, **length},
+        "series": [{"step_size": largest, "initial_value": start, **length}],
+    }
+
+
 def _scene(
-    scene: str, output: Path | None, asked: str, where: "Placement", force: bool
+    asked: _Asked, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     from verify.claims.plan import add_claims
     from verify.claims.report import make_report
     from verify.studies.plan import plan_scenes
 
-    title, scenes, file = target(scene)
+    file, scenes = asked.claims, asked.scenes
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
-    folder = output or Path(f"{scenes[0].name if len(scenes) == 1 else scene}-report")
+    folder = output or Path(f"{asked.name}-report")
     _check(folder, force)
     keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     with kept_tasks(planned.tasks, folder / "kept", "--output") as (store, done):
         made = make_report(
-            title,
+            asked.title,
             scenes,
             claims,
             store,
-            command=f"verify report {scene} -o {folder.name}{asked}",
+            command=f"verify report {asked.typed} -o {folder.name}{more}",
             claim_scenes=claim_scenes,
             figures=file.figures if file else (),
             preface=file.about if file else (),
@@ -95,7 +152,7 @@ def _scene(
 
 
 def _integrators(
-    scene: str, output: Path | None, asked: str, where: "Placement", force: bool
+    scene: str, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     """Other libraries run here, in this process: they are not sent to workers."""
     from verify.integrators.others.report import make_integrators_report
@@ -105,7 +162,7 @@ def _integrators(
     folder = output or Path(f"{scene}-report")
     _check(folder, force)
     writable(folder)
-    command = f"verify report {scene} -o {folder.name}{asked}"
+    command = f"verify report {scene} -o {folder.name}{more}"
     return folder, make_integrators_report(command, _tell)
 
 

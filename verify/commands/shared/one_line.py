@@ -1,5 +1,6 @@
 """A scene in one line: the options of commands that otherwise take a file."""
 
+import shlex
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -65,12 +66,10 @@ def scenes_of(
     scene's sections of those that are not the system's nor the schemes. InputError where both are
     given, or neither, or one is missing.
     """
-    asked = {name: x for name, x in given.items() if x not in (None, (), False)}
     if scene is not None:
-        if asked:
-            name, x = next(iter(asked.items()))
-            raise InputError(name, x[0] if isinstance(x, tuple) else x, "goes without SCENE")
+        goes_alone(given)
         return target(scene)[1]
+    asked = _asked(given)
     if not asked:
         raise InputError(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
@@ -84,3 +83,24 @@ def scenes_of(
     own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes")}
     name = given["system"] or exact.formula
     return [scene_of(exact, asked["schemes"], None, name=name, **sections(**own))]
+
+
+def goes_alone(given: Mapping[str, Any]) -> None:
+    """InputError where SCENE is given, and one of these options too."""
+    for name, x in _asked(given).items():
+        raise InputError(name, x[0] if isinstance(x, tuple) else x, "goes without SCENE")
+
+
+def _asked(given: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: x for name, x in given.items() if x not in (None, (), False)}
+
+
+def line_of(given: Mapping[str, Any]) -> str:
+    """Those of the options that were typed, as a shell reads them again."""
+    context, parts = click.get_current_context(), []
+    for option in context.command.params:
+        x = given.get(option.name or "")
+        for value in x if isinstance(x, tuple) else (x,):
+            if value not in (None, False):
+                parts += [option.opts[-1], str(value)]
+    return shlex.join(parts)
