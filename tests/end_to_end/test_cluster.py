@@ -299,7 +299,7 @@ def test_every_command_with_tasks_refuses_a_bad_address(
 ) -> None:
     status, out, err = here(capsys, command, "paper", "--cluster", "nowhere")
     assert (status, out) == (2, "")
-    assert err.startswith("verify: cluster=nowhere: must be the address of a Dask scheduler")
+    assert err.startswith("verify: --cluster=nowhere: must be the address of a Dask scheduler")
     assert err.count("\n") == 1
 
 

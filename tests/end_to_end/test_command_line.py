@@ -286,7 +286,7 @@ def test_plan_prints_its_json_keys(capsys: pytest.CaptureFixture[str], tmp_path:
     (tmp_path / "mine.toml").write_text(SCENE)
     status, out, err = here(capsys, "plan", str(tmp_path / "mine.toml"), "--json")
     found = json_of(out)
-    assert (status, err, set(found)) == (0, "", {"tasks", "left_out"})
+    assert (status, err, set(found)) == (0, "", {"seconds", "tasks", "left_out"})
     assert len(found["tasks"]) == 2 + 8 + 1
     assert all(task["reasons"] for task in found["tasks"])
     assert {t["step_size"] for t in found["tasks"] if t["kind"] == "run"} >= {"0.01", "1/30"}

@@ -65,7 +65,7 @@ def test_keys_are_columns_or_options(
     head, *lines = GOOD.splitlines()
     keyed = "\n".join([f"scheme,h,q0,p0,{head}", *(f"lie2,0.01,1.5,0,{x}" for x in lines)])
     assert table(keyed, scene="duffing").runs.keys() == table(GOOD).runs.keys()
-    with pytest.raises(InputError, match=r"--scene=.*duffing, .*pendulum"):
+    with pytest.raises(InputError, match=r"--scene: .*duffing, .*pendulum"):
         read(path_of(tmp_path, keyed), ours, {}, {})
     with pytest.raises(InputError, match=r"--scheme=.*is a column of the table, too"):
         table(keyed, scheme="lie2", scene="duffing")
