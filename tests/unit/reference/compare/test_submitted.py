@@ -69,7 +69,7 @@ def test_keys_are_columns_or_options(
         read(path_of(tmp_path, keyed), ours, {}, {})
     with pytest.raises(InputError, match=r"--scheme=.*is a column of the table, too"):
         table(keyed, scheme="lie2", scene="duffing")
-    with pytest.raises(InputError, match=r"--step-size=.*0\.001, 0\.002"):
+    with pytest.raises(InputError, match=r"--step-size: .*0\.001, 0\.002"):
         table(GOOD, scene="duffing", scheme="lie2", q0="1.5", p0="0")
 
 
