@@ -11,7 +11,6 @@ import sympy
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Ball, enclose, points
 from verify.algebra.formula import to_text
-from verify.algebra.identities.absolute_values import sign_of
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError
@@ -181,6 +180,8 @@ def _signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
 
 def _always(u: sympy.Expr, relation: Relation) -> bool:
     """Whether the condition is seen to hold everywhere."""
+    from verify.algebra.identities.absolute_values import sign_of  # few formulas have conditions
+
     if not _small(u):
         return False
     if relation == "!=":

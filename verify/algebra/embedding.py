@@ -24,7 +24,6 @@ from verify.algebra.identities.numbers import rational_root
 from verify.algebra.lattice import lattice, lattice_and_turns
 from verify.algebra.monomials import exponents
 from verify.algebra.ring import Poly, Ring, RingFullError
-from verify.algebra.where_positive import size_of_base
 from verify.errors import LimitError
 
 MAX_TERMS = 20000
@@ -270,6 +269,8 @@ class _Builder:
 
     def root_of_power(self, u: Poly, common: int, degree: int, node: sympy.Expr) -> Poly:
         """The root of u = c·v^common, |v| being v or −v everywhere: c^(1/n)·|v|^(common/n)."""
+        from verify.algebra.where_positive import size_of_base  # which few formulas need
+
         size = size_of_base(self.ring, u, common)
         if size is None:
             raise LimitError("formula", str(node), "is not smooth: the root of a power is |x|")

@@ -4,7 +4,6 @@ import math
 
 import sympy
 
-from verify.algebra.identities.absolute_values import without_absolute_values
 from verify.errors import InputError, LimitError
 
 MAX_EXPONENT = 64
@@ -19,6 +18,8 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     """The expression itself, where it is finite, real, smooth and of bounded size."""
     numbers, powers, others = _by_kind(result)
     if any(isinstance(node, sympy.Abs) for node in others):
+        from verify.algebra.identities.absolute_values import without_absolute_values
+
         result = without_absolute_values(result)
         numbers, powers, others = _by_kind(result)
     if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
