@@ -269,7 +269,7 @@ class _Builder:
 
     def root_of_power(self, u: Poly, common: int, degree: int, node: sympy.Expr) -> Poly:
         """The root of u = c·v^common, |v| being v or −v everywhere: c^(1/n)·|v|^(common/n)."""
-        from verify.algebra.identities.where_positive import size_of_base  # which few formulas need
+        from verify.algebra.where_positive import size_of_base  # which few formulas need
 
         size = size_of_base(self.ring, u, common)
         if size is None:

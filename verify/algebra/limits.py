@@ -16,6 +16,7 @@ _NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Mi
 
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     """The expression itself, where it is finite, real, smooth and of bounded size."""
+    result = _one_product(result)
     numbers, powers, others = _by_kind(result)
     if any(isinstance(node, sympy.Abs) for node in others):
         from verify.algebra.identities.absolute_values import without_absolute_values
@@ -36,6 +37,14 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
+
+
+def _one_product(x: sympy.Expr) -> sympy.Expr:
+    """2·(−p) as −2·p: of √(−p)·√(−p) sympy makes a product in a product, or several numbers."""
+    nested = x.is_Mul and (
+        any(factor.is_Mul for factor in x.args) or sum(f.is_Number for f in x.args) > 1
+    )
+    return sympy.Mul(*x.args) if nested else x
 
 
 def _by_kind(expression: sympy.Expr) -> tuple[list[sympy.Expr], list[sympy.Expr], list[sympy.Expr]]:

@@ -115,7 +115,7 @@ def exponents(
     found, number = [0] * length, sympy.S.One
     for factor in term.args if term.is_Mul else (term,):
         if factor.is_Rational:
-            number = factor
+            number *= factor  # sympy's products may have several
         elif is_of_name(factor) and (n := int(factor.as_base_exp()[1])) > 0:
             found[at[factor.as_base_exp()[0].name]] += n
         else:

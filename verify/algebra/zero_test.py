@@ -2,7 +2,7 @@
 `verify.algebra.ring`.
 
 Its normal form decides, or a point at which it is not 0; where neither does, and no power of a
-denominator is hidden in it, `verify.algebra.identities.hidden_zero` looks further.
+denominator is hidden in it, `verify.algebra.hidden_zero` looks further.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -84,6 +84,6 @@ def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
 
 
 def _is_hidden(ring: DifferentialRing, x: Poly) -> bool:
-    from verify.algebra.identities.hidden_zero import is_hidden_zero  # which few elements need
+    from verify.algebra.hidden_zero import is_hidden_zero  # which few elements need
 
     return is_hidden_zero(ring, x)

@@ -340,3 +340,26 @@ def test_sums_of_monomials_are_read_at_once(text: str) -> None:
     with pytest.MonkeyPatch.context() as watched:
         watched.setattr(_Reader, "power", None)
         assert parse(text) == parse(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "is_"),
+    [
+        ("3*sqrt(-2*p)*sqrt(-2*p) + p", "-5*p"),
+        ("1 - 2*sqrt(-p)*sqrt(-p)", "1 + 2*p"),
+        ("q*sqrt(-3*p)*sqrt(-3*p)*2 - q*p", "-7*p*q"),
+        ("2*(-p)**(1/3)*(-p)**(2/3) - p", "-3*p"),
+    ],
+)
+def test_products_of_roots_that_sympy_leaves_nested_are_what_they_are(text: str, is_: str) -> None:
+    """Of √(−2p)·√(−2p) sympy makes a product in a product, or one with several numbers."""
+    assert parse(text) == parse(is_)
+    ring, (x, y) = embed([parse(text), parse(is_)], ["p", "q"])
+    assert ring.decide(x - y).zero is True
+
+
+def test_a_product_with_several_numbers_is_their_product() -> None:
+    p = symbol("p")
+    nested = sympy.Add(p, sympy.Mul(6, -1, p, evaluate=False), evaluate=False)
+    ring, (x,) = embed([nested], ["p"])
+    assert ring.text(x) == "-5*p"

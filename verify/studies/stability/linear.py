@@ -19,11 +19,11 @@ from fractions import Fraction
 import flint
 import sympy
 
-from verify.algebra.positive_roots import PositiveRoot, positive_roots
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.schemes import get
 from verify.schemes.step_map import H_STEP, StepMap
+from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
 
 Y = sympy.Symbol("y", positive=True)
 

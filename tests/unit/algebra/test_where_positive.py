@@ -6,13 +6,13 @@ import pytest
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
-from verify.algebra.identities.where_positive import (
+from verify.algebra.ring import Ring
+from verify.algebra.where_positive import (
     is_convex,
     point_of,
     sign_everywhere,
     size_of_base,
 )
-from verify.algebra.ring import Ring
 
 
 def element(text: str) -> tuple[Ring, Any]:

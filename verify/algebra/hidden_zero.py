@@ -17,7 +17,7 @@ from verify.algebra.identities.field import Names, UndecidedError
 from verify.algebra.identities.numbers import vanishes
 from verify.algebra.identities.relations import without_related
 from verify.algebra.identities.translation import Translation, translated
-from verify.algebra.identities.where_positive import is_convex, point_of
+from verify.algebra.where_positive import is_convex, point_of
 
 _WAVES = {"sin", "cos"}
 _OF_FACTORS = {"root", "log"}

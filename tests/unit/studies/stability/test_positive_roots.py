@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.algebra.positive_roots import positive_roots
+from verify.studies.stability.positive_roots import positive_roots
 
 Z = sympy.Symbol("z")
 
