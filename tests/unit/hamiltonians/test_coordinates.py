@@ -9,14 +9,14 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 @pytest.mark.parametrize(
     ("formula", "named"),
     [
-        ("v**2/2 + x**2/2", "has no p and no q, and v, x would be"),
-        ("p**2/2 + x**2/2", "has no q, and x would be"),
-        ("p1**2/2 + p2**2/2 + q1**2*q2", "p1, p2, q1, q2 would be"),
-        ("P**2/2 + Q**2/2", "P, Q would be"),
-        ("p**2/2 - cos(theta)", "has no q, and theta"),
-        ("vx*q", "has no p, and vx"),
-        ("y**2/2 + q**2/2", "has no p, and y"),
-        ("dq/dt + p", "has no q, and dq"),
+        ("v**2/2 + x**2/2", "has no p and no q; are v, x meant"),
+        ("p**2/2 + x**2/2", "has no q; is x meant"),
+        ("p1**2/2 + p2**2/2 + q1**2*q2", "are p1, p2, q1, q2 meant"),
+        ("P**2/2 + Q**2/2", "are P, Q meant"),
+        ("p**2/2 - cos(theta)", "has no q; is theta meant"),
+        ("vx*q", "has no p; is vx meant"),
+        ("y**2/2 + q**2/2", "has no p; is y meant"),
+        ("dq/dt + p", "has no q; is dq meant"),
         ("p**2/2 + pq", r"has no q, and pq would be a parameter; write p\*q"),
         ("p**2/2 - cosq", r"and cosq would be a parameter; write cos\(q\)"),
     ],
@@ -38,5 +38,5 @@ def test_what_may_well_be_a_parameter_is_one(formula: str) -> None:
 
 def test_a_name_with_a_value_is_a_parameter() -> None:
     assert Hamiltonian.parse("p**2/2 + x", {"x": 2}).parameters == ("x",)
-    with pytest.raises(InputError, match="x would be"):
+    with pytest.raises(InputError, match="is x meant"):
         Hamiltonian.parse("p**2/2 + x", {"x": None})
