@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from verify.pages.answers import Answer, answers
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import page as of_page
 from verify.pages.sections.claim_view import ClaimView
@@ -64,6 +65,7 @@ class FirstScreen:
 
     finding: str
     tiles: tuple[Tile, ...]
+    answers: tuple[Answer, ...]
     refutation: Refutation | None
     plot: Plot | None
     place: Place | None
@@ -79,7 +81,8 @@ def first_screen(
         plot, place = _picture(sections)
     said, tiles = _of_a_section(report)
     own = tuple(_tiles(report)) or tuple(tiles)
-    return FirstScreen(finding(report, refutation) or said, own, refutation, plot, place)
+    told = finding(report, refutation) or said
+    return FirstScreen(told, own, answers(report, claims), refutation, plot, place)
 
 
 def _of_a_section(report: Report) -> tuple[str, Sequence[Tile]]:
@@ -209,8 +212,8 @@ def _tile_of_proof(proof: ProofResult) -> Tile:
     if proof.area_preserving:
         return Tile(verdict, sign, "ΔJ ≡ 0", proof.scheme, "preserves area exactly")
     if proof.order is not None:
-        meaning = "changes area at this order in every step"
-        return Tile(verdict, sign, f"ΔJ ∼ {_h(proof.order)}", proof.scheme, meaning)
+        meaning = "proved: changes area at this order in every step"
+        return Tile(Verdict.REFUTED, "≠", f"ΔJ ∼ {_h(proof.order)}", proof.scheme, meaning)
     return Tile(verdict, sign, "ΔJ", proof.scheme, "its order is undecided")
 
 

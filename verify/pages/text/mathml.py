@@ -80,7 +80,9 @@ def matrix(left: str, rows: Sequence[Sequence[str]]) -> Markup | None:
         "<mtr>" + "".join(f"<mtd>{_sum(entry)}</mtd>" for entry in row) + "</mtr>"
         for row in expressions
     )
-    table = f'<mo>(</mo><mtable displaystyle="true">{cells}</mtable><mo>)</mo>'
+    # The style sheet draws them: without a font for mathematics parentheses do not stretch.
+    left_one, right_one = (f'<mo class="drawn">{sign}</mo>' for sign in "()")
+    table = f'{left_one}<mtable class="matrix" displaystyle="true">{cells}</mtable>{right_one}'
     return _math(f"{left}<mo>=</mo><mrow>{table}</mrow>", display=True)
 
 

@@ -15,12 +15,14 @@ Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], Markup]]
 
 
 def notation(text: str) -> Markup:
-    """The formula with its indices and powers set as such.
+    """The formula with its indices and powers set as such, and minus signs for hyphens.
 
+    >>> str(notation("f = (-H_q, H_p)"))
+    'f = (−H<sub>q</sub>, H<sub>p</sub>)'
     >>> str(notation("L_{H_p}(q_k) + O(h^12)"))
     'L<sub>H<sub>p</sub></sub>(q<sub>k</sub>) + O(h¹²)'
     """
-    return applied(text, (INDEX, INTERVAL, POWER, RAISED))
+    return applied(text, (INDEX, INTERVAL, POWER, RAISED, MINUS))
 
 
 def applied(text: str, rules: Sequence[Rule]) -> Markup:
@@ -67,5 +69,7 @@ INDEX: Rule = (
     _lowered,
 )
 INTERVAL: Rule = (re.compile(rf"\[(-?{NUMBER}) \+/- ({NUMBER})\]"), _interval)
+# Names such as stormer-verlet have hyphens, between letters.
+MINUS: Rule = (re.compile(r"(?<![A-Za-z])-|-(?![A-Za-z])"), lambda _: Markup("−"))
 POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b"), _power)
 RAISED: Rule = (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+)"), _raised)

@@ -13,6 +13,7 @@ from verify.pages.text.typography import NBSP, is_number, number
 from verify.prose import Formula, Number, Prose, read_prose
 
 _EQUALS = " = "
+_ONE_LINE = 40  # characters of a formula that is not broken; a phone has room for them
 
 
 def prose(text: str) -> Markup:
@@ -34,7 +35,11 @@ def _set(part: str, following: str) -> Markup:
     if isinstance(part, Number):
         return escape(number(part))
     if isinstance(part, Formula):
-        return notation(part) if _short(part) or mathml.read(part) is None else mathml.formula(part)
+        if not _short(part) and mathml.read(part) is not None:
+            return mathml.formula(part)
+        whole = " " in part and len(part) <= _ONE_LINE
+        set_ = notation(part)
+        return Markup('<span class="nowrap">{}</span>').format(set_) if whole else set_
     if isinstance(following, Number) and part.endswith(_EQUALS):  # q = 0.1 stays on one line
         return escape(part.removesuffix(_EQUALS)) + f"{NBSP}={NBSP}"
     return escape(part)

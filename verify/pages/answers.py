@@ -1,0 +1,117 @@
+"""What a referee asks first, answered from the report's own data: a line or two each.
+
+Is what is said of every H right; does the scheme preserve area; do the printed tables stand; and
+which scheme has the smaller error at equal run time. A question that the report has no data for is
+not asked.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from verify.pages.sections.claim_view import ClaimView
+from verify.prose import Formula, Prose, prose
+from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.report import Report
+from verify.scenes.results.statement import Outcome
+from verify.verdict import Verdict
+
+_LEAST = 2  # answers; of one alone the tiles say as much
+_MOST_LINKS = 12
+
+
+@dataclass(frozen=True)
+class Answer:
+    """`links`: names of claims with their anchors, which the last line ends with."""
+
+    question: str
+    lines: tuple[Prose, ...]
+    links: tuple[tuple[str, str], ...] = ()
+
+
+def answers(report: Report, claims: Sequence[ClaimView]) -> tuple[Answer, ...]:
+    """The questions that are answered; none where there is but one."""
+    found = [*_theory(claims), *_area(report), *_tables(claims), *_use(report)]
+    return tuple(found) if len(found) >= _LEAST else ()
+
+
+def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
+    """Of the statements none of whose readings speaks of one H."""
+    of_one = {c.of.id for c in claims if c.of and c.result.scene}
+    general = [c for c in claims if c.of and not c.again and c.of.id not in of_one]
+    if not general:
+        return
+    outcomes = [c.of.outcome for c in general if c.of]
+    hold, some, wrong, open_ = (
+        outcomes.count(o)
+        for o in (Outcome.HOLDS, Outcome.IN_SOME, Outcome.REFUTED, Outcome.UNDECIDED)
+    )
+    said = [f"{hold} hold"] + ([f"{some} hold in some readings"] if some else [])
+    said += [f"{open_} are undecided"] if open_ else []
+    refuted = [c for c in general if c.of and c.of.outcome is Outcome.REFUTED]
+    end = f"{wrong} refuted in every reading" + (":" if wrong <= _MOST_LINKS else ".")
+    said += [f"{'is' if wrong == 1 else 'are'} {end}".removeprefix("are ")] if wrong else []
+    line = f"Of {len(general)} statements on every H, {', '.join(said)}{'' if wrong else '.'}"
+    links = tuple((c.name, c.anchor) for c in refuted) if wrong <= _MOST_LINKS else ()
+    yield Answer("Is the theory right?", (Prose(line),), links)
+
+
+def _area(report: Report) -> Iterator[Answer]:
+    """One line a scheme; of what does not preserve area the leading term, for each H."""
+    by_scheme: dict[str, list[tuple[str, ProofResult]]] = {}
+    for scene in report.scenes:
+        for proof in scene.proofs:
+            by_scheme.setdefault(proof.scheme, []).append((scene.title or scene.name, proof))
+    lines = tuple(_line_of(scheme, found) for scheme, found in by_scheme.items())
+    if lines:
+        yield Answer("Is area preserved?", lines)
+
+
+def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
+    if all(proof.area_preserving for _, proof in found):
+        return prose(Formula(scheme), ": yes, det J ≡ 1 is proved")
+    parts: list[Prose] = []
+    for title, proof in found:
+        of = f" ({title})" if len(found) > 1 else ""
+        if proof.area_preserving:
+            parts.append(prose(f"det J ≡ 1{of}"))
+        elif proof.order is None:
+            parts.append(prose(f"not decided{of}"))
+        else:
+            power = proof.order
+            parts.append(
+                prose("ΔJ = ", Formula(f"({proof.leading})*h**{power}"), " + O(",
+                      Formula(f"h**{power + 1}"), f"){of}")
+            )  # fmt: skip
+    no = "no; " if any(proof.order is not None for _, proof in found) else ""
+    shown: list[str | Prose] = [Formula(scheme), f": {no}"]
+    for k, part in enumerate(parts):
+        shown += ["; " if k else "", part]
+    return prose(*shown)
+
+
+def _tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
+    """How much of each printed table is refuted, as its evidence begins."""
+    tables = [c for c in claims if c.is_table and c.result.standing != "ours"]
+    wrong = [c for c in tables if c.result.verdict is Verdict.REFUTED]
+    if not tables:
+        return
+    lines = []
+    for claim in tables:
+        share = str(claim.result.evidence).partition(":")[0]
+        told = share if claim.result.verdict is Verdict.REFUTED else claim.result.verdict.lower()
+        lines.append(Prose(f"{claim.name}: {told}"))
+    links = tuple((claim.name, claim.anchor) for claim in wrong)
+    yield Answer("Do the printed tables stand?", tuple(dict.fromkeys(lines)), links)
+
+
+def _use(report: Report) -> Iterator[Answer]:
+    """What is measured of schemes of one order at equal run time."""
+    lines = [
+        prose(f"{scene.title or scene.name}: ", each.sentence)
+        for scene in report.scenes
+        if scene.work_precision
+        for each in scene.work_precision.comparisons
+        if each.error is not None
+    ]
+    if lines:
+        yield Answer("Which scheme at equal cost?", tuple(lines))
