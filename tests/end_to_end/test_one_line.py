@@ -97,7 +97,14 @@ BAD = {
     "no-points": (["run", *PENDULUM, *START, "--step-size", "1", "--steps", "3", "--points", "0",
                    "--csv", "-"], "--points=0: must be a whole number, 1 … 10000"),
     "csv-folder": (["run", *PENDULUM, *START, "--step-size", "1", "--steps", "3", "--csv", "."],
-                   "=.: is a folder"),
+                   "--csv=.: is a folder"),
+    "csv-empty": (["run", *PENDULUM, *START, "--step-size", "1", "--steps", "3", "--csv", ""],
+                  "'--csv': is empty"),
+    "no-repeats": (["bench", *PENDULUM, *START, "--step-size", "1", "--step-size", "2", "--time",
+                    "9", "--repeats", "0"], "--repeats=0: "),
+    "no-repeats-of-file": (["bench", "paper", "--repeats", "0"], "--repeats=0: goes without SCENE"),
+    "none-at-all": (["stability", *PENDULUM, *START, "--step-size", "1", "--steps", "0"],
+                    "--steps=0: "),
 }  # fmt: skip
 
 
@@ -120,7 +127,8 @@ def test_a_run_until_a_time_writes_every_state_from_the_first(
 ) -> None:
     given = ["run", *PENDULUM, *START, "--step-size", "0.1", "--time", "1.05"]
     status, out, err = here(capsys, *given, "--csv", "-")
-    assert (status, err) == (0, "")
+    told = "T/h is rounded down: h = 0.1 gives N = 10, and t = 1 at the end\n"
+    assert (status, err) == (0, told)
     rows = table(out)
     assert [row["t"] for row in rows] == ["0", *(f"0.{k}" for k in range(1, 10)), "1"]
     assert [*rows[0]] == ["t", "p", "q", "energy_error", "delta_j", "lambda"]
@@ -131,7 +139,7 @@ def test_a_run_until_a_time_writes_every_state_from_the_first(
     status, shown, _ = here(capsys, *given, "--csv", str(file))
     assert status == 0
     assert file.read_text(encoding="utf-8") == out
-    assert "T/h is rounded down: h = 0.1 gives N = 10, and t = 1 at the end" in shown
+    assert shown.endswith(told)
     known = json_of(here(capsys, *given, "--json")[1])
     assert abs(Fraction(rows[-1]["lambda"]) - Fraction(known["lambda"])) < Fraction(1, 10**15)
     area = Fraction(1)
@@ -153,9 +161,25 @@ def test_a_run_that_ends_early_writes_what_was_finite_and_fails(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     given = ["run", "--hamiltonian", "p**2/2-q**4", "--scheme", "euler", "--q", "1", "--p", "1"]
-    status, out, _ = here(capsys, *given, "--step-size", "1", "--steps", "100", "--csv", "-")
+    status, out, err = here(capsys, *given, "--step-size", "1", "--steps", "100", "--csv", "-")
     assert status == 1
     assert 5 < len(table(out)) < 20
+    assert err.startswith("at step ")
+    assert "leaves the domain of H or the range of float64" in err
+
+
+@pytest.mark.parametrize("bad", [["--csv", "."], ["--csv", "orbit.csv", "--points", "0"]], ids=str)
+def test_a_table_that_cannot_be_written_is_refused_before_the_run(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    bad: list[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    given = ["run", *PENDULUM, *START, "--step-size", "1", "--steps", "1000000000000", *bad]
+    status, out, err = here(capsys, *given)  # a run of years
+    assert (status, out) == (2, "")
+    assert err.startswith(f"verify: {bad[-2]}={bad[-1]}: ")
 
 
 def test_a_page_for_a_scheme_of_ones_own(

@@ -9,7 +9,7 @@ from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.input import PATH, keepable, scheme_option, with_hamiltonian
-from verify.commands.shared.orbit_file import write_orbit
+from verify.commands.shared.orbit_file import STANDARD_OUTPUT, check_orbit_file, write_orbit
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 @click.option(
     "--csv",
     "table",
+    type=PATH,
     metavar="FILE",
     help="Write the states there, t, p, q, H − H₀, ΔJ and Λ; - for standard output, and nothing "
     "else on it.",
@@ -62,10 +63,12 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
            --csv orbit.csv
     """
     table, points = options.pop("table"), options.pop("points")
-    if table == "-" and click.get_current_context().params["as_json"]:
-        raise InputError("--csv", table, "does not go with --json: both are for standard output")
+    if table == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
+        raise InputError("--csv", "-", "does not go with --json: both are for standard output")
     if points is not None and table is None:
         raise InputError("--points", points, "goes with --csv")
+    if table is not None:
+        check_orbit_file(table, points)
     result, note = _result(exact, scheme, **options)
     if table is not None:
         write_orbit(result, table, points)
@@ -75,9 +78,13 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
         if note:
             click.echo(note)
 
+    def beside() -> None:
+        for line in filter(None, (show.unfinished(result), note)):
+            click.echo(line, err=True)
+
     return Answer(
         lambda: show.run_json(result),
-        (lambda: None) if table == "-" else shown,
+        beside if table == STANDARD_OUTPUT else shown,
         failed=result.status != "finished",
     )
 

@@ -92,7 +92,8 @@ def goes_alone(given: Mapping[str, Any]) -> None:
 
 
 def _asked(given: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: x for name, x in given.items() if x not in (None, (), False)}
+    # By identity: 0 == False, and a 0 that is typed is refused, not left out.
+    return {n: x for n, x in given.items() if not (x is None or x is False or x == ())}
 
 
 def line_of(given: Mapping[str, Any]) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from verify.commands.shared.input import writable
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -14,11 +15,32 @@ if TYPE_CHECKING:
     from verify.scenes.results.run import RunResult
 
 
-def write_orbit(result: "RunResult", path: str, points: int | None) -> None:
-    """Writes so many states after the initial one at most; "-" is standard output.
+STANDARD_OUTPUT = Path("-")
 
-    InputError where the file cannot be written, for points outside of 1 … 10,000, and where no
-    digits of the states are known.
+
+def check_orbit_file(path: Path, points: int | None) -> None:
+    """InputError before the run where its states could not be written after it: a file that
+    cannot be, and points outside of 1 … 10,000.
+    """
+    from verify.arithmetic.exact import whole
+    from verify.files import check_replaceable
+    from verify.scenes.results.orbit import MOST_POINTS
+
+    if points is not None:
+        whole("points", points, 1, MOST_POINTS)
+    if path == STANDARD_OUTPUT:
+        return
+    try:
+        check_replaceable(path)
+        writable(path.parent)
+    except InputError as error:
+        raise InputError("--csv", str(path), error.problem) from None
+
+
+def write_orbit(result: "RunResult", path: Path, points: int | None) -> None:
+    """Writes so many states after the initial one at most; `path`: as `check_orbit_file` has seen.
+
+    InputError where the file cannot be written, and where no digits of the states are known.
     """
     from verify.commands.shared.progress import counting_bar
     from verify.files import write_atomically
@@ -27,14 +49,14 @@ def write_orbit(result: "RunResult", path: str, points: int | None) -> None:
 
     with counting_bar("stepping again, for the states", result.steps) as tell:
         table = orbit_of(result, MOST_POINTS if points is None else points, tell)
-    if path == "-":
+    if path == STANDARD_OUTPUT:
         click.echo(as_csv(table), nl=False)
         return
     try:
-        write_atomically(Path(path), as_csv(table))
+        write_atomically(path, as_csv(table))
     except OSError as error:
         problem = error.strerror or "cannot be written"
-        raise InputError("--csv", path, problem) from None
+        raise InputError("--csv", str(path), problem) from None
 
 
 def as_csv(table: "OrbitTable") -> str:

@@ -107,15 +107,21 @@ def run_json(result: "RunResult") -> dict[str, Any]:
     }
 
 
-def print_run(result: "RunResult") -> None:
+def unfinished(result: "RunResult") -> str:
+    """Why a run has no numbers; empty where it has."""
+    if result.status == "finished":
+        return ""
     if result.status == "unresolved":
-        click.echo(f"no digit is known: {result.error_method}")
-        return
+        return f"no digit is known: {result.error_method}"
+    return (
+        f"at step {result.failed_step} the orbit leaves the domain of H or the range of "
+        f"{result.arithmetic} (other than float64 stops beyond 2^4000)"
+    )
+
+
+def print_run(result: "RunResult") -> None:
     if result.status != "finished":
-        click.echo(
-            f"at step {result.failed_step} the orbit leaves the domain of H or the range of "
-            f"{result.arithmetic} (other than float64 stops beyond 2^4000)"
-        )
+        click.echo(unfinished(result))
         return
     for name, label in _LABELS.items():
         if name in result.values:
