@@ -159,7 +159,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     f"{RUN} --step-size 0.1 --steps 10 --keep ok.toml": ("--keep=ok.toml: ", "give a folder"),
     f"{RUN} --step-size 0.3 --time 0.1": ("--time=0.1: makes 0 steps; allowed: 1 … ",),
     f"{RUN} --step-size 1 --steps 3 -o x.csv": ("-o: no such option; write --csv",),
-    f"{RUN} --step-size 1 --steps 3 --csv folder": ("file=folder: is a folder",),
+    f"{RUN} --step-size 1 --steps 3 --csv folder": ("--csv=folder: is a folder",),
     f"{RUN} --q 2": ("stands once",),
     f"{RUN} --json=yes": ("--json: takes no value; write --json",),
     "run --system duffing --scheme lie2 --step-size 1 --steps 1 --q 1 --p 0":

@@ -69,6 +69,15 @@ def test_a_benchmark_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert told in " ".join(shown.split())
 
 
+def test_a_flow_says_where_its_times_end(capsys: pytest.CaptureFixture[str]) -> None:
+    times = ["--time", "1", "--time", "0.6"]
+    status, shown, _ = here(capsys, "flow", *PENDULUM, "--step-size", "0.3", *times)
+    assert status == 0
+    told = "T/h is rounded down: h = 0.3 gives N = 3, and t = 0.9 at the end\n"
+    assert shown.endswith(told)
+    assert shown.count("rounded down") == 1  # 0.6 is 2 h
+
+
 BAD = {
     "nothing": (["flow"], "SCENE: is missing; or give --system, --scheme, --step-size"),
     "both": (["flow", "paper", "--q", "1"], "--q=1: goes without SCENE"),
@@ -80,6 +89,10 @@ BAD = {
     "one-size": (["bench", *PENDULUM, *START, "--step-size", "1", "--time", "9"],
                  "--step-size=1: is one; an order takes two"),
     "zero": (["flow", *PENDULUM, "--step-size", "0", "--steps", "3"], "--step-size=0: must be"),
+    "flow-short": (["flow", *PENDULUM, "--step-size", "1", "--time", "0.5"],
+                   "--step-size=1: makes 0 steps"),
+    "flow-alike": (["flow", *PENDULUM, "--step-size", "1", "--time", "1", "--time", "1.5"],
+                   "--time=1, 1.5: two of them make the same number of steps"),
     "shape": (["flow", *PENDULUM, "--step-size", "1", "--steps", "3", "--shape", "dog"],
               "--shape=dog: unknown; allowed: cat"),
     "linear": (["stability", "--linear", "--scheme", "lie2", "--q", "1"],
@@ -99,7 +112,7 @@ BAD = {
     "csv-folder": (["run", *PENDULUM, *START, "--step-size", "1", "--steps", "3", "--csv", "."],
                    "--csv=.: is a folder"),
     "csv-empty": (["run", *PENDULUM, *START, "--step-size", "1", "--steps", "3", "--csv", ""],
-                  "'--csv': is empty"),
+                  "--csv: is empty; give a path"),
     "no-repeats": (["bench", *PENDULUM, *START, "--step-size", "1", "--step-size", "2", "--time",
                     "9", "--repeats", "0"], "--repeats=0: "),
     "no-repeats-of-file": (["bench", "paper", "--repeats", "0"], "--repeats=0: goes without SCENE"),

@@ -10,6 +10,7 @@ import click
 from verify.arithmetic.exact import short
 from verify.commands.shared.answer import Answer
 from verify.commands.shared.one_line import scenes_of, with_one_line
+from verify.commands.shared.output import print_once
 from verify.commands.shared.tasks import perform, with_tasks
 from verify.errors import NOT_GIVEN, InputError
 
@@ -50,6 +51,7 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     steps = [5000, 20000]             # or times = [1, 2, 3]
     """
     from verify.execution.study import plan_of
+    from verify.scenes.values import rounded_down
     from verify.studies.regions.findings import flow_json, flows_of
     from verify.studies.regions.plan import need_flows
 
@@ -59,9 +61,16 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
         raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]; add one")
     results = perform(plan, keep, where)
     found = [(each.name, flow) for each in scenes for flow in flows_of(each, results)]
+    sections = [section for each in scenes for section in each.flow]
+    notes = [rounded_down(t, [section.step_size]) for section in sections for t in section.times]
+
+    def shown() -> None:
+        _print(found)
+        print_once(notes)
+
     return Answer(
         lambda: flow_json(found),
-        lambda: _print(found),
+        shown,
         failed=any(image.problem for _, flow in found for image in flow.images),
     )
 

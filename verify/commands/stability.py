@@ -9,6 +9,7 @@ import click
 
 from verify.commands.shared.answer import Answer
 from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
+from verify.commands.shared.output import print_once
 from verify.commands.shared.tasks import perform, with_tasks
 from verify.errors import NOT_GIVEN, InputError
 
@@ -87,8 +88,7 @@ def _of_scenes(
 
     def shown() -> None:
         _print(found)
-        for note in filter(None, dict.fromkeys(notes)):
-            click.echo(note)
+        print_once(notes)
 
     return Answer(found.as_json, shown)
 

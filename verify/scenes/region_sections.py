@@ -28,7 +28,6 @@ from verify.scenes.frozen import Frozen
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
 from verify.scenes.values import (
-    MAX_STEPS,
     Digits,
     InitialValue,
     Number,
@@ -37,6 +36,7 @@ from verify.scenes.values import (
     StepSize,
     Time,
     distinct,
+    steps_of,
 )
 
 MOST_DIGITS = 1000  # of points: a curve has thousands of them
@@ -126,18 +126,18 @@ class Flow(PlacedShape):
             raise InputError("steps, times", NOT_GIVEN, "give one of the two")
         if self.digits > MOST_DIGITS:
             raise InputError("digits", self.digits, f"must be at most {MOST_DIGITS}")
-        distinct("steps", self.counts)
+        distinct("steps", self.steps)
+        if len(set(self.counts)) < len(self.counts):
+            shown = ", ".join(map(text, self.times))
+            raise InputError("times", shown, "two of them make the same number of steps")
         distinct("schemes", self.schemes)
         return self
 
     @property
     def counts(self) -> tuple[int, ...]:
         """The numbers of steps, ascending; of a time T/h, rounded down."""
-        found = [*self.steps, *(time // self.step_size for time in self.times)]
-        for count in found:
-            if not 1 <= count <= MAX_STEPS:
-                raise InputError("steps", count, f"allowed: 1 … {MAX_STEPS}")
-        return tuple(sorted(found))
+        of_times = (steps_of(time, None, self.step_size) for time in self.times)
+        return tuple(sorted((*self.steps, *of_times)))
 
     def placed_shape(self) -> PlacedShape:
         """Where which shape is, without the rest."""

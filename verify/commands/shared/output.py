@@ -8,6 +8,8 @@ import click
 from verify.commands.shared.answer import picked
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
     from verify.proof.order_proof import Proof
@@ -117,6 +119,12 @@ def unfinished(result: "RunResult") -> str:
         f"at step {result.failed_step} the orbit leaves the domain of H or the range of "
         f"{result.arithmetic} (other than float64 stops beyond 2^4000)"
     )
+
+
+def print_once(notes: "Iterable[str]") -> None:
+    """Each of the notes on a line, once; those that are empty say nothing."""
+    for note in filter(None, dict.fromkeys(notes)):
+        click.echo(note)
 
 
 def print_run(result: "RunResult") -> None:
