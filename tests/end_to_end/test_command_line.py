@@ -9,10 +9,8 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-import click
 import pytest
 
-from verify import schemes
 from verify.commands.main import main
 
 RUN = {"--system": "pendulum", "--scheme": "lie2", "--step-size": "0.01", "--steps": "10",
@@ -269,17 +267,6 @@ def test_what_there_is_is_listed(
     status, out, err = here(capsys, command)
     assert (status, err) == (0, "")
     assert all(f"{each} " in out for each in found)
-
-
-def test_a_shell_completes_schemes_and_systems() -> None:
-    from verify.commands.shared.input import hamiltonian_options, scheme_option
-
-    command = click.command()(hamiltonian_options(scheme_option(lambda: None)))
-    by_name = {parameter.name: parameter for parameter in command.params}
-    context = click.Context(command)
-    found = by_name["scheme"].shell_complete(context, "lie")
-    assert {"lie1", "lie2"} <= {item.value for item in found} <= set(schemes.names())
-    assert [x.value for x in by_name["system"].shell_complete(context, "duf")] == ["duffing"]
 
 
 def test_plan_prints_its_json_keys(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

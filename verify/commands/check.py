@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared.answer import Answer, picked
-from verify.commands.shared.input import paper_folder
+from verify.commands.shared.input import CLAIMS, paper_folder
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
 
 
 @click.command()
-@click.argument("claims", metavar="CLAIMS")
+@click.argument("claims", type=CLAIMS, metavar="CLAIMS")
 @click.option(
     "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
 )

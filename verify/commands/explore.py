@@ -8,7 +8,7 @@ import click
 
 from verify.commands.hunt import STEPS, hunt
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import PATH, SCHEME, writable_later
+from verify.commands.shared.input import FILE, PATH, SCHEME, writable_later
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
 
@@ -20,7 +20,7 @@ _SEEDS = 2**32
 
 
 @click.command()
-@click.argument("claims", metavar="[CLAIMS]", required=False)
+@click.argument("claims", type=FILE, metavar="[CLAIMS]", required=False)
 @click.option(
     "--property",
     "names",

@@ -6,13 +6,13 @@ from typing import Any
 import click
 
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import target
+from verify.commands.shared.input import SCENE, target
 
 Task = Mapping[str, Any]  # as JSON has it
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@click.argument("scene", type=SCENE, metavar="SCENE")
 @answering
 def plan(scene: str) -> Answer:
     """Show what SCENE needs computed, what is left out, and why.

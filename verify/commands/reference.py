@@ -9,7 +9,7 @@ import click
 from verify.commands.reference_compare import compare
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.group import Group
-from verify.commands.shared.input import PATH, writable
+from verify.commands.shared.input import FILE, PATH, writable
 from verify.commands.shared.tasks import perform, with_placement, with_tasks
 from verify.errors import NOT_GIVEN, InputError, without_controls
 
@@ -30,7 +30,7 @@ reference.add_command(compare)
 
 
 @reference.command()
-@click.argument("scenes", nargs=-1, metavar="[SCENE]...")
+@click.argument("scenes", type=FILE, nargs=-1, metavar="[SCENE]...")
 @click.option(
     "-o",
     "--output",

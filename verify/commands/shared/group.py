@@ -17,7 +17,8 @@ class Group(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name, command, rest = super().resolve_command(ctx, args)
-        if command is not None and not isinstance(command, click.Group):
+        told = not ctx.resilient_parsing  # a shell that completes the line wants no word of it
+        if told and command is not None and not isinstance(command, click.Group):
             _given_once(command, click.Context(command, parent=ctx, info_name=name), rest)
         return name, command, rest
 

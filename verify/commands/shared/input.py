@@ -1,7 +1,7 @@
 """Options that commands share, and what they stand for."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.content import content
-from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.errors import NOT_GIVEN, InputError, plain_name, unknown
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -40,8 +40,27 @@ class _Named(click.ParamType[str]):
     def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> "list[CompletionItem]":
         from click.shell_completion import CompletionItem
 
-        names = self.catalogue().names()
-        return [CompletionItem(name) for name in names if name.startswith(incomplete)]
+        catalogue, begun = self.catalogue(), plain_name(incomplete)
+        found = [name for name in catalogue.names() if name.startswith(begun)]
+        if not found:
+            aliases: Iterable[str] = getattr(catalogue, "aliases", tuple)()
+            found = [name for name in aliases if name.startswith(begun)]
+        return [CompletionItem(name) for name in found]
+
+
+class _FileOr(click.ParamType[str]):
+    """A file, or one of these names; a shell completes both."""
+
+    name = "file"
+
+    def __init__(self, names: Callable[[], Iterable[str]]) -> None:
+        self.names = names
+
+    def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> "list[CompletionItem]":
+        from click.shell_completion import CompletionItem
+
+        found = [CompletionItem(name) for name in self.names() if name.startswith(incomplete)]
+        return [*found, CompletionItem(incomplete, type="file")]
 
 
 def _schemes() -> Any:
@@ -57,6 +76,9 @@ def _systems() -> Any:
 
 
 PATH = _GivenPath(path_type=Path)
+SCENE = _FileOr(lambda: ("paper", *suites()))
+CLAIMS = _FileOr(lambda: ("paper",))
+FILE = _FileOr(tuple)
 SCHEME = _Named("scheme", _schemes)
 _SYSTEM = _Named("system", _systems)
 _HAMILTONIAN_OPTIONS = (

@@ -6,7 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.input import SCHEME, hamiltonian_of, hamiltonian_options, target
+from verify.commands.shared.input import (
+    SCENE,
+    SCHEME,
+    hamiltonian_of,
+    hamiltonian_options,
+    target,
+)
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -41,7 +47,7 @@ def with_one_line(*own: Callable[..., Any]) -> Callable[..., Any]:
     def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
         for option in reversed((schemes_option, *_STEPS, *own)):
             command = option(command)
-        argument = click.argument("scene", required=False, metavar="[SCENE]")
+        argument = click.argument("scene", type=SCENE, required=False, metavar="[SCENE]")
         return argument(hamiltonian_options(command))
 
     return decorated

@@ -19,11 +19,13 @@ class Printable(io.TextIOBase):
         self.stream = stream
         self._encoding = getattr(stream, "encoding", None) or "utf-8"
 
-    def write(self, text: str) -> int:
+    def write(self, given: str | bytes) -> int:
+        # click writes what it tells a shell, to complete a line, as bytes.
+        text = given if isinstance(given, str) else bytes(given).decode()
         shown = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
         raw = shown.encode(self._encoding, "backslashreplace")
         self.stream.write(raw.decode(self._encoding))
-        return len(text)
+        return len(given)
 
     def flush(self) -> None:
         self.stream.flush()
