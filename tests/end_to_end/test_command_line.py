@@ -308,11 +308,26 @@ print("IMPORTED", *sorted(roots), file=sys.stderr)
 @pytest.mark.parametrize(
     ("given", "absent"),
     [
-        (["--help"], {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic"}),
+        (
+            ["--help"],
+            {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "difflib"},
+        ),
         (["report", "--help"], {"numba", "matplotlib", "numpy", "sympy", "jinja2", "reports"}),
         (arguments("prove", PROVE), {"numba", "matplotlib", "numpy", "jinja2", "rich", "reports"}),
         (["plan", "paper"], {"numba", "matplotlib", "numpy", "jinja2"}),
-        (arguments("run", RUN, digits="20"), {"numba", "matplotlib", "numpy", "jinja2"}),
+        (
+            arguments("run", RUN, digits="20"),
+            {
+                "numba",
+                "matplotlib",
+                "numpy",
+                "jinja2",
+                "difflib",
+                "concurrent",
+                "multiprocessing",
+                "tomllib",
+            },
+        ),
     ],
     ids=["help", "report-help", "prove", "plan", "run-in-mpmath"],
 )

@@ -14,7 +14,7 @@ from typing import Any
 
 from verify import schemes
 from verify.algebra.formula import to_text
-from verify.arithmetic.exact import Exact, rational, text, whole
+from verify.arithmetic.exact import Exact, whole
 from verify.errors import InputError, unknown
 from verify.execution.execute import Store, execute
 from verify.execution.executors import Placement
@@ -106,21 +106,6 @@ def step_map_from(scheme: Scheme | StepMap, hamiltonian: Hamiltonian) -> StepMap
 def schemes_from(given: object, hamiltonian: Hamiltonian) -> list[str]:
     """The names of one scheme or of several."""
     return [scheme_name(each, hamiltonian) for each in listed("scheme", given)]
-
-
-def check_start(hamiltonian: Hamiltonian, q: Exact, p: Exact) -> None:
-    """InputError where H is not defined, or not smooth, at (q, p).
-
-    >>> check_start(Hamiltonian.parse("p**2/2 + log(q)"), -1, 0)
-    Traceback (most recent call last):
-    verify.errors.InputError: q, p=-1, 0: H is not smooth there; it is where q > 0
-    """
-    point = {"q": rational(q, "q"), "p": rational(p, "p")}
-    domain = hamiltonian.domain
-    if domain.names <= set(point) and domain.contains(point) is False:
-        shown = ", ".join(map(text, point.values()))
-        problem = f"H is not smooth there; it is where {', '.join(domain.texts)}"
-        raise InputError("q, p", shown, problem)
 
 
 def is_list(given: object) -> bool:

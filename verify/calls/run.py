@@ -2,24 +2,24 @@
 
 from collections.abc import Sequence
 
-from verify.arithmetic.exact import Exact, positive, whole
+from verify.arithmetic.exact import Exact, whole
 from verify.arithmetic.systems import float64
 from verify.calls.given import (
     GivenParameters,
     GivenScheme,
     GivenSystem,
-    check_start,
     hamiltonian_from,
     is_list,
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.start import check_start
 from verify.runs.run import run as run_scheme
 from verify.scenes.results.orbit import MOST_POINTS
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import AUTO, CLOSED_FORM, MAX_STEPS
+from verify.scenes.values import AUTO, CLOSED_FORM, steps_from
 
 _DIGITS = 17
 
@@ -96,21 +96,3 @@ def run(
             keeper=keeper,
         )
     return result.with_points(int(points))
-
-
-def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
-    """N, as it is given or as many whole steps as fit into the time.
-
-    >>> steps_from(None, 1, 0.1), steps_from(None, 1, 0.3)
-    (10, 3)
-    """
-    if (steps is None) == (time is None):
-        raise InputError(
-            "steps, time", steps if steps is not None else NOT_GIVEN, "give one of the two"
-        )
-    if time is None:
-        return whole("steps", steps, 1, MAX_STEPS)
-    count = positive(time, "time") // positive(step_size, "step_size")
-    if not 1 <= count <= MAX_STEPS:
-        raise InputError("time", time, f"makes {count} steps; allowed: 1 … {MAX_STEPS}")
-    return count

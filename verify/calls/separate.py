@@ -12,9 +12,8 @@ from verify.calls.given import (
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
-from verify.calls.run import steps_from
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
-from verify.scenes.values import AUTO
+from verify.scenes.values import AUTO, steps_from
 from verify.studies.separation import separate as study
 
 

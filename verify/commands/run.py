@@ -103,12 +103,11 @@ def _result(
 ) -> "tuple[RunResult, str]":
     """The run, and what is to be said of its time."""
     from verify.arithmetic.exact import positive
-    from verify.calls.given import check_start
-    from verify.calls.run import steps_from
     from verify.commands.shared.progress import counting_bar
     from verify.execution.keeping import Keeper, name_of
+    from verify.hamiltonians.start import check_start
     from verify.runs.run import run as run_scheme
-    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED, rounded_down
+    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED, rounded_down, steps_from
 
     check_start(exact, **start)
     arithmetic = arithmetic or (AUTO if digits else "float64")

@@ -8,9 +8,9 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 from verify import arithmetic as number_systems
 from verify import schemes
-from verify.arithmetic.exact import positive, rational, text
+from verify.arithmetic.exact import Exact, positive, rational, text, whole
 from verify.drawable import drawn_by
-from verify.errors import InputError, unknown
+from verify.errors import NOT_GIVEN, InputError, unknown
 from verify.hamiltonians import systems
 from verify.scenes.frozen import Frozen
 
@@ -65,6 +65,24 @@ def steps_of(time: Fraction | None, steps: int | None, h: Fraction, most: int = 
     count = steps if time is None else time // h
     if count is None or not 1 <= count <= most:
         raise InputError("step_size", text(h), f"makes {count} steps; allowed: 1 … {most}")
+    return count
+
+
+def steps_from(steps: int | None, time: Exact | None, step_size: Exact) -> int:
+    """N, as it is given or as many whole steps as fit into the time.
+
+    >>> steps_from(None, 1, 0.1), steps_from(None, 1, 0.3)
+    (10, 3)
+    """
+    if (steps is None) == (time is None):
+        raise InputError(
+            "steps, time", steps if steps is not None else NOT_GIVEN, "give one of the two"
+        )
+    if time is None:
+        return whole("steps", steps, 1, MAX_STEPS)
+    count = positive(time, "time") // positive(step_size, "step_size")
+    if not 1 <= count <= MAX_STEPS:
+        raise InputError("time", time, f"makes {count} steps; allowed: 1 … {MAX_STEPS}")
     return count
 
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Sequence
-from difflib import get_close_matches
 
 import click
 
@@ -72,6 +71,8 @@ def _no_such_option(name: str, context: click.Context, typed: Sequence[str]) -> 
         return f"{name}: no such option; write {known[plain]}"
     if elsewhere := _elsewhere(plain, context):
         return f"{name}: no such option here; it is one of {elsewhere}"
+    from difflib import get_close_matches
+
     near = get_close_matches(plain, known, n=1, cutoff=0.6)
     if not near and "--param" in allowed:
         return f"{name}: no such option; a parameter of H is given as --param {plain}=VALUE"

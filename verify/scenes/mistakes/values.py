@@ -1,7 +1,6 @@
 """A key or a value that a model refuses, in words: what it must be, and what to write."""
 
 from collections.abc import Callable, Mapping, Sequence
-from difflib import get_close_matches
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -105,6 +104,8 @@ def _unknown_key(
     allowed = _keys_at(loc[:-1], model)
     if not allowed:
         return "unknown key"
+    from difflib import get_close_matches
+
     key = plain_name(str(loc[-1])).replace("-", "_")
     other = [ours for ours in (_KEYS.get(key), f"{_KEYS.get(key)}s") if ours in allowed]
     near = other or get_close_matches(key, allowed, n=1, cutoff=0.6)
