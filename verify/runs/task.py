@@ -2,14 +2,17 @@
 
 from typing import Literal
 
-from verify.arithmetic import AUTO, step_cost
-from verify.arithmetic.systems import float64
+from verify.arithmetic import step_cost
+from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import Keeper
 from verify.execution.task import InitialValueTask
 from verify.runs.float64 import DIRECT_STEPS
 from verify.runs.run import proved_run, run
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import StepSize
+
+# About what a run costs however short, and one that is too long to be held against a certified one.
+_RUN_COST, _LONG_RUN_COST = 1_000_000, 50_000_000
 
 
 class RunTask(InitialValueTask):
@@ -26,9 +29,15 @@ class RunTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
-        """Steps times what a step in this arithmetic costs."""
-        checked = self.arithmetic == float64.NAME and self.steps <= DIRECT_STEPS
-        return self.steps * step_cost(AUTO if checked else self.arithmetic)
+        """Steps times what a step in this arithmetic costs, beside what any run does.
+
+        Short ones in float64 are held against a run in mpfr, whose steps are what they cost.
+        """
+        if self.arithmetic != float64.NAME:
+            return _RUN_COST + self.steps * step_cost(self.arithmetic)
+        if self.steps <= DIRECT_STEPS:
+            return _RUN_COST + self.steps * step_cost(mpfr.NAME)
+        return _LONG_RUN_COST + self.steps * step_cost(float64.NAME)
 
     def proved(self) -> RunResult | None:
         """What a proof gives of the run without a step; None where it is not all that is asked."""

@@ -73,12 +73,16 @@ def test_equal_tasks_have_one_key_and_others_another() -> None:
 
 
 def test_a_task_costs_more_in_a_slower_arithmetic_and_for_more_steps() -> None:
-    many = 10**6
+    many = 10**7
     costs = [
         run(steps=many, arithmetic=name).cost for name in ("float64", "fixed", "mpfr", "mpmath")
     ]
     assert costs == sorted(costs)
-    assert run(steps=2 * many).cost == 2 * run(steps=many).cost
+    once, twice, thrice = (run(steps=k * many).cost for k in (1, 2, 3))
+    assert once < twice < 2 * once
+    assert thrice - twice == twice - once
+    in_mpfr = [run(steps=n, arithmetic="mpfr").cost for n in (10, 10_000)]
+    assert [run(steps=n).cost for n in (10, 10_000)] == in_mpfr  # what float64 is held against
 
 
 def test_a_task_is_described_for_an_error() -> None:

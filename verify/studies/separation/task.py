@@ -8,8 +8,10 @@ from verify.execution.task import InitialValueTask
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.values import StepSize
 from verify.studies.separation.separate import separate
+from verify.studies.separation.working import POINTS
 
 _RUNS = 3  # of the chain, in wide numbers
+_CHECKPOINT_COST = 80_000  # of Λ and its parts at one of them, about
 
 
 class SeparationTask(InitialValueTask):
@@ -23,8 +25,9 @@ class SeparationTask(InitialValueTask):
 
     @property
     def cost(self) -> int:
-        """About how many float64 steps its runs are worth."""
-        return _RUNS * self.steps * step_cost(AUTO)
+        """About how many float64 steps its runs and their checkpoints are worth."""
+        checkpoints = min(self.steps, POINTS)
+        return _CHECKPOINT_COST * checkpoints + _RUNS * self.steps * step_cost(AUTO)
 
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
