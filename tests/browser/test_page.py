@@ -111,6 +111,25 @@ def test_an_anchor_opens_its_claim(browser: Browser, folder: Path) -> None:
         assert evidence.is_visible(), "the same link again"
 
 
+def test_a_tile_shows_the_claims_that_it_counts_and_all_again(
+    browser: Browser, folder: Path
+) -> None:
+    with opened(browser, file_of(folder, page_of("paper"))) as found:
+        seen = "[...document.querySelectorAll('.claim')].filter(c => c.checkVisibility())"
+        every = found.page.evaluate(f"{seen}.length")
+        tile = found.page.locator(".tile.refuted button")
+        tile.click()
+        told = found.page.evaluate(f"{seen}.map(c => c.dataset.told)")
+        assert set(told) == {"refuted"}
+        assert 0 < len(told) < every
+        assert tile.get_attribute("aria-pressed") == "true"
+        found.page.evaluate("location.hash = '#' + document.querySelector('.claim[hidden]').id")
+        found.page.wait_for_function(f"{seen}.length === {every}", timeout=2000)
+        tile.click()
+        tile.click()
+        assert found.page.evaluate(f"{seen}.length") == every
+
+
 def test_without_scripts_a_claim_opens_by_hand(browser: Browser, folder: Path) -> None:
     with opened(browser, file_of(folder, page_of("paper")), script=False) as found:
         evidence = found.page.locator("#claim-table-9 .evidence")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from verify.pages.answers import Answer, answers
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections import page as of_page
-from verify.pages.sections.claim_view import ClaimView
+from verify.pages.sections.claim_view import COLOURS, ClaimView
 from verify.pages.sections.scene.stability import MEANINGS
 from verify.pages.sections.section import Place, Shown, Tile, walk
 from verify.pages.sections.section import sections as found_sections
@@ -34,18 +34,15 @@ _RUN_SIGNS: dict[Kind, tuple[str, Verdict]] = {
     "underflow": ("↓", Verdict.REFUTED),
     "undecided": ("?", Verdict.UNDECIDED),
 }
-# A statement's outcome: the verdict whose colour it has, its sign, its word, what it means.
+# A statement's outcome: its sign, its word, what it means.
 _OUTCOMES = {
-    Outcome.HOLDS: (Verdict.PROVED, "✓", "hold", "every reading of the statement holds"),
+    Outcome.HOLDS: ("✓", "hold", "every reading of the statement holds"),
     Outcome.IN_SOME: (
-        Verdict.MEASURED, "≈", "hold in some readings",
-        "one reading holds; another is refuted, or not decided",
+        "≈", "hold in some readings", "one reading holds; another is refuted, or not decided",
     ),
-    Outcome.REFUTED: (
-        Verdict.REFUTED, "✗", "refuted", "every reading is refuted, also the most favourable one",
-    ),
+    Outcome.REFUTED: ("✗", "refuted", "every reading is refuted, also the most favourable one"),
     Outcome.UNDECIDED: (
-        Verdict.UNDECIDED, "?", "undecided", "no reading is shown to hold, and not all are refuted",
+        "?", "undecided", "no reading is shown to hold, and not all are refuted",
     ),
 }  # fmt: skip
 _FEW = 4  # proofs that are told one by one
@@ -178,8 +175,8 @@ def _tiles(report: Report) -> list[Tile]:
     if report.statements:
         found = Counter(statement.outcome for statement in report.statements)
         return [
-            Tile(v, sign, whole(found[o]), word, meaning, found[o])
-            for o, (v, sign, word, meaning) in _OUTCOMES.items()
+            Tile(COLOURS[o], sign, whole(found[o]), word, meaning, found[o])
+            for o, (sign, word, meaning) in _OUTCOMES.items()
             if found[o]
         ]
     if report.claims:

@@ -25,6 +25,13 @@ _OUTCOMES = {
     Outcome.REFUTED: "refuted in each",
     Outcome.UNDECIDED: "undecided",
 }
+# The verdict whose colour a statement's outcome has.
+COLOURS = {
+    Outcome.HOLDS: Verdict.PROVED,
+    Outcome.IN_SOME: Verdict.MEASURED,
+    Outcome.REFUTED: Verdict.REFUTED,
+    Outcome.UNDECIDED: Verdict.UNDECIDED,
+}
 _PRINTED = "printed"  # how the printed row of a table claim's details begins
 
 
@@ -50,6 +57,11 @@ class ClaimView:
         if self.of is None or self.again or len(self.of.readings) == 1:
             return ""
         return f"{len(self.of.readings)} readings: {_OUTCOMES[self.of.outcome]}"
+
+    @property
+    def told(self) -> str:
+        """By which tile of the first screen it is counted: a verdict in small letters."""
+        return (COLOURS[self.of.outcome] if self.of else self.result.verdict).lower()
 
     @property
     def standing(self) -> str:

@@ -1,4 +1,5 @@
-// The page needs none of this: it opens the claim that a link leads to, and all for printing.
+// The page needs none of this: it opens the claim that a link leads to, and all for printing;
+// a tile shows the claims that it counts, and all again.
 (() => {
   const reveal = () => {
     const target = document.getElementById(location.hash.slice(1));
@@ -15,5 +16,28 @@
   });
   if (!CSS.supports("selector(::details-content)"))
     addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((each) => (each.open = true)));
+  const claims = [...document.querySelectorAll(".claim[data-told]")];
+  const tiles = [...document.querySelectorAll(".tile[data-told]")].filter((tile) =>
+    claims.some((claim) => claim.dataset.told === tile.dataset.told));
+  const show = (told) => {
+    for (const tile of tiles) tile.querySelector("button").setAttribute("aria-pressed", tile.dataset.told === told);
+    for (const claim of claims) claim.hidden = told !== null && claim.dataset.told !== told;
+    for (const group of document.querySelectorAll(".group"))
+      group.hidden = !group.querySelector(".claim:not([hidden])");
+  };
+  for (const tile of tiles) {
+    const button = document.createElement("button");
+    button.append(...tile.childNodes);
+    tile.append(button);
+    button.setAttribute("aria-pressed", "false");
+    button.addEventListener("click", () => {
+      const told = button.getAttribute("aria-pressed") === "true" ? null : tile.dataset.told;
+      show(told);
+      if (told !== null) claims[0].closest(".group").parentElement.scrollIntoView();
+    });
+  }
+  addEventListener("hashchange", () => {
+    if (document.getElementById(location.hash.slice(1))?.closest("[hidden]")) show(null);
+  }, { capture: true });
   reveal();
 })();
