@@ -5,10 +5,12 @@ which scheme has the smaller error at equal run time. A question that the report
 not asked.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from verify.pages.sections.claim_view import ClaimView
+from verify.pages.text.typography import listed
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Report
@@ -17,6 +19,13 @@ from verify.verdict import Verdict
 
 _LEAST = 2  # answers; of one alone the tiles say as much
 _MOST_LINKS = 12
+# Of one statement, and of several; those that are refuted stand last, before their links.
+_OUTCOMES = {
+    Outcome.HOLDS: ("holds", "hold"),
+    Outcome.IN_SOME: ("holds in some readings", "hold in some readings"),
+    Outcome.UNDECIDED: ("is undecided", "are undecided"),
+    Outcome.REFUTED: ("is refuted in every reading", "are refuted in every reading"),
+}
 
 
 @dataclass(frozen=True)
@@ -40,18 +49,13 @@ def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
     general = [c for c in claims if c.of and not c.again and c.of.id not in of_one]
     if not general:
         return
-    outcomes = [c.of.outcome for c in general if c.of]
-    hold, some, wrong, open_ = (
-        outcomes.count(o)
-        for o in (Outcome.HOLDS, Outcome.IN_SOME, Outcome.REFUTED, Outcome.UNDECIDED)
-    )
-    said = [f"{hold} hold"] + ([f"{some} hold in some readings"] if some else [])
-    said += [f"{open_} are undecided"] if open_ else []
+    counts = Counter(c.of.outcome for c in general if c.of)
+    told = [f"{n} {words[n != 1]}" for o, words in _OUTCOMES.items() if (n := counts[o])]
     refuted = [c for c in general if c.of and c.of.outcome is Outcome.REFUTED]
-    end = f"{wrong} refuted in every reading" + (":" if wrong <= _MOST_LINKS else ".")
-    said += [f"{'is' if wrong == 1 else 'are'} {end}".removeprefix("are ")] if wrong else []
-    line = f"Of {len(general)} statements on every H, {', '.join(said)}{'' if wrong else '.'}"
-    links = tuple((c.name, c.anchor) for c in refuted) if wrong <= _MOST_LINKS else ()
+    told += [] if refuted else ["none is refuted in every reading"]
+    end = ":" if 0 < len(refuted) <= _MOST_LINKS else "."
+    links = tuple((c.name, c.anchor) for c in refuted) if end == ":" else ()
+    line = f"Of {len(general)} statements on every H, {listed(told)}{end}"
     yield Answer("Is the theory right?", (Prose(line),), links)
 
 
@@ -68,7 +72,7 @@ def _area(report: Report) -> Iterator[Answer]:
 
 def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
     if all(proof.area_preserving for _, proof in found):
-        return prose(Formula(scheme), ": yes, det J ≡ 1 is proved")
+        return Prose(f"{scheme}: yes, det J ≡ 1 is proved")
     parts: list[Prose] = []
     for title, proof in found:
         of = f" ({title})" if len(found) > 1 else ""
@@ -83,7 +87,7 @@ def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
                       Formula(f"h**{power + 1}"), f"){of}")
             )  # fmt: skip
     no = "no; " if any(proof.order is not None for _, proof in found) else ""
-    shown: list[str | Prose] = [Formula(scheme), f": {no}"]
+    shown: list[str | Prose] = [f"{scheme}: {no}"]
     for k, part in enumerate(parts):
         shown += ["; " if k else "", part]
     return prose(*shown)
@@ -105,13 +109,22 @@ def _tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
 
 
 def _use(report: Report) -> Iterator[Answer]:
-    """What is measured of schemes of one order at equal run time."""
-    lines = [
-        prose(f"{scene.title or scene.name}: ", each.sentence)
-        for scene in report.scenes
-        if scene.work_precision
-        for each in scene.work_precision.comparisons
-        if each.error is not None
-    ]
+    """What is measured at equal run time of what was proved not to preserve area, and of others."""
+    lines = []
+    for scene in report.scenes:
+        judged = {proof.scheme for proof in scene.proofs if not proof.area_preserving}
+        for each in scene.work_precision.comparisons if scene.work_precision else ():
+            if each.error is not None and {each.one, each.other} & judged:
+                name = scene.title or scene.name
+                lines.append(prose(f"{name}: ", _first_sentence(each.sentence)))
     if lines:
         yield Answer("Which scheme at equal cost?", tuple(lines))
+
+
+def _first_sentence(text: Prose) -> Prose:
+    parts: list[str] = []
+    for part in text.parts:
+        if type(part) is str and ". " in part:
+            return Prose(*parts, part.partition(". ")[0] + ".")
+        parts.append(part)
+    return text

@@ -1,0 +1,74 @@
+"""What a referee asks first is answered from the report's data, and only what it has data for."""
+
+from typing import Any
+
+from tests.unit.pages.test_page import claim, proof, real, report, scene
+from verify.pages.answers import Answer, answers
+from verify.pages.page import render
+from verify.pages.page_view import page_view
+from verify.scenes.results.report import Report
+from verify.scenes.results.statement import statements_of
+from verify.verdict import Verdict
+
+P, R = Verdict.PROVED, Verdict.REFUTED
+KEEPS = {"scheme": "symplectic-euler", "area_preserving": True, "order": None, "leading": "0"}
+
+
+def answered(made: Report) -> dict[str, Answer]:
+    found = answers(made, page_view(made).claims)
+    return {each.question: each for each in found}
+
+
+def statements(*readings: tuple[str, Verdict, str], **more: Any) -> Report:
+    """Each reading: of which statement, its verdict, and the scene it speaks of, "" for every H."""
+    claims = tuple(
+        claim(id=f"c{k}", source=of, statement_id=of, verdict=verdict, scene=where)
+        for k, (of, verdict, where) in enumerate(readings)
+    )
+    return report((scene(),), claims=claims, statements=statements_of(claims), **more)
+
+
+def test_the_theory_is_what_is_said_of_every_h() -> None:
+    found = answered(statements(("A", P, ""), ("B", R, ""), ("B", P, ""), ("C", R, "mine")))
+    (line,) = found["Is the theory right?"].lines
+    assert line == (
+        "Of 2 statements on every H, 1 holds, 1 holds in some readings and none is refuted in every"
+        " reading."
+    )
+    found = answered(statements(("A", P, ""), ("B", R, ""), ("B", R, "")))
+    theory = found["Is the theory right?"]
+    assert theory.lines == (
+        "Of 2 statements on every H, 1 holds and 1 is refuted in every reading:",
+    )
+    assert theory.links == (("B", "claim-c1"),)
+
+
+def test_a_scheme_preserves_area_only_where_every_proof_says_so() -> None:
+    made = report(
+        (
+            scene(proofs=(proof(), proof(**KEEPS))),
+            scene(name="other", title="Other", proofs=(proof(**KEEPS | {"scheme": "lie2"}),)),
+        ),
+        claims=(claim(statement_id="A", scene=""),),
+        statements=statements_of((claim(statement_id="A", scene=""),)),
+    )
+    lie2, euler = answered(made)["Is area preserved?"].lines
+    assert lie2 == ("lie2: no; ΔJ = (3*a*p*q)*h**3 + O(h**4) (My oscillator); det J ≡ 1 (Other)")
+    assert euler == "symplectic-euler: yes, det J ≡ 1 is proved"
+
+
+def test_what_is_not_decided_is_no_no() -> None:
+    open_ = proof(order=None, area_preserving=None, verdict=Verdict.UNDECIDED)
+    made = statements(("A", P, ""))
+    made = made.model_copy(update={"scenes": (scene(proofs=(open_,)),)})
+    assert answered(made)["Is area preserved?"].lines == ("lie2: not decided",)
+
+
+def test_a_refuted_table_is_linked_and_a_report_of_proofs_alone_asks_nothing() -> None:
+    tables = answered(real())["Do the printed tables stand?"]
+    assert tables.lines
+    assert all(": 4 of 4 entries are wrong" in line for line in tables.lines)
+    assert tables.links
+    assert not answers(report((scene(),)), ())
+    assert 'class="answers"' not in render(report((scene(),)))
+    assert 'class="answers"' in render(real())
