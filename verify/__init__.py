@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from verify.calls.bench import bench as bench
     from verify.calls.check import check as check
     from verify.calls.flow import flow as flow
+    from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
     from verify.calls.prove import prove as prove
     from verify.calls.run import run as run
     from verify.calls.separate import separate as separate
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from verify.pages.plotting import plot_separation as plot_separation
     from verify.pages.plotting import plot_work_precision as plot_work_precision
     from verify.pages.plotting_orbits import plot_orbit as plot_orbit
+    from verify.proof.modified_equation import ModifiedEquation as ModifiedEquation
     from verify.proof.order_proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.report import Report as Report
@@ -52,6 +54,7 @@ _NAMES = {
     "run": ("verify.calls.run", "N steps: values with error bounds, and the orbit as arrays"),
     "sweep": ("verify.calls.sweep", "runs over lists of schemes, steps, starts: a table"),
     "prove": ("verify.calls.prove", "the order of ΔJ = det J − 1 and of the map, exactly"),
+    "modified_hamiltonian": ("verify.calls.modified", "the energy that a scheme keeps: H̃ in h"),
     "separate": ("verify.calls.separate", "truncation and rounding in Λ of a float64 run"),
     "separate_grid": ("verify.calls.separate", "the same over step sizes, and where they cross"),
     "flow": ("verify.calls.flow", "a region carried by schemes, and its area"),
@@ -73,6 +76,7 @@ _NAMES = {
     "Scene": ("verify.scenes.scene", "a declaration of what is to be verified"),
     "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
     "Proof": ("verify.proof.order_proof", "what is proved of a step map"),
+    "ModifiedEquation": ("verify.proof.modified_equation", "what is known of a scheme's H̃"),
     "RunResult": ("verify.scenes.results.run", "what a run gave"),
     "OrbitTable": ("verify.scenes.results.orbit", "the states of a run"),
     "Sweep": ("verify.scenes.results.sweep", "what a sweep gave"),

@@ -6,7 +6,7 @@ smooth G, and L is not zero there. None: neither is found. G is looked for by th
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -72,7 +72,9 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
         found: Poly | None = potential_of_lie(field, every_h.eta)
         how = "by the formula for every H"
     else:
-        found, how = _among_polynomials(field, leading), "by linear algebra over monomials"
+        used = field.h_p, field.h_q, leading
+        found = among_polynomials(field.ring, used, field.derive, leading)
+        how = "by linear algebra over monomials"
     if found is not None and field.ring.decide(field.derive(found) - leading).zero is True:
         return Potential(True, how, (field.ring, found))
     return Potential(None, "no G is found, and no equilibrium at which L is not zero")
@@ -127,19 +129,25 @@ def _not_zero(value: sympy.Expr, variables: tuple[str, ...]) -> bool:
     return ring.decide(x).zero is False
 
 
-def _among_polynomials(field: VectorField, leading: Poly) -> Poly | None:
-    """A polynomial G with X·G = L in normal form, of the least degree that has one."""
-    ring = field.ring
-    used = [g.index for g in ring.generators_in(field.h_p, field.h_q, leading, ring.variable("p"))]
-    gens = [x for k, x in enumerate(ring.context.gens()) if k in used and x != ring.variable("h")]
+def among_polynomials(
+    ring: Ring, used: Sequence[Poly], derive: Callable[[Poly], Poly], wanted: Poly
+) -> Poly | None:
+    """A polynomial G with derive(G) = wanted in normal form, of the least degree that has one.
+
+    `used`: G is made of what these elements are made of, and of p and q. `derive` is linear.
+    """
+    indices = [g.index for g in ring.generators_in(*used, ring.variable("p"))]
+    gens = [
+        x for k, x in enumerate(ring.context.gens()) if k in indices and x != ring.variable("h")
+    ]
     if ring.variable("q") not in gens:
         gens.append(ring.variable("q"))
     degrees = list(_by_degree(gens, ring.one))
-    moved = [[field.derive(m) for m in monomials] for monomials in degrees]
-    if not may_combine(list(chain(*moved)), leading):
+    moved = [[derive(m) for m in monomials] for monomials in degrees]
+    if not may_combine(list(chain(*moved)), wanted):
         return None
     for most in range(1, len(degrees) + 1):
-        found, _ = combination(list(chain(*moved[:most])), leading)
+        found, _ = combination(list(chain(*moved[:most])), wanted)
         if found is not None:
             monomials = list(chain(*degrees[:most]))
             return sum((c * monomials[k] for k, c in found.items()), ring.zero)

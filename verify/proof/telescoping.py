@@ -130,7 +130,7 @@ def _solve_for_potential(
     factors, by_p, by_q = (n - 1 for n in grade)
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
     indices = [(i, j) for i, j in jets.indices if i + j < highest]
-    candidates = [_monomial(jets, m) for m in _multisets(indices, factors, by_p, by_q)]
+    candidates = [_monomial(jets, m) for m in multisets(indices, factors, by_p, by_q)]
     found, rank = combination([jets.derive(m) for m in candidates], x)
     if found is None:
         return None, rank, len(candidates)
@@ -142,7 +142,7 @@ def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
     return math.prod((jets.h(i, j) for i, j in factors), start=jets.one)
 
 
-def _multisets(
+def multisets(
     indices: Sequence[tuple[int, int]], factors: int, by_p: int, by_q: int, first: int = 0
 ) -> Iterator[list[tuple[int, int]]]:
     """All products of so many H_ij, index from `first` on, with these numbers of derivatives."""
@@ -153,5 +153,5 @@ def _multisets(
     for at in range(first, len(indices)):
         i, j = indices[at]
         if i <= by_p and j <= by_q and i + j + factors - 1 <= by_p + by_q:
-            for rest in _multisets(indices, factors - 1, by_p - i, by_q - j, at):
+            for rest in multisets(indices, factors - 1, by_p - i, by_q - j, at):
                 yield [(i, j), *rest]

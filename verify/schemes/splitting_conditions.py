@@ -69,7 +69,8 @@ class Splitting:
         return f"{count(found['H_q'], 'kick')}, {count(found['H_p'], 'drift')}"
 
     @cached_property
-    def _exact(self) -> tuple[Ring, list[tuple[str, Poly]]]:
+    def numbers(self) -> tuple[Ring, list[tuple[str, Poly]]]:
+        """The parts, letters with sizes in one ring."""
         ring, sizes = embed([size for _, size in self.parts], ())
         kinds = (LETTERS[kind] for kind, _ in self.parts)
         return ring, list(zip(kinds, sizes, strict=True))
@@ -83,7 +84,7 @@ class Splitting:
 
     def _of_word(self, word: str) -> Condition:
         if word not in self._known:
-            ring, parts = self._exact
+            ring, parts = self.numbers
             flow = Fraction(1, factorial(len(word)))
             residue = coefficient(ring, parts, word) - ring.constant(flow)
             self._known[word] = condition_of(
@@ -118,7 +119,7 @@ class Splitting:
         Conversely, parts that alternate and are not 0 are determined by the product of their
         exponentials.
         """
-        ring, parts = self._exact
+        ring, parts = self.numbers
         merged = _alternating(ring, parts)
         found = []
         if merged and merged[0][0] != merged[-1][0]:

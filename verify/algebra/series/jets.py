@@ -59,6 +59,10 @@ class Jets:
                 total += x.derivative(at) * self.h(i + di, j + dj)
         return total
 
+    def reduce(self, x: Poly) -> Poly:
+        """x itself: between jets there are no relations."""
+        return x
+
     def derive(self, x: Poly) -> Poly:
         """X x, the derivative along the flow."""
         return self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")

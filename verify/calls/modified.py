@@ -1,0 +1,75 @@
+"""`verify.modified_hamiltonian`: the terms of the backward error, and the energy that is kept."""
+
+from verify import schemes
+from verify.arithmetic.exact import whole
+from verify.calls.given import (
+    GivenParameters,
+    GivenScheme,
+    GivenSystem,
+    hamiltonian_from,
+    scheme_from,
+    step_map_from,
+)
+from verify.errors import InputError
+from verify.hamiltonians import systems
+from verify.proof.modified import MOST_ORDER, modified_of
+from verify.proof.modified_equation import ModifiedEquation
+from verify.proof.modified_every import MOST_ORDER as MOST_FOR_EVERY
+from verify.proof.modified_every import modified_for_every
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap
+
+
+def modified_hamiltonian(
+    scheme: GivenScheme,
+    system: GivenSystem | None = None,
+    order: int = 4,
+    *,
+    parameters: GivenParameters = None,
+    separable: bool = False,
+) -> ModifiedEquation:
+    """The terms of the modified equation, and the modified Hamiltonian H̃ = H + h H_2 + h² H_3 + ….
+
+    The map of the scheme is the exact flow of the modified field, as a series in h; where its terms
+    are Hamiltonian H̃ is the energy that the scheme keeps. The first term that is not is told with
+    its divergence, which is the leading coefficient of ΔJ.
+
+    Parameters
+    ----------
+    scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
+    system: a Hamiltonian, a system's name, a formula; without one, for every smooth H that the
+        scheme takes (`separable`: every H = T(p) + V(q)), given by the scheme's name.
+    order: the highest power of h in f̃ and H̃, 1 … 10, for every H 1 … 8.
+    parameters: exact values by name; one without a value stays a symbol.
+
+    Raises InputError, one line, for what is none of this.
+
+    >>> modified_hamiltonian("stormer-verlet", "p**2/2 + q**4/4", 2).expression
+    h**2*q**2*(6*p**2 - q**4)/24 + p**2/2 + q**4/4
+    >>> found = modified_hamiltonian("lie2", "duffing", 4)
+    >>> found.reach, found.first_not_hamiltonian.divergence
+    (1, '3*delta*p*q')
+    """
+    found = _scheme(scheme, system)
+    if system is None:
+        whole("order", order, 1, MOST_FOR_EVERY)
+        if not isinstance(found, Scheme) or parameters:
+            name, given = ("parameters", parameters) if parameters else ("scheme", found)
+            raise InputError(name, given, "goes with a system; every H takes a scheme's name")
+        return modified_for_every(found.name, order, separable)
+    whole("order", order, 1, MOST_ORDER)
+    if separable:
+        raise InputError("separable", separable, "goes without a system")
+    exact = hamiltonian_from(system, parameters)
+    claims = found if isinstance(found, Scheme) else None
+    return modified_of(step_map_from(found, exact), claims, order)
+
+
+def _scheme(scheme: GivenScheme, system: GivenSystem | None) -> Scheme | StepMap:
+    """The scheme; InputError that says what to write where a system stands in its place."""
+    if isinstance(scheme, str) and systems.canonical(scheme) in systems.names():
+        meant = isinstance(system, str) and schemes.canonical(system) in schemes.names()
+        other = system if meant else "stormer-verlet"
+        write = f"modified_hamiltonian({other!r}, {scheme!r})"
+        raise InputError("scheme", scheme, f"is a system; write {write}")
+    return scheme_from(scheme)

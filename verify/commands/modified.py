@@ -1,0 +1,129 @@
+"""The command `verify modified`, for one Hamiltonian or for every one."""
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
+from verify.commands.shared.output import cut
+from verify.errors import NOT_GIVEN, InputError
+
+if TYPE_CHECKING:
+    from verify.proof.modified_equation import ModifiedEquation, Term
+
+
+@click.command()
+@hamiltonian_options
+@scheme_option
+@answering
+@click.option(
+    "--order",
+    type=int,
+    default=4,
+    show_default=True,
+    metavar="N",
+    help="The highest power of h in H̃: 1 … 10, for every H 1 … 8.",
+)
+@click.option(
+    "--every-hamiltonian",
+    is_flag=True,
+    help="For every smooth H, its derivatives as free variables, instead of one.",
+)
+@click.option(
+    "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
+)
+def modified(
+    system: str | None,
+    hamiltonian: str | None,
+    params: tuple[str, ...],
+    scheme: str,
+    order: int,
+    every_hamiltonian: bool,
+    separable: bool,
+) -> Answer:
+    """Find the energy that a scheme keeps, H̃ = H + h H_2 + …, by exact algebra.
+
+    The map is the exact flow of a modified field, as a series in h. Where a term is Hamiltonian it
+    is a term of H̃; the first that is not is told, with its divergence.
+
+    \b
+    verify modified --system pendulum --scheme stormer-verlet
+    verify modified --every-hamiltonian --scheme implicit-midpoint --order 2
+    """
+    from verify.calls.modified import modified_hamiltonian
+
+    begun = time.perf_counter()
+    if every_hamiltonian:
+        if system is not None or hamiltonian is not None or params:
+            problem = "goes without --system, --hamiltonian, --param"
+            raise InputError("--every-hamiltonian", NOT_GIVEN, problem)
+        found = modified_hamiltonian(scheme, None, order, separable=separable)
+    else:
+        if separable:
+            raise InputError("--separable", NOT_GIVEN, "goes with --every-hamiltonian")
+        exact = hamiltonian_of(system, hamiltonian, params)
+        found = modified_hamiltonian(scheme, exact, order)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    return Answer(
+        lambda: _json(found, seconds), lambda: _print(found), failed=found.verdict == "REFUTED"
+    )
+
+
+def _json(found: "ModifiedEquation", seconds: str) -> dict[str, Any]:
+    first = found.first_not_hamiltonian
+    return {
+        **picked(found, "verdict", "reason", "hamiltonian", "scheme", "order"),
+        "terms": [_term_json(term) for term in found.terms],
+        "modified_hamiltonian": found.text,
+        "known_to": found.reach,
+        "first_not_hamiltonian": first.power if first else None,
+        "divergence_is_leading_delta_j": found.area,
+        "domain": found.domain.texts,
+        "seconds": seconds,
+    }
+
+
+def _term_json(term: "Term") -> dict[str, Any]:
+    from verify.arithmetic.exact import text
+
+    return {
+        "power": term.power,
+        "field": {"p": term.p, "q": term.q},
+        **picked(term, "hamiltonian", "is_hamiltonian", "divergence"),
+        "witness": {name: text(value) for name, value in term.witness.items()},
+    }
+
+
+def _print(found: "ModifiedEquation") -> None:
+    click.echo(f"{found.verdict}: {found.reason}")
+    click.echo(f"  H        {found.hamiltonian}")
+    click.echo(f"  scheme   {found.scheme}")
+    for term in found.terms:
+        _print_term(term, f"h^{term.power}")
+        if term.is_hamiltonian is False:
+            break
+    first = found.first_not_hamiltonian
+    if first is not None and found.area:
+        power = first.power + 1
+        click.echo(f"  checked  the leading term of ΔJ is h^{power} times that divergence")
+    if found.reach >= 0:
+        further = f" + O(h^{found.reach + 1})" if first is None else f", to h^{found.reach} only"
+        click.echo(f"  H̃        {cut(found.text)}{further}")
+    if found.domain:
+        click.echo(f"  where    {found.domain.prose}")
+
+
+def _print_term(term: "Term", name: str) -> None:
+    from verify.arithmetic.exact import text
+
+    if term.hamiltonian is not None:
+        click.echo(f"  {name:8} {cut(term.hamiltonian)}")
+        return
+    click.echo(f"  {name:8} p' = {cut(term.p)}, q' = {cut(term.q)}")
+    click.echo(f"  {'':8} divergence {cut(term.divergence)}")
+    if term.is_hamiltonian is False:
+        at = ", ".join(f"{n} = {text(v)}" for n, v in term.witness.items())
+        if at:
+            click.echo(f"  witness  {at}: the divergence is {term.enclosure}")

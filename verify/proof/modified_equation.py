@@ -1,0 +1,183 @@
+"""What is known of a scheme's modified equation; see `verify.proof.modified_field`."""
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.notebook import aligned_latex, cut, html_table, short_latex
+from verify.prose import Prose, prose, read_prose
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import H_STEP
+from verify.verdict import Verdict
+
+NOTHING = Prose()
+
+
+@dataclass(frozen=True)
+class Term:
+    """The term of h^`power` in the modified field f̃: (`p`, `q`) of p' and q', as formulas.
+
+    `vanishes`: whether it is the zero field; `is_hamiltonian`: whether its `divergence` is the zero
+    function. Both are None where that is not decided. `witness` is a point where the divergence is
+    not 0, `enclosure` its value there; `domain` says for which parameters there is one.
+    `hamiltonian`: G with p' = −∂G/∂q, q' = ∂G/∂p; None where the term is not Hamiltonian, or where
+    no G is found in closed form. `energy`: that G in its ring, `found` the divergence, of one H.
+    """
+
+    power: int
+    p: str
+    q: str
+    hamiltonian: str | None
+    vanishes: bool | None
+    is_hamiltonian: bool | None
+    divergence: str
+    witness: dict[str, Fraction] = field(default_factory=dict)
+    enclosure: str = ""
+    domain: Domain = EVERYWHERE
+    energy: tuple[Ring, Poly] | None = field(default=None, repr=False, compare=False)
+    found: tuple[Ring, Poly] | None = field(default=None, repr=False, compare=False)
+
+
+@dataclass(frozen=True)
+class ModifiedEquation:
+    """The terms f̃ = f_1 + h f_2 + …, up to h^order, whose exact flow is the scheme's map.
+
+    `hamiltonian`: H as a formula, or for which H it holds. `consistent`: whether the first term is
+    that of H. `area`: whether the first divergence that is not 0 is the leading coefficient of ΔJ,
+    which is made another way; None where one of them is not known. `verdict` is REFUTED where the
+    scheme claims another order, or det J ≡ 1 and a term is not Hamiltonian; `reason` is one line.
+    """
+
+    scheme: str
+    hamiltonian: str
+    order: int
+    terms: tuple[Term, ...]
+    consistent: bool | None
+    area: bool | None
+    where: Domain
+    verdict: Verdict = Verdict.UNDECIDED
+    reason: Prose = NOTHING
+
+    @property
+    def first_not_hamiltonian(self) -> Term | None:
+        """The first term whose divergence is shown not to vanish."""
+        return next((x for x in self.terms if x.is_hamiltonian is False), None)
+
+    @property
+    def known(self) -> tuple[Term, ...]:
+        """The terms that H̃ is made of: those before the first that has no function."""
+        found = []
+        for term in self.terms:
+            if term.is_hamiltonian is not True or term.hamiltonian is None:
+                break
+            found.append(term)
+        return tuple(found)
+
+    @property
+    def reach(self) -> int:
+        """The highest power of h up to which the modified Hamiltonian is known; −1 for none."""
+        return len(self.known) - 1
+
+    @property
+    def text(self) -> str:
+        """H̃ = H + h H_2 + … as a formula, as far as the terms are Hamiltonian."""
+        parts = [(x.power, x.hamiltonian) for x in self.known if x.hamiltonian != "0"]
+        return " + ".join(_times_power(n, str(x)) for n, x in parts) or "0"
+
+    @property
+    def expression(self) -> sympy.Expr:
+        """H̃ as an expression in p, q, h and the parameters; InputError for every H at once."""
+        total = []
+        for term in self.known:
+            if term.energy is None:
+                raise InputError("hamiltonian", self.hamiltonian, "is no single H; see `text`")
+            ring, x = term.energy
+            total.append(H_STEP**term.power * ring.factored(x))
+        return sympy.Add(*total)
+
+    @property
+    def domain(self) -> Domain:
+        """Where it holds: where the map is defined, and what is said not to vanish does not."""
+        first = self.first_not_hamiltonian
+        return self.where & first.domain if first else self.where
+
+    def __repr__(self) -> str:
+        return f"ModifiedEquation({self.verdict}: {cut(str(self.reason))})"
+
+    def _repr_html_(self) -> str:
+        heads = ("power of h", "Hamiltonian", "divergence", "p'", "q'")
+        rows = [
+            (str(x.power), cut(x.hamiltonian or "none"), cut(x.divergence), cut(x.p), cut(x.q))
+            for x in self.terms
+        ]
+        caption = f"Modified equation of {self.scheme}: {self.verdict}"
+        return html_table(caption, heads, rows, str(self.reason))
+
+    def _repr_latex_(self) -> str:
+        """H̃, as far as it is known of one H."""
+        if not all(x.energy for x in self.known):
+            return ""
+        formula = short_latex(sympy.latex(self.expression))
+        return aligned_latex([rf"\tilde H &= {formula} + O(h^{{{self.reach + 1}}})"])
+
+
+def _times_power(n: int, text: str) -> str:
+    if n == 0:
+        return text
+    return f"h*({text})" if n == 1 else f"h**{n}*({text})"
+
+
+# -- the verdict ----------------------------------------------------------------------------------
+
+
+def judged(found: ModifiedEquation, scheme: Scheme | None) -> ModifiedEquation:
+    """The same with its verdict: what is shown, held against what the scheme claims."""
+    verdict, reason = _verdict(found, scheme)
+    return replace(found, verdict=verdict, reason=reason)
+
+
+def _verdict(found: ModifiedEquation, scheme: Scheme | None) -> tuple[Verdict, Prose]:
+    first, order = found.first_not_hamiltonian, found.order
+    if found.area is False:
+        return Verdict.UNDECIDED, prose(
+            "the terms and the leading term of ΔJ contradict each other: an error of ours"
+        )
+    if found.consistent is None:
+        return Verdict.UNDECIDED, prose("whether the first term is that of H is not decided")
+    if not found.consistent:
+        return Verdict.REFUTED, prose("not a scheme for this H: the first term is not that of H")
+    if scheme is not None:
+        missed = next((x for x in found.terms[1 : scheme.order] if not x.vanishes), None)
+        if missed is not None and missed.vanishes is None:
+            said = f"whether the term of `h^{missed.power}` is 0 is not decided"
+            return Verdict.UNDECIDED, read_prose(said)
+        if missed is not None:
+            claims = f"{scheme.name} claims order {scheme.order}; "
+            return Verdict.REFUTED, read_prose(f"{claims}the term of `h^{missed.power}` is not 0")
+        if scheme.area_preserving and first is not None:
+            claims = f"{scheme.name} claims det J ≡ 1; "
+            said = f"the term of `h^{first.power}` has a divergence that is not 0"
+            return Verdict.REFUTED, read_prose(claims + said)
+    undecided = next((x for x in found.terms if x.is_hamiltonian is None), None)
+    if undecided is not None and (first is None or undecided.power < first.power):
+        said = f"whether the term of `h^{undecided.power}` is Hamiltonian is not decided"
+        return Verdict.UNDECIDED, read_prose(said)
+    if first is not None:
+        return Verdict.PROVED, prose(read_prose(_until(first)), _where(first.domain))
+    if found.reach < order:
+        said = f"every term up to `h^{order}` has divergence 0; of `h^{found.reach + 1}` no "
+        return Verdict.PROVED, read_prose(said + "function is found in closed form")
+    return Verdict.PROVED, read_prose(f"every term up to `h^{order}` is Hamiltonian")
+
+
+def _until(first: Term) -> str:
+    said = f"that of `h^{first.power}` is not: its divergence does not vanish"
+    return f"the terms below `h^{first.power}` are Hamiltonian, {said}"
+
+
+def _where(domain: Domain) -> Prose:
+    return prose(", where ", domain.prose) if domain else NOTHING

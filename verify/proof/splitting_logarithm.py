@@ -1,0 +1,135 @@
+"""The modified Hamiltonian of a splitting with any coefficients, by the logarithm of its product.
+
+The step is exp(a_1 h X_1) exp(a_2 h X_2) …, letters X_i the Lie derivatives K and D of V(q) and
+T(p), and its logarithm Σ_w c_w w h^|w| is a Lie series. A homogeneous Lie polynomial of n letters
+is 1/n times its words bracketed from the left (Dynkin, Specht, Wever; Reutenauer, Free Lie
+Algebras, 1993, theorem 1.4), so that log = Σ_w c_w/n [[…[w_1, w_2], …], w_n] (Baker, Campbell,
+Hausdorff). The Lie derivative of G is X_G = G_p ∂_q − G_q ∂_p, and [X_F, X_G] = X_{F, G} with
+{F, G} = F_p G_q − F_q G_p: every bracket of letters is that of a function, and H̃ is the same sum
+of Poisson brackets of V and T. No field and no divergence is needed; each of these terms is
+Hamiltonian by what it is.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
+
+from verify.algebra.generator import terms_of
+from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.jets import Jets, shown
+from verify.algebra.series.jets import Poly as JetPoly
+from verify.proof.modified_equation import Term
+from verify.proof.modified_field import field_of
+from verify.schemes.splitting_conditions import LETTERS, Splitting, coefficient
+
+_KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
+Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
+
+
+def terms_of_splitting(splitting: Splitting, order: int) -> list[Term]:
+    """The terms up to h^order, for every H = T(p) + V(q)."""
+    jets = Jets(order + 2, separable=True)
+    logarithm = Logarithm(splitting)
+    return [_first(logarithm), *(_term(logarithm, jets, n) for n in range(2, order + 2))]
+
+
+class Logarithm:
+    """The coefficients c_w of the logarithm of a splitting's step, in `ring`, each made once."""
+
+    def __init__(self, splitting: Splitting) -> None:
+        self.ring, self.parts = splitting.numbers
+        self._known: dict[str, Poly] = {}
+
+    def of(self, word: str) -> Poly:
+        """c_w: log(1 + x) = Σ_m (−1)^(m+1) x^m/m, over all ways to cut the word into m pieces."""
+        total = self.ring.zero
+        for pieces in _cut(word):
+            share = self.ring.one
+            for piece in pieces:
+                share = self.ring.multiply(share, self._coefficient(piece))
+            m = len(pieces)
+            total += share / m if m % 2 else -share / m
+        return self.ring.reduce(total)
+
+    def _coefficient(self, word: str) -> Poly:
+        """That of the product of exponentials."""
+        if word not in self._known:
+            self._known[word] = coefficient(self.ring, self.parts, word)
+        return self._known[word]
+
+    def energy(self, jets: Jets, n: int) -> Sum:
+        """H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
+        total: Sum = {}
+        for letters in product((_KICK, _DRIFT), repeat=n):
+            number = self.of("".join(letters)) / n
+            if not number.is_zero():
+                _add(self.ring, total, _bracketed(jets, letters), number)
+        return {m: x for m, x in total.items() if self.ring.vanishes(x) is not True}
+
+
+def _first(logarithm: Logarithm) -> Term:
+    ring, kicks, drifts = logarithm.ring, logarithm.of(_KICK), logarithm.of(_DRIFT)
+    p, q = _times(ring, -kicks, "H_q"), _times(ring, drifts, "H_p")
+    energy = f"{_times(ring, drifts, 'T')} + {_times(ring, kicks, 'V')}"
+    whole = all(ring.vanishes(x - ring.one) for x in (kicks, drifts))
+    if whole:
+        return Term(0, "-H_q", "H_p", "H", False, True, "0")
+    return Term(0, p, q, energy, False, True, "0")
+
+
+def _term(logarithm: Logarithm, jets: Jets, n: int) -> Term:
+    ring, total = logarithm.ring, logarithm.energy(jets, n)
+    vector: list[Sum] = [{}, {}]
+    for monomial, number in total.items():
+        for part, x in enumerate(field_of(jets, jets.context.from_dict({monomial: 1}))):
+            _add(ring, vector[part], x, number)
+    p, q, energy = (_text(ring, jets, x) for x in (*vector, total))
+    zero = _vanishes(ring, total.values())
+    return Term(n - 1, p, q, energy, zero, True, "0")
+
+
+def _vanishes(ring: Ring, numbers: Iterable[Poly]) -> bool | None:
+    """Whether all of them are 0; those that are shown to be are left out before."""
+    found = {ring.vanishes(x) for x in numbers}
+    return False if False in found else None if found else True
+
+
+def _cut(word: str) -> Iterator[list[str]]:
+    if not word:
+        yield []
+    for n in range(1, len(word) + 1):
+        for rest in _cut(word[n:]):
+            yield [word[:n], *rest]
+
+
+def _bracketed(jets: Jets, word: Sequence[str]) -> JetPoly:
+    """{{…{w_1, w_2}, …}, w_n}, whose letters stand for V(q) and T(p)."""
+    # Of a function only its derivatives matter; those of the first letter's are given.
+    by_p, by_q = _gradient(jets, word[0])
+    found = jets.zero
+    for letter in word[1:]:
+        other_p, other_q = _gradient(jets, letter)
+        found = by_p * other_q - by_q * other_p
+        by_p, by_q = jets.diff(found, "p"), jets.diff(found, "q")
+    return found
+
+
+def _gradient(jets: Jets, letter: str) -> tuple[JetPoly, JetPoly]:
+    return (jets.zero, jets.h(0, 1)) if letter == _KICK else (jets.h(1, 0), jets.zero)
+
+
+def _add(ring: Ring, total: Sum, x: JetPoly, number: Poly) -> None:
+    for monomial, share in terms_of(x):
+        total[monomial] = ring.reduce(total.get(monomial, ring.zero) + number * share)
+
+
+def _times(ring: Ring, number: Poly, name: str) -> str:
+    text = ring.text(number)
+    return {"1": name, "-1": f"-{name}"}.get(text, f"({text})*{name}")
+
+
+def _text(ring: Ring, jets: Jets, total: Sum) -> str:
+    parts = [
+        _times(ring, number, shown(jets.context.from_dict({monomial: 1})))
+        for monomial, number in total.items()
+    ]
+    return " + ".join(parts) or "0"
