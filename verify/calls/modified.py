@@ -38,7 +38,7 @@ def modified_hamiltonian(
     ----------
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     system: a Hamiltonian, a system's name, a formula; without one, for every smooth H that the
-        scheme takes (`separable`: every H = T(p) + V(q)), given by the scheme's name.
+        scheme takes (`separable`: every H = T(p) + V(q)), or for that of the StepMap.
     order: the highest power of h in f̃ and H̃, 1 … 10, for every H 1 … 8.
     parameters: exact values by name; one without a value stays a symbol.
 
@@ -51,13 +51,13 @@ def modified_hamiltonian(
     (1, '3*delta*p*q')
     """
     found = _scheme(scheme, system)
+    whole("order", order, 1, MOST_FOR_EVERY if system is None else MOST_ORDER)
     if system is None:
-        whole("order", order, 1, MOST_FOR_EVERY)
-        if not isinstance(found, Scheme) or parameters:
-            name, given = ("parameters", parameters) if parameters else ("scheme", found)
-            raise InputError(name, given, "goes with a system; every H takes a scheme's name")
+        if parameters:
+            raise InputError("parameters", parameters, "goes with a system")
+        if isinstance(found, StepMap):
+            return modified_of(found, None, order)
         return modified_for_every(found.name, order, separable)
-    whole("order", order, 1, MOST_ORDER)
     if separable:
         raise InputError("separable", separable, "goes without a system")
     exact = hamiltonian_from(system, parameters)

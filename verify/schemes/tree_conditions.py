@@ -209,6 +209,7 @@ class Differentials(Generic[E]):
         self._known: dict[Tree, tuple[E, E]] = {}
 
     def of(self, tree: Tree) -> tuple[E, E]:
+        """F(t), its parts in p' and in q'."""
         if tree not in self._known:
             inner = [self.of(child) for child in tree]
             self._known[tree] = -self._derived(0, 1, inner), self._derived(1, 0, inner)
