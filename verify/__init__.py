@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from verify import schemes as schemes
     from verify.calls.bench import bench as bench
     from verify.calls.check import check as check
+    from verify.calls.export import export as export
     from verify.calls.flow import flow as flow
     from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
     from verify.calls.prove import prove as prove
@@ -55,6 +56,7 @@ _NAMES = {
     "sweep": ("verify.calls.sweep", "runs over lists of schemes, steps, starts: a table"),
     "prove": ("verify.calls.prove", "the order of ΔJ = det J − 1 and of the map, exactly"),
     "modified_hamiltonian": ("verify.calls.modified", "the energy that a scheme keeps: H̃ in h"),
+    "export": ("verify.calls.export", "a step map, J and ΔJ as C, Python, Julia or LaTeX"),
     "separate": ("verify.calls.separate", "truncation and rounding in Λ of a float64 run"),
     "separate_grid": ("verify.calls.separate", "the same over step sizes, and where they cross"),
     "flow": ("verify.calls.flow", "a region carried by schemes, and its area"),

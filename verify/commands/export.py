@@ -1,0 +1,64 @@
+"""The command `verify export`: a step map, its Jacobian and ΔJ as code."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.input import PATH, scheme_option, with_hamiltonian
+
+if TYPE_CHECKING:
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+
+
+@click.command()
+@with_hamiltonian
+@scheme_option
+@answering
+@click.option(
+    "--language",
+    default="python",
+    show_default=True,
+    metavar="NAME",
+    help="c, python, julia or latex.",
+)
+@click.option(
+    "--name", default="step", show_default=True, metavar="NAME", help="What a step is called."
+)
+@click.option("-o", "--output", type=PATH, metavar="FILE", help="Write it there instead.")
+def export(
+    exact: "Hamiltonian", scheme: str, language: str, name: str, output: Path | None
+) -> Answer:
+    """Write a step map, its Jacobian and ΔJ as C, Python, Julia or LaTeX.
+
+    A parameter without a value becomes an argument. Constants are the doubles nearest to the exact
+    numbers, which comments beside them give.
+
+    \b
+    verify export --system duffing --scheme lie2 --language c
+    verify export --system pendulum --scheme yoshida4 --language latex
+    """
+    from verify.calls.export import program
+    from verify.files import write_atomically
+    from verify.schemes.export import get
+
+    made = program(exact, scheme, language, name=name)
+    text = get(language).written(made)
+    if output is not None:
+        write_atomically(output, text)
+
+    def data() -> dict[str, Any]:
+        return {
+            "language": language.lower(),
+            "scheme": made.scheme,
+            **exact.texts,
+            "arguments": list(made.arguments),
+            "area_preserving": made.area_preserving,
+            "constants": [asdict(c) for c in made.constants],
+            "code": text,
+        }
+
+    shown = str(output) if output is not None else text.removesuffix("\n")
+    return Answer(data, lambda: click.echo(shown))

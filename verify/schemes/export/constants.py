@@ -1,0 +1,124 @@
+"""Numbers of a formula as double literals that are right: each the double nearest to the number.
+
+Integers of up to 53 bits stay as they are. A rational number n/d is divided by Python, which rounds
+correctly; an irrational one is enclosed by ball arithmetic, with more bits until both ends of the
+ball have the same nearest double. `repr` of a double is read back as that double, in any language.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.embedding import embed
+from verify.algebra.enclosure import enclose
+from verify.algebra.formula import to_text
+from verify.arithmetic.arb import bounds
+from verify.arithmetic.exact import decimal
+from verify.errors import LimitError
+
+_LARGEST = 2**53
+_PRECISIONS = (128, 256, 512, 1024)
+_DIGITS = 20  # of an enclosure
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number: its name in the code, what it is exactly, and the nearest double as a literal.
+
+    `enclosure`: decimals below and above an irrational number; empty where it is rational.
+    `exactly`: whether the double is the number.
+    """
+
+    name: str
+    exact: str
+    literal: str
+    enclosure: tuple[str, str] | tuple[()] = ()
+    exactly: bool = False
+
+    @property
+    def comment(self) -> str:
+        """What the literal is, for a comment beside it, in ASCII."""
+        if self.enclosure:
+            return f"{self.exact} in [{', '.join(self.enclosure)}], rounded to nearest"
+        return f"{self.exact}, {'exactly' if self.exactly else 'rounded to nearest'}"
+
+
+class Constants:
+    """Takes the numbers out of expressions, and keeps each once; `named(k)` is the k-th name."""
+
+    def __init__(self, named: Callable[[int], str]) -> None:
+        self._named = named
+        self._found: dict[sympy.Expr, Constant] = {}
+
+    def __iter__(self) -> Iterator[Constant]:
+        return iter(self._found.values())
+
+    def taken_out(self, x: sympy.Expr) -> sympy.Expr:
+        """x with a symbol for each number that is no small integer; exponents stay."""
+        if x.is_number and not x.free_symbols:
+            return x if _is_small(x) else self._symbol(x)
+        if x.is_Pow:
+            return sympy.Pow(self.taken_out(x.base), self._exponent(x.exp), evaluate=False)
+        if not x.args:
+            return x
+        if x.is_Add or x.is_Mul:
+            numbers = [a for a in x.args if a.is_number]
+            rest = [self.taken_out(a) for a in x.args if not a.is_number]
+            number = x.func(*numbers)
+            return x.func(self.taken_out(number), *rest) if numbers else x.func(*rest)
+        return x.func(*map(self.taken_out, x.args))
+
+    def _exponent(self, x: sympy.Expr) -> sympy.Expr:
+        return x if x.is_Rational else self.taken_out(x)
+
+    def _symbol(self, number: sympy.Expr) -> sympy.Symbol:
+        # A sign stands better before the name.
+        if number.could_extract_minus_sign():
+            return -self._symbol(-number)
+        if number not in self._found:
+            self._found[number] = constant(self._named(len(self._found)), number)
+        return sympy.Symbol(self._found[number].name, real=True)
+
+
+def _is_small(x: sympy.Expr) -> bool:
+    return bool(x.is_Integer and abs(int(x)) < _LARGEST)
+
+
+def constant(name: str, number: sympy.Expr) -> Constant:
+    """The number under that name. Raises LimitError where no double is shown to be the nearest."""
+    exact = to_text(number)
+    if number.is_Rational:
+        value = Fraction(int(number.p), int(number.q))
+        literal = _nearest(value, exact)
+        return Constant(name, exact, literal, exactly=Fraction(float(literal)) == value)
+    ring, (x,) = embed([number], ())
+    for precision in _PRECISIONS:
+        ball = enclose(ring, x, {}, precision)
+        if ball is None:
+            continue
+        low, high = bounds(ball)
+        if low and high and _nearest(low, exact) == _nearest(high, exact):
+            return Constant(name, exact, _nearest(low, exact), _outward(low, high))
+    raise LimitError("constant", exact, "is not enclosed closely enough to be rounded to a double")
+
+
+def _nearest(value: Fraction, exact: str) -> str:
+    try:
+        found = value.numerator / value.denominator  # Python rounds the quotient correctly
+    except OverflowError:
+        found = 0.0
+    if value and (not found or abs(found) < 2.0**-1022):
+        raise LimitError("constant", exact, "lies outside of the range of float64")
+    return repr(found)
+
+
+def _outward(low: Fraction, high: Fraction) -> tuple[str, str]:
+    """Decimals of 20 digits that enclose them: each moved outward by one unit of its last digit."""
+    found = []
+    for value, sign in ((low, -1), (high, 1)):
+        middle = Fraction(decimal(value, _DIGITS))
+        unit = abs(middle) / 10 ** (_DIGITS - 1)
+        found.append(decimal(middle + sign * unit, _DIGITS))
+    return found[0], found[1]

@@ -1,0 +1,1 @@
+"""Languages, one a file; see `verify.schemes.export`."""

@@ -1,0 +1,66 @@
+"""C99, which is also C++: three functions and their constants; needs -lm."""
+
+import sympy
+from sympy.printing.c import C99CodePrinter
+
+from verify.schemes.export.program import OUTPUTS, Program
+
+SUFFIX = ".c"
+_WORDS = """
+auto break case char const continue default do double else enum extern float for goto if inline int
+long register restrict return short signed sizeof static struct switch typedef union unsigned void
+volatile while bool true false main out j0 j1 jn y0 y1 yn gamma class namespace new delete this
+template operator public private protected friend virtual try catch throw using
+"""  # of C and C++, and of math.h
+RESERVED = frozenset(_WORDS.split())
+_ENDS = {"step": "out[2]: p', q'", "jacobian": "out[4]: dp'/dp, dp'/dq, dq'/dp, dq'/dq"}
+
+
+class _Printer(C99CodePrinter):  # type: ignore[misc]
+    """With products in place of small powers, which are faster, and doubles throughout."""
+
+    def _print_Pow(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
+        base = self.parenthesize(expr.base, sympy.printing.precedence.PRECEDENCE["Pow"])
+        if expr.exp.is_Integer and expr.base.is_Symbol and 2 <= int(expr.exp) <= 4:
+            return f"({'*'.join([base] * int(expr.exp))})"
+        return str(super()._print_Pow(expr))
+
+    def _print_Integer(self, expr: sympy.Expr) -> str:  # noqa: N802
+        return f"{int(expr)}.0"
+
+
+def written(program: Program) -> str:
+    """The whole file."""
+    lines = [*(f"// {line}" for line in program.head()), "", "#include <math.h>", ""]
+    lines += [
+        f"static const double {c.name} = {c.literal};  // {c.comment}" for c in program.constants
+    ]
+    for key in OUTPUTS:
+        lines += ["", *_function(program, key)]
+    return "\n".join(lines) + "\n"
+
+
+def _function(program: Program, key: str) -> list[str]:
+    own, outputs = program.functions[key], OUTPUTS[key]
+    given = ", ".join(f"double {name}" for name in program.arguments)
+    name = program.name if key == "step" else f"{program.name}_{key}"
+    printer, declared = _Printer(), set(program.arguments)
+    body = []
+    for target, x in own:
+        value = printer.doprint(x)
+        if key != "delta_j" and target in outputs:
+            body.append(f"    out[{outputs.index(target)}] = {value};")
+        elif target in outputs:
+            body.append(f"    return {value};")
+        else:
+            body.append(f"    {'' if target in declared else 'double '}{target} = {value};")
+            declared.add(target)
+    unused = [n for n in program.arguments if not any(_uses(x, n) for _, x in own)]
+    body = [*(f"    (void){n};" for n in unused), *body]
+    if key == "delta_j":
+        return [f"double {name}({given})", "{", *body, "}"]
+    return [f"// {_ENDS[key]}", f"void {name}({given}, double *out)", "{", *body, "}"]
+
+
+def _uses(x: sympy.Expr, name: str) -> bool:
+    return any(s.name == name for s in x.free_symbols)

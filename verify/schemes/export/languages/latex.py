@@ -1,0 +1,44 @@
+"""LaTeX: equations to be set, exact; the constants' decimals stand in comments."""
+
+from collections.abc import Iterator
+
+import sympy
+
+from verify.schemes.export.program import Program
+from verify.schemes.step_map import P, Q
+
+SUFFIX = ".tex"
+RESERVED: frozenset[str] = frozenset()
+
+
+def written(program: Program) -> str:
+    """An `align*` environment, of amsmath: the parts, J and ΔJ."""
+    comments = [f"% {line}" for line in program.head()[:2]]
+    irrational = [c.comment for c in program.constants if c.enclosure]
+    comments += [f"% {comment.removesuffix(', rounded to nearest')}" for comment in irrational]
+    rows = [*_steps(program)]
+    if len(program.parts) == 1:
+        (pair,) = program.parts
+        matrix = sympy.Matrix(2, 2, [sympy.factor_terms(x.diff(y)) for x in pair for y in (P, Q)])
+        rows.append(rf"J &= {sympy.latex(matrix)}")
+    if program.delta_j is not None:
+        rows.append(rf"\Delta J &= {sympy.latex(program.delta_j)}")
+    body = " \\\\\n".join(f"  {row}" for row in rows)
+    return "\n".join([*comments, r"\begin{align*}", body, r"\end{align*}"]) + "\n"
+
+
+def _steps(program: Program) -> Iterator[str]:
+    """p_1, q_1, p_2, … as they change from part to part, the last of each being p' and q'."""
+    names = {P: "p", Q: "q"}
+    changes = {z: sum(pair[n] != z for pair in program.parts) for n, z in enumerate(names)}
+    now, done = {z: z for z in names}, dict.fromkeys(names, 0)
+    for pair in program.parts:
+        after = dict(now)
+        for z, x in zip(names, pair, strict=True):
+            if x == z and changes[z]:
+                continue
+            done[z] += 1
+            mark = "'" if done[z] >= changes[z] else f"_{{{done[z]}}}"
+            yield rf"{names[z]}{mark} &= {sympy.latex(x.xreplace(now))}"
+            after[z] = sympy.Symbol(f"{names[z]}{mark}", real=True)
+        now = after
