@@ -20,7 +20,9 @@ class Printable(io.TextIOBase):
         self._encoding = getattr(stream, "encoding", None) or "utf-8"
 
     def write(self, given: str | bytes) -> int:
-        # click writes what it tells a shell, to complete a line, as bytes.
+        if isinstance(given, bytes) and not given:  # how click asks whether this takes bytes
+            raise TypeError("a stream of texts")
+        # Yet what it tells a shell, to complete a line, are bytes.
         text = given if isinstance(given, str) else bytes(given).decode()
         shown = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
         raw = shown.encode(self._encoding, "backslashreplace")
