@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from verify.pages.plotting import plot_runs as plot_runs
     from verify.pages.plotting import plot_separation as plot_separation
     from verify.pages.plotting import plot_work_precision as plot_work_precision
+    from verify.pages.plotting_energy import plot_energy_drift as plot_energy_drift
     from verify.pages.plotting_orbits import plot_orbit as plot_orbit
     from verify.proof.modified_equation import ModifiedEquation as ModifiedEquation
     from verify.proof.order_proof import Proof as Proof
@@ -64,6 +65,7 @@ _NAMES = {
     "bench": ("verify.calls.bench", "error against run time"),
     "check": ("verify.calls.check", "a step function of one's own: proved, else measured"),
     "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
+    "plot_energy_drift": ("verify.pages.plotting_energy", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),
     "plot_over_time": ("verify.pages.plotting", "det J, ΔJ and Λ over t, as bands"),
     "plot_separation": ("verify.pages.plotting", "truncation and rounding against the step size"),
@@ -106,9 +108,16 @@ def _solution_errors(*given: Any) -> Any:
     return solution_errors(*given)
 
 
+def _energy_drifts(*given: Any) -> Any:
+    from verify.runs.energy_drift import energy_drifts
+
+    return energy_drifts(*given)
+
+
 register()  # what hypothesis draws, whichever of the two is imported first
 computed_by("orbit", _orbit)
 computed_by("solution_errors", _solution_errors)
+computed_by("energy_drifts", _energy_drifts)
 
 
 def __getattr__(name: str) -> Any:

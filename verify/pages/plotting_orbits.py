@@ -43,7 +43,7 @@ def plot_orbit(
     given = [runs] if isinstance(runs, RunResult) else list(runs)
     if not given or not all(isinstance(run, RunResult) for run in given):
         raise InputError("runs", runs, "is no RunResult, and no list of them")
-    lines = [(_label(run, given), *_points(run, quantity)) for run in given]
+    lines = [(label_of(run, given), *_points(run, quantity)) for run in given]
     return shown(lambda: _draw(lines, quantity, ax), ax)
 
 
@@ -58,7 +58,7 @@ def _points(run: RunResult, quantity: str) -> tuple[Any, Any]:
     return orbit.t, getattr(orbit, "lambda_" if quantity == "lambda" else quantity)
 
 
-def _label(run: RunResult, among: Sequence[RunResult]) -> str:
+def label_of(run: RunResult, among: Sequence[RunResult]) -> str:
     """By what the runs differ: scheme, h, the start."""
     parts = {
         "": run.scheme if len(run.scheme) <= _LABEL else cut(run.scheme)[:_LABEL] + "…",

@@ -10,6 +10,7 @@ from verify.lateral import compute
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
 from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.energy_drift import EnergyDrift
 from verify.scenes.results.orbit import MOST_POINTS, OrbitTable
 
 _SHOWN = {
@@ -84,6 +85,14 @@ class RunResult(OfScheme):
         See `verify.runs.solution_error`. Raises InputError where no exact solution is found.
         """
         found: tuple[tuple[Fraction, Value], ...] = compute("solution_errors", self, points)
+        return found
+
+    def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
+        """H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
+
+        See `verify.runs.energy_drift`. Raises InputError where the scheme has no H̃ but H.
+        """
+        found: list[EnergyDrift] = compute("energy_drifts", self, order, points)
         return found
 
     def __repr__(self) -> str:
