@@ -67,7 +67,7 @@ _NAMES = {
     "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
     "plot_energy_drift": ("verify.pages.plotting_energy", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),
-    "plot_over_time": ("verify.pages.plotting", "det J, ΔJ and Λ over t, as bands"),
+    "plot_over_time": ("verify.pages.plotting", "ΔJ and Λ over t, as bands"),
     "plot_separation": ("verify.pages.plotting", "truncation and rounding against the step size"),
     "plot_flow": ("verify.pages.plotting", "a region and its images"),
     "plot_work_precision": ("verify.pages.plotting", "error against run time, and step size"),

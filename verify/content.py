@@ -18,6 +18,12 @@ def content(*names: str) -> Path:
     return Path(_root(_package()), *names)
 
 
+def checkout() -> Path | None:
+    """The folder of the checkout that the package lies in; None where it is installed."""
+    root = _root(_package())
+    return root if root == _package().parent else None
+
+
 def shipped_files(package: Path | None = None) -> dict[str, Path]:
     """Every file of the package and of the content, of whatever kind, by its name.
 

@@ -112,8 +112,8 @@ NAMES = tuple(_MADE)
 
 
 @cache
-def page_of(name: str) -> str:
-    return render(_MADE[name]())
+def page_of(name: str, *, full: bool = False) -> str:
+    return render(_MADE[name](), full=full)
 
 
 def planted(name: str, text: str, *, policy: bool = True) -> str:

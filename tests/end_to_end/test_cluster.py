@@ -22,7 +22,7 @@ from verify.execution import executors
 from verify.execution.cluster import connected
 from verify.execution.execute import execute
 from verify.execution.executors import THIS_PROCESS, FunctionCall, Placement, open_place, results_of
-from verify.execution.keeping import machine
+from verify.execution.machine import machine
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.studies.plan import plan_scenes
 from verify.studies.work_precision.task import WorkPrecisionTask

@@ -10,12 +10,12 @@ from verify.claims.judging import all_judged
 from verify.claims.plan import add_claims
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
-from verify.execution.keeping import machine, versions
 from verify.execution.plan import Plan
+from verify.execution.provenance import provenance
 from verify.hamiltonians import systems
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.exploration import Gallery
-from verify.scenes.results.report import Provenance, Report, SceneResult
+from verify.scenes.results.report import Report, SceneResult
 from verify.scenes.results.statement import statements_of
 from verify.scenes.scene import Scene
 from verify.studies.plan import found_of, plan_scenes
@@ -61,7 +61,9 @@ def make_report(
         figures=tuple(figures),
         preface=tuple(preface),
         left_out=(*not_claimed, *plan.left_out),
-        provenance=_provenance(command, begun, kept, computed, where),
+        provenance=provenance(
+            command, begun, kept=kept, computed=computed, where=_where(where, computed)
+        ),
     )
 
 
@@ -69,28 +71,22 @@ def gallery_report(
     gallery: Gallery, command: str, begun: float, kept: int, islands: int, where: Placement
 ) -> Report:
     """The report of a hunt of so many tasks, which has a gallery and nothing else."""
-    computed = islands + len(gallery.scenes) + sum(1 for each in gallery.scenes if each.longer)
+    longer = sum(1 for each in gallery.scenes if each.longer)
+    computed = islands + len(gallery.scenes) + longer - kept
     return Report(
         title=f"The worst scenes: {gallery.sentence}",
         claims=(),
         scenes=(),
         gallery=gallery,
         left_out=(),
-        provenance=_provenance(command, begun, kept, computed - kept, where),
+        provenance=provenance(
+            command, begun, kept=kept, computed=computed, where=_where(where, computed)
+        ),
     )
 
 
-def _provenance(
-    command: str, begun: float, kept: int, computed: int, where: Placement
-) -> Provenance:
-    return Provenance(
-        command=command,
-        versions=versions(),
-        machine=f"{machine()}, and a cluster" if where.cluster and computed else machine(),
-        seconds=time.perf_counter() - begun,
-        kept=kept,
-        computed=computed,
-    )
+def _where(where: Placement, computed: int) -> str:
+    return ", and a cluster" if where.cluster and computed else ""
 
 
 def _scene_result(scene: Scene, findings: Findings) -> SceneResult:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 _INTEGRATORS = "integrators"
+_PAGE = "html"
 
 
 @click.command()
@@ -48,6 +49,9 @@ _INTEGRATORS = "integrators"
     help="html, DIR/index.html, or md, DIR/report.md with DIR/figures, for a "
     "repository; repeatable.",
 )
+@click.option(
+    "--full", is_flag=True, help="Unfold all that the page folds, on paper too: many pages."
+)
 @click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
 @with_placement
 @answering
@@ -55,6 +59,7 @@ def report(
     scene: str | None,
     output: Path | None,
     formats: tuple[str, ...],
+    full: bool,
     force: bool,
     where: "Placement",
     **given: Any,
@@ -75,11 +80,15 @@ def report(
     coefficient tables of splitting methods as they are printed. It runs their code.
     """
     more = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
+    if full:
+        if _PAGE not in formats:
+            raise InputError("--full", ", ".join(formats), "is of --format html, which folds")
+        more += " --full"
     if scene == _INTEGRATORS:
         folder, made = _integrators(scene, output, more, where, force)
     else:
         folder, made = _scene(_asked(scene, given), output, more, where, force)
-    written = [_writer(name)(made, folder) for name in dict.fromkeys(formats)]
+    written = [_writer(name, full)(made, folder) for name in dict.fromkeys(formats)]
     return Answer(lambda: made.model_dump(mode="json"), lambda: show.print_report(made, *written))
 
 
@@ -177,10 +186,12 @@ def _tell(name: str) -> None:
         click.echo(f"{name} …", err=True)
 
 
-def _writer(name: str) -> "Callable[[Report, Path], Path]":
+def _writer(name: str, full: bool) -> "Callable[[Report, Path], Path]":
     """What writes a report in that format; only what is asked for is imported."""
-    if name == "md":
-        from verify.pages.markdown.page import write
-    else:
-        from verify.pages.page import write
+    if name == _PAGE:
+        from verify.pages.page import write as write_page
+
+        return lambda made, folder: write_page(made, folder, full=full)
+    from verify.pages.markdown.page import write
+
     return write

@@ -3,9 +3,6 @@
 import contextlib
 import hashlib
 import json
-import os
-import platform
-import sys
 import time
 from collections.abc import Mapping
 from fractions import Fraction
@@ -16,23 +13,12 @@ from typing import Any
 
 from verify.content import shipped_files
 from verify.errors import InputError
+from verify.execution.machine import versions
 from verify.files import read_text, write_atomically
 
-_VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
 _DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
 KEPT, CHECKPOINT = "areaproof kept result 2", "areaproof checkpoint 2"  # formats
 _SECONDS = 5.0  # between two checkpoints of a run
-
-
-def versions() -> dict[str, str]:
-    """The versions that a result depends on."""
-    python = ".".join(map(str, sys.version_info[:3]))
-    return {"Python": python} | {name: version(name) for name in _VERSIONED}
-
-
-def machine() -> str:
-    """What this process runs on, as a report tells it."""
-    return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
 
 
 @cache

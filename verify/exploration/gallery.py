@@ -8,8 +8,9 @@ from verify.arithmetic.exact import decimal, text
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
+from verify.exploration.different_scenes import scene_of
 from verify.exploration.hunting import Hunt
-from verify.exploration.island_search import COEFFICIENTS, REACH, STEP_SIZES, scene_of
+from verify.exploration.island_search import COEFFICIENTS, REACH, STEP_SIZES
 from verify.exploration.measures import MEASURES, orbit
 from verify.exploration.sample import Sample
 from verify.scenes.results.exploration import Gallery, GalleryScene, HuntResult, Worst

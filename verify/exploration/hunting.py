@@ -11,10 +11,10 @@ from verify.errors import InputError, unknown
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
+from verify.exploration.different_scenes import by_shape, different
 from verify.exploration.island_search import (
     KEPT,
     MOST_EXAMPLES,
-    by_shape,
     by_value,
     hunted_scenes,
 )
@@ -72,7 +72,7 @@ class Hunt:
 def hunt(
     asked: Hunt, store: Store, *, where: Placement = ANYWHERE, done: OnResult | None = None
 ) -> HuntResult:
-    """The worst scenes found on all islands, six at most, each of another shape of H.
+    """The worst scenes found on all islands, six at most, each different from the others.
 
     Their values are decimal logarithms (see `verify.exploration.measures`), confirmed with twice
     the digits. What the store has of the islands is not searched again.
@@ -82,4 +82,4 @@ def hunt(
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
     together = sorted((each for island in islands for each in island.worst), key=by_value)
     examples = sum(island.examples for island in islands)
-    return HuntResult(worst=tuple(by_shape(together)[:KEPT]), examples=examples)
+    return HuntResult(worst=tuple(different(by_shape(together))[:KEPT]), examples=examples)

@@ -3,25 +3,23 @@
 What is kept was measured twice, the second time with twice the digits.
 """
 
-import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from fractions import Fraction
-from tomllib import loads
 
-import sympy
 from hypothesis import HealthCheck, Phase, given, settings, target
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
 from verify import strategies
+from verify.exploration.different_scenes import by_shape, scene_of, shape_of
 from verify.exploration.measures import DIGITS, MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import HuntResult, Worst
-from verify.scenes.scene import Scene, scene_from
+from verify.scenes.scene import Scene
 from verify.scenes.toml_text import scene_text
 from verify.scenes.values import InitialValue
 from verify.strategies.schemes import separable_for
@@ -34,7 +32,6 @@ MOST_EXAMPLES = 10**7  # of a hunt, so that no two islands of two seeds draw the
 KEPT = 6
 _DIRECTED = Fraction(3, 5)  # of the scenes, by hypothesis; the others are neighbours of the worst
 _TENTHS = 20
-_NUMBERS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")  # but exponents
 _AGREEMENT = 0.01  # of lg of a measure, with twice the digits
 
 
@@ -79,31 +76,11 @@ def by_value(each: Worst) -> tuple[float, int, str]:
     return -each.value, len(each.scene), each.scene
 
 
-def by_shape(found: Iterable[Worst]) -> list[Worst]:
-    """The first of each shape of H, in the order given."""
-    kept: dict[str, Worst] = {}
-    for each in found:
-        kept.setdefault(_shape(each), each)
-    return list(kept.values())
-
-
-def _shape(each: Worst) -> str:
-    """H's terms without their coefficients, and without the other numbers but exponents."""
-    terms = sympy.Add.make_args(scene_of(each).exact_hamiltonian().exact)
-    primitive = (term.as_content_primitive()[1].as_coeff_Mul()[1] for term in terms)
-    return " + ".join(sorted({_NUMBERS.sub("n", str(term)) for term in primitive}))
-
-
-def scene_of(worst: Worst) -> Scene:
-    """The scene that its text is of."""
-    return scene_from(loads(worst.scene, parse_float=str), "scene")
-
-
 def _confirmed(look: MeasuredScenes) -> Iterator[Worst]:
     """The worst of each shape that measures the same with twice the digits."""
     found: set[str] = set()
     for each in look.worst():
-        shape = _shape(each)
+        shape = shape_of(each)
         if len(found) == KEPT:
             return
         if shape in found:

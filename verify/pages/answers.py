@@ -82,8 +82,9 @@ def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
             parts.append(prose(f"not decided{of}"))
         else:
             power = proof.order
+            leading = proof.shown.leading or proof.leading
             parts.append(
-                prose("ΔJ = ", Formula(f"({proof.leading})*h**{power}"), " + O(",
+                prose("ΔJ = ", Formula(f"({leading})*h**{power}"), " + O(",
                       Formula(f"h**{power + 1}"), f"){of}")
             )  # fmt: skip
     no = "no; " if any(proof.order is not None for _, proof in found) else ""

@@ -16,23 +16,26 @@ from verify.scenes.results.report import Report
 PAGE, DATA = "index.html", "results.json"
 
 
-def write(report: Report, folder: Path) -> Path:
+def write(report: Report, folder: Path, *, full: bool = False) -> Path:
     """Write `index.html` and `results.json` into the folder; the path of the page."""
     page = folder / PAGE
-    content = render(report)
+    content = render(report, full=full)
     write_atomically(folder / DATA, report.model_dump_json(indent=1))
     write_atomically(page, content)
     return page
 
 
-def render(report: Report) -> str:
-    """The whole page as text."""
+def render(report: Report, *, full: bool = False) -> str:
+    """The whole page as text; `full`: with all that it folds open, on paper too."""
     script = (TEMPLATES / "page.js").read_text(encoding="utf-8")
-    return (
-        _environment()
-        .get_template("page.html")
-        .render(page=page_view(report), script=Markup(script), digest=_digest(script))  # noqa: S704
+    template = _environment().get_template("page.html")
+    page = template.render(
+        page=page_view(report),
+        full=full,
+        script=Markup(script),  # noqa: S704 - our own
+        digest=_digest(script),
     )
+    return page.replace("<details", "<details open") if full else page
 
 
 def _digest(script: str) -> str:

@@ -21,6 +21,7 @@ from verify.pages.figures import (
     figures,
     flow_figure,
     growth_figure,
+    over_time_figure,
     stability_figure,
 )
 from verify.pages.figures import work_precision_figure as work_figure
@@ -76,9 +77,8 @@ def plot_runs(
     ]
     if not lines:
         raise InputError("runs", len(runs), f"hold no {quantity} to draw at two step sizes or more")
-    return shown(
-        lambda: figures.draw_against_step_size(lines, QUANTITIES[quantity], slopes, ax), ax
-    )
+    drawn = figures.Quantity(QUANTITIES[quantity], lines, slopes)
+    return shown(lambda: figures.draw_against_step_size([drawn], ax), ax)
 
 
 def _energy_error(run: RunResult) -> float:
@@ -94,10 +94,11 @@ _PLACES = {"energy_error": _energy_error, "solution_error": _solution_error}
 
 
 def plot_over_time(run: RunResult) -> Figure:
-    """det J, ΔJ and Λ over t of a run that holds a series, as bands between their extremes."""
+    """ΔJ = det J − 1 and Λ over t of a run that holds a series, as bands between their extremes."""
     if not run.series:
         raise InputError("run", run.scheme, "holds no series; run(…, points=400) keeps one")
-    return shown(lambda: figures.draw_over_time(run))
+    both = over_time_figure.Along("", ((run, "delta_j"), (run, "lam")))
+    return shown(lambda: over_time_figure.draw_over_time([both]))
 
 
 def plot_separation(grid: SeparationGrid, *, ax: Any = None) -> Figure:
@@ -130,14 +131,14 @@ def plot_table(claim: ClaimResult) -> Figure:
 def plot_work_precision(found: WorkPrecisionResult) -> Figure:
     """Solution error at T against run time in seconds, and against the step size."""
     panels = error_panels(found)
-    if not panels[0].lines:
+    if not panels:
         raise InputError("found", len(found.lines), "hold no run with an error and a run time")
     return shown(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))
 
 
 def plot_stability(over: StabilityMapResult) -> Figure:
     """Verdicts in the plane of step size and stiffness."""
-    return shown(lambda: stability_figure.draw_plane(over))
+    return shown(lambda: stability_figure.draw_planes([over]))
 
 
 def plot_flow(flow: FlowResult) -> Figure:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from verify.errors import InputError, unknown
 from verify.notebook import cut
-from verify.pages.figures.axes import grid_lines, line_style, offset_ticks, time_axis
+from verify.pages.figures.axes import grid_lines, line_style, scaled_ticks, time_axis
 from verify.pages.figures.notebook_figure import canvas_on, legend
 from verify.pages.plotting import shown
 from verify.scenes.results.run import RunResult
@@ -84,7 +84,7 @@ def _draw(lines: Sequence[tuple[str, Any, Any]], quantity: str, ax: Any) -> Figu
         if quantity == "solution_error":
             axes.set_yscale("log")
         else:
-            offset_ticks(axes.yaxis, *axes.get_ylim())
+            scaled_ticks(axes.yaxis, *axes.get_ylim())
     grid_lines(axes, "both" if quantity == PHASE else "y")
     axes.set_ylabel(QUANTITIES[quantity])
     legend(figure if ax is None else None, axes, ncols=2)

@@ -15,8 +15,8 @@ from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
 from verify.exploration import hunting, island_search
+from verify.exploration.different_scenes import by_shape, different, scene_of
 from verify.exploration.hunting import Hunt, hunt
-from verify.exploration.island_search import by_shape, scene_of
 from verify.exploration.measures import MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
 from verify.exploration.sample import Sample
@@ -163,6 +163,21 @@ def test_one_of_each_shape_is_kept() -> None:
     found = by_shape([Worst(value=0.0, scene=_text(f)) for f in formulas])
     kept = [each.scene.split('"')[1] for each in found]
     assert kept == [formulas[i] for i in (0, 2, 3, 4, 6, 8)]
+
+
+def test_a_scene_that_is_another_one_again_is_not_kept() -> None:
+    worst = _text("p**2/2 + q**2/2")
+    again = _text("p**2/2 + q**2/2 + p*q").replace('q = "0.1"', 'q = "0.3"')
+    found = [
+        (5.80, worst, True),
+        (5.79, again, False),  # more terms, about as bad
+        (5.75, _text("p**4 + cos(q)"), False),  # another H from the same start
+        (5.75, _text("p**4 + cos(q)").replace('q = "0.1"', 'q = "0.2"'), True),
+        (5.74, worst.replace("lie2", "euler"), True),  # another scheme
+        (5.1, again, True),  # less bad
+    ]
+    kept = different([Worst(value=value, scene=scene) for value, scene, _ in found])
+    assert [each.scene for each in kept] == [scene for _, scene, stays in found if stays]
 
 
 def test_islands_look_at_other_scenes(plant: Plant) -> None:

@@ -267,7 +267,7 @@ def test_what_a_report_lacks_is_not_shown() -> None:
     ids = Reader(page).all("id")
     assert not {"claims", "left-out", "telling", "kinds"} & set(ids)
     assert not re.search(r"<svg|<table|Parameters:|T =", page)
-    assert page.count("<details") == 1, "the contents"
+    assert page.count("<details") == 2, "the contents and the terms"
 
 
 def test_a_proof_is_shown_without_matplotlib() -> None:
@@ -283,7 +283,7 @@ def test_the_page_of_a_real_scene_says_what_was_found() -> None:
     assert "The most telling refutation: Table 9" in text
     assert "h = 0.03 gives N = 6" in text  # 0.2/0.03 is not whole
     assert "Computed in float64 with N = 6 … 20 steps" in text
-    assert "For Figure 3: h = 0.01 from q₀ = 1, p₀ = 0" in text
+    assert "over time, h = 0.01 from q₀ = 1, p₀ = 0 (for Figure 3)" in text
     runs = real().scenes[0].runs
     for value in (v for r in runs for name, v in r.values.items() if name not in "pq"):
         shown = number(value.value).replace("\xa0", " ")

@@ -8,7 +8,7 @@ from types import ModuleType
 from sympy import S
 
 from verify.algebra.conditions import Condition
-from verify.execution.keeping import machine, versions
+from verify.execution.provenance import provenance
 from verify.integrators.others import libraries as others
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import ReleasedIntegrator
@@ -16,7 +16,7 @@ from verify.integrators.others.measured import FAILURES
 from verify.integrators.step import last_line, quiet
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.results.report import Provenance, Report
+from verify.scenes.results.report import Report
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
@@ -51,20 +51,14 @@ def make_integrators_report(command: str, on_library: _OnLibrary | None = None) 
         claims += own
         broken += [module.TITLE] if failed else []
         left_out += [*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT)]
+    told = provenance(command, begun, kept=0, computed=len(claims))
     return Report(
         title=TITLE,
         claims=tuple(claims),
         scenes=(),
         left_out=tuple(left_out),
         preface=tuple(_preface(found, missing, broken, claims)),
-        provenance=Provenance(
-            command=command,
-            versions=versions() | found,
-            machine=machine(),
-            seconds=time.perf_counter() - begun,
-            kept=0,
-            computed=len(claims),
-        ),
+        provenance=told.model_copy(update={"versions": told.versions | found}),
     )
 
 

@@ -1,4 +1,4 @@
-"""Axes that several figures share: logarithmic by decades, step sizes, offsets from one."""
+"""Axes that several figures share: logarithmic by decades, step sizes, one exponent for all."""
 
 from collections.abc import Sequence
 from math import floor, isfinite, log10
@@ -93,14 +93,14 @@ def step_sizes(axes: Any, sizes: Sequence[str]) -> None:
     axes.set_xlabel(f"step size h{scale} (logarithmic)")
 
 
-def time_axis(axes: Any) -> None:
-    axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+def time_axis(axes: Any, most: int = 5) -> None:
+    axes.xaxis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,g}".replace("-", "−")))
     axes.set_xlabel("time t")
 
 
-def offset_ticks(axis: Any, low: float, high: float, *, around_one: bool = False) -> None:
-    """Few ticks, as x·10ⁿ with one exponent, or as 1 ± x·10ⁿ."""
+def scaled_ticks(axis: Any, low: float, high: float) -> None:
+    """Few ticks, as x·10ⁿ with one exponent."""
     axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     size = max(abs(low), abs(high))
     power = floor(log10(size)) if size > 0 and isfinite(size) else 0
@@ -110,13 +110,11 @@ def offset_ticks(axis: Any, low: float, high: float, *, around_one: bool = False
     def shown(x: float, _: object) -> str:
         mantissa = round(x / 10.0**power, 6)
         if mantissa == 0:
-            return "1" if around_one else "0"
+            return "0"
         digits = f"{abs(mantissa):g}"
         if power:
             scale = f"10{superscript(power)}"
             digits = scale if abs(mantissa) == 1 else f"{digits}·{scale}"
-        if around_one:
-            return f"1 {'−' if mantissa < 0 else '+'} {digits}"
         return f"{'−' if mantissa < 0 else ''}{digits}"
 
     axis.set_major_formatter(FuncFormatter(shown))

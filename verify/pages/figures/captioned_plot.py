@@ -1,5 +1,6 @@
 """A picture with its caption, and what captions say in the same words."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -14,20 +15,26 @@ from verify.scenes.results.run import RunResult
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_WIDTH = re.compile(r'viewBox="0 0 ([0-9.]+) ')
+_HALF, _MOST = 420, 640  # points
 _MOST_SHOWN = 4  # significant digits of a number in a caption
 
 
 @dataclass(frozen=True)
 class Plot:
-    """An inline SVG with its caption; `lead` is also the image's text alternative.
-
-    One that is `wide` spans the text column.
-    """
+    """An inline SVG with its caption; `alternative` is what stands for the image in words."""
 
     svg: Markup
     lead: str
     caption: str
-    wide: bool = False
+    alternative: str
+
+    @property
+    def span(self) -> str:
+        """How much of the page it takes, by its own width in points: half, most, full."""
+        width = _WIDTH.search(self.svg)
+        points = float(width[1]) if width else 0
+        return "half" if points <= _HALF else "most" if points <= _MOST else "full"
 
 
 def plotted(
@@ -37,16 +44,17 @@ def plotted(
     lead: str,
     caption: str,
     label: str = "",
-    wide: bool = False,
 ) -> Plot:
-    """What `draw` draws, under the lead as a sentence; `label`: its text alternative if another.
+    """What `draw` draws, under the lead as a sentence, which is its text alternative too.
+
+    `label`: another text alternative.
 
     `name` prefixes every id in the SVG, so it must be unique on the page.
     """
     from verify.pages.figures.svg import drawing
 
-    svg = drawing(draw, name=name, label=label or f"{lead}.")
-    return Plot(svg, f"{lead}.", caption, wide)
+    alternative = label or f"{lead}."
+    return Plot(drawing(draw, name=name, label=alternative), f"{lead}.", caption, alternative)
 
 
 def computed(runs: Sequence[RunResult]) -> str:

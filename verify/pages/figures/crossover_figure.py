@@ -14,7 +14,7 @@ from verify.pages.figures.separation_caption import short, ways_of
 from verify.pages.text.typography import NBSP
 from verify.scenes.results.separation import WAYS, SeparationGrid
 
-_HEIGHT = 350
+_HEIGHT = 255
 _ROOM = 0.45  # of the axes: what a mark's label takes
 
 

@@ -1,4 +1,4 @@
-"""The figures: what a scene's runs, series and printed tables show, as inline SVG.
+"""What runs show against their step sizes, and printed tables beside them, as inline SVG.
 
 Logarithms are taken in decimals before anything is drawn, so that 1e-500 has its place too; what is
 not known (no digit of it) or is zero has no place on a logarithmic axis and is left out.
@@ -10,7 +10,6 @@ from fractions import Fraction
 from math import isfinite
 from typing import Any
 
-from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import (
@@ -18,19 +17,17 @@ from verify.pages.figures.axes import (
     decades,
     grid_lines,
     line_style,
-    offset_ticks,
     step_sizes,
-    time_axis,
     whole_numbers,
 )
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import canvas, canvas_on, legend, sheet
-from verify.pages.figures.svg import INK, SERIES
+from verify.pages.figures.notebook_figure import NARROW, WIDE, canvas, legend, sheet
+from verify.pages.figures.svg import INK
 from verify.pages.text.typography import power_of_h, start
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.run import RunResult, SeriesPoint
+from verify.scenes.results.run import RunResult
 
-_MOST_BUCKETS = 600
+_PANEL = 230  # points high, with the legend
 _LABEL_WIDTH, _LABEL_HEIGHT = 0.1, 0.08  # of the axes: the room for a guide's label
 _GUIDE_GAP = 0.35  # decades between a slope guide and the line that it is nearest to
 
@@ -73,20 +70,34 @@ def _lg(found: Value | None) -> float:
 # -- against the step size ------------------------------------------------------------------------
 
 
-def draw_against_step_size(
-    plotted: Sequence[Line], quantity: str, guides: Sequence[int], ax: Any = None
-) -> Figure:
-    """The lines on logarithmic axes, with a grey guide for each slope in `guides`.
+@dataclass(frozen=True)
+class Quantity:
+    """What is drawn over h: its lines, and a grey guide for each power of h in `guides`."""
 
-    `ax`: axes of the caller's, with the legend inside; a figure of its own without them.
+    title: str
+    lines: Sequence[Line]
+    guides: Sequence[int] = ()
+
+
+def draw_against_step_size(shown: Sequence[Quantity], ax: Any = None) -> Figure:
+    """A panel for each quantity on logarithmic axes, beside one another, with one legend.
+
+    `ax`: axes of the caller's for a single quantity, with the legend inside; a figure of its own
+    without them.
     """
-    figure, axes = canvas_on(ax, 330 if len(plotted) <= MOST_STYLES else 280)
-    for index, line in enumerate(plotted):
-        plot_line(axes, line, line_style(index, len(plotted)))
-    _guides(axes, plotted, guides)
-    _finish(figure if ax is None else None, axes, plotted)
-    decades(axes.yaxis)
-    axes.set_title(quantity)
+    labels = list(dict.fromkeys(line.label for each in shown for line in each.lines))
+    figure = ax.figure if ax else sheet(_PANEL, WIDE if len(shown) > 1 else NARROW)
+    panels = [ax] if ax else figure.subplots(1, len(shown), squeeze=False)[0]
+    for axes, each in zip(panels, shown, strict=True):
+        for line in each.lines:
+            plot_line(axes, line, line_style(labels.index(line.label), len(labels)))
+        _guides(axes, each.lines, each.guides)
+        _frame(axes, each.lines)
+        decades(axes.yaxis)
+        axes.set_title(each.title)
+    if len(labels) <= MOST_STYLES + 1:
+        fullest = max(panels, key=lambda axes: len(axes.get_legend_handles_labels()[1]))
+        legend(None if ax else figure, fullest, ncols=2 if len(shown) == 1 else 5)
     return figure
 
 
@@ -96,7 +107,8 @@ def draw_printed_against_computed(computed: Sequence[Line], printed: Line) -> Fi
     plot_line(axes, printed, {"color": INK, "linewidth": 3})
     for index, line in enumerate(computed):
         plot_line(axes, line, line_style(index, len(computed)))
-    _finish(figure, axes, [printed, *computed])
+    _frame(axes, [printed, *computed])
+    legend(figure, axes, ncols=2)
     whole_numbers(axes.yaxis)
     axes.set_title("lg MSE")
     return figure
@@ -107,12 +119,10 @@ def plot_line(axes: Any, line: Line, style: dict[str, Any]) -> None:
     axes.plot(x, y, label=line.label, **style)
 
 
-def _finish(figure: Figure | None, axes: Any, plotted: Sequence[Line]) -> None:
+def _frame(axes: Any, plotted: Sequence[Line]) -> None:
     step_sizes(axes, [h for line in plotted for h, _ in line.points])
     grid_lines(axes)
     axes.margins(y=0.08)
-    if len(plotted) <= MOST_STYLES + 1:
-        legend(figure, axes, ncols=2)
 
 
 def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
@@ -141,70 +151,3 @@ def _guides(axes: Any, plotted: Sequence[Line], slopes: Sequence[int]) -> None:
             ha="left" if left else "right", fontsize=11,
         )  # fmt: skip
         lowest = base + room
-
-
-# -- over time ------------------------------------------------------------------------------------
-
-
-def draw_over_time(run: RunResult) -> Figure:
-    """det J, ΔJ and Λ over t, each as the band between its least and greatest in a bucket."""
-    points = merged(run.series)
-    h = float(Fraction(run.step_size))
-    edges = [(points[0].first - 1) * h, *(point.last * h for point in points)]
-    delta_j = [_band(p.delta_j) for p in points]
-    lam = [_band(p.lam) for p in points]
-    panels = [("det J", delta_j, True), ("ΔJ", delta_j, False), ("Λ", lam, False)]
-    figure = sheet(400)
-    all_axes = figure.subplots(len(panels), 1, sharex=True)
-    for index, (axes, (title, band, around_one)) in enumerate(zip(all_axes, panels, strict=True)):
-        _panel(axes, edges, band, SERIES[2 if title == "Λ" else 0], around_one)
-        axes.set_title(f"({'abc'[index]}) {title}")
-    axes.set_xlim(edges[0], edges[-1])
-    time_axis(axes)
-    return figure
-
-
-def _band(ends: tuple[str, str]) -> tuple[float, float]:
-    return float(ends[0]), float(ends[1])
-
-
-def _panel(
-    axes: Any,
-    edges: Sequence[float],
-    band: Sequence[tuple[float, float]],
-    colour: str,
-    around_one: bool,
-) -> None:
-    low, high = [b[0] for b in band], [b[1] for b in band]
-    fill = to_rgba(colour, 0.3)
-    axes.stairs(
-        high, edges, baseline=low, fill=True, facecolor=fill, edgecolor=colour, linewidth=0.9
-    )
-    bottom, top = min(0.0, *low), max(0.0, *high)
-    room = 0.08 * (top - bottom) or 1.0
-    axes.set_ylim(bottom - room, top + room)
-    axes.axhline(0, color=INK, alpha=0.6, linewidth=0.7)
-    grid_lines(axes)
-    offset_ticks(axes.yaxis, bottom, top, around_one=around_one)
-
-
-def merged(series: Sequence[SeriesPoint], most: int = _MOST_BUCKETS) -> list[SeriesPoint]:
-    """At most `most` buckets, neighbours put together; their extremes stay extremes."""
-    size = -(-len(series) // most)
-    if size <= 1:
-        return list(series)
-    groups = (series[i : i + size] for i in range(0, len(series), size))
-    return [_together(group) for group in groups]
-
-
-def _together(group: Sequence[SeriesPoint]) -> SeriesPoint:
-    return SeriesPoint(
-        first=group[0].first,
-        last=group[-1].last,
-        delta_j=_hull([p.delta_j for p in group]),
-        lam=_hull([p.lam for p in group]),
-    )
-
-
-def _hull(bands: Sequence[tuple[str, str]]) -> tuple[str, str]:
-    return min((b[0] for b in bands), key=float), max((b[1] for b in bands), key=float)

@@ -1,7 +1,7 @@
 """Regions carried by maps: panels on equal axes, q to the right and p upwards, as inline SVG.
 
-A column is a map. Its images stand in one panel where each keeps its shape; where shear draws them
-out, or three maps are compared, each number of steps has a row of its own.
+The images of a map stand in one panel where each keeps its shape. Where shear draws them out, or
+three maps are compared, each number of steps has a panel for each scheme, upon the exact image.
 """
 
 from collections.abc import Sequence
@@ -18,17 +18,24 @@ from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import grid_lines
 from verify.pages.figures.label_place import dots, place_of
-from verify.pages.figures.notebook_figure import sheet
+from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
 from verify.pages.figures.svg import INK, SERIES
 from verify.pages.text.typography import number, whole
-from verify.scenes.results.regions import CarriedOutline, DrawnOutline, FlowImage, FlowResult
+from verify.scenes.results.regions import (
+    EXACT_FLOW,
+    CarriedOutline,
+    DrawnOutline,
+    FlowImage,
+    FlowResult,
+)
 from verify.studies.regions.polyline import parsed, thinned
 
-_WIDTH, _NARROW = 600, 370  # of several columns, of one
-_LEFT, _LETTER, _ROW_LABEL, _RIGHT, _TOP, _BOTTOM, _GAP = 26, 7.5, 22, 8, 26, 40, 12
-_ROW_PLACE = 10
+_SEVERAL = 600  # points, the width of two or three panels
+_LEFT, _LETTER, _RIGHT, _TOP, _BOTTOM, _GAP = 26, 7.5, 8, 24, 40, 12
+_MOST_IN_A_ROW = 6
+_SECOND_LINE = 16  # of a heading, in points
 _LOWEST, _HIGHEST = 0.3, 2.2  # a panel's height by its width
-_MOST_ROWS = 6
+_MOST_COUNTS = 6
 _WITH_OTHERS = 2  # maps at most whose images stand in one panel
 _KEPT_SHAPE = 3.0  # an outline that grew longer than this has lost its shape
 _DETAIL = 0.12  # of a point: what is finer is not drawn
@@ -37,7 +44,7 @@ _ROOM = 0.04  # of the extent, around everything
 _LABEL = 11  # of an image, in points
 _LETTER_OF_LABEL = 0.62  # its width, as a part of the size
 _LINE = 0.7  # points, the region's outline
-_LONGEST = 26  # letters of a heading
+_EXACT = 2.2  # points, the line of an exact image under another one
 
 Curves = tuple[np.ndarray, ...]
 """An image's outlines, arrays (n, 2) of q, p, the region's first."""
@@ -45,26 +52,47 @@ Curves = tuple[np.ndarray, ...]
 
 @dataclass(frozen=True)
 class Panel:
-    """Images with the number of steps of each; `missing`: that of those without an image."""
+    """A map's images with the number of steps of each.
 
+    `missing`: that of those without an image; `exact`: the exact flow's image, under the others;
+    `look`: its colour's place.
+    """
+
+    name: str
     images: tuple[tuple[int, Curves], ...]
     missing: tuple[int, ...] = ()
+    exact: Curves = ()
+    look: int = 0
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Panels at [row][column]; all rows are labelled or, where there is one, none is."""
+    """A group of panels for each number of steps, named so; or one group without a name."""
 
-    columns: tuple[str, ...]
-    rows: tuple[str, ...]
-    panels: tuple[tuple[Panel, ...], ...]
+    counts: tuple[str, ...]
+    groups: tuple[tuple[Panel, ...], ...]
     before: Curves
+
+    @property
+    def panels(self) -> tuple[Panel, ...]:
+        return tuple(panel for group in self.groups for panel in group)
+
+    @property
+    def in_a_row(self) -> int:
+        """Groups are not broken, as far as one fits."""
+        each = len(self.groups[0])
+        if not self.counts:
+            return each
+        whole_groups = max(1, _MOST_IN_A_ROW // each)
+        return min(each * whole_groups, len(self.panels))
 
     @property
     def size(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the greatest (q, p) of what is drawn."""
-        images = (curves for row in self.panels for panel in row for _, curves in panel.images)
-        points = np.concatenate([curve for curves in (self.before, *images) for curve in curves])
+        images = (curves for panel in self.panels for _, curves in panel.images)
+        exact = (panel.exact for panel in self.panels)
+        drawn = (self.before, *images, *exact)
+        points = np.concatenate([curve for curves in drawn for curve in curves])
         return points.min(axis=0), points.max(axis=0)
 
 
@@ -72,39 +100,43 @@ class Grid:
 
 
 def grid_of(flow: FlowResult) -> Grid:
-    """All maps' images; at most so many rows, the first and the last of those with an image."""
+    """All maps' images; at most so many counts, the first and the last of those with an image."""
     maps = tuple(dict.fromkeys(image.map for image in flow.images))
-    counts = sorted({image.steps for image in flow.images})
     before = _curves(flow.before)
-    together = len(maps) <= _WITH_OTHERS and _keep_shape(flow, before)
-    shown = sorted({image.steps for image in flow.images if image.outlines})
-    groups = [counts] if together else [[n] for n in _some(shown)]
+    if len(maps) <= _WITH_OTHERS and _keep_shape(flow, before):
+        together = tuple(
+            _panel([image for image in flow.images if image.map == name], look)
+            for look, name in enumerate(maps)
+        )
+        return Grid((), (together,), before)
+    shown = _some(sorted({image.steps for image in flow.images if image.outlines}))
     found = {(image.map, image.steps): image for image in flow.images}
     times = {image.steps: image.time for image in flow.images}
-    return Grid(
-        columns=maps,
-        rows=() if together else tuple(_row(n, times[n]) for (n,) in groups),
-        panels=tuple(
-            tuple(_panel([found[m, n] for n in group if (m, n) in found]) for m in maps)
-            for group in groups
-        ),
-        before=before,
+    schemes = [name for name in maps if name != EXACT_FLOW] or list(maps)
+    groups = tuple(
+        tuple(
+            _panel([found[name, n]], maps.index(name), found.get((EXACT_FLOW, n)))
+            for name in schemes
+            if (name, n) in found
+        )
+        for n in shown
     )
-
-
-def _row(steps: int, time: str) -> str:
-    return f"N = {whole(steps)}, t = {number(time)}"
+    return Grid(tuple(f"N = {whole(n)}, t = {number(times[n])}" for n in shown), groups, before)
 
 
 def _some(counts: Sequence[int]) -> list[int]:
-    places = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_ROWS))
+    places = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_COUNTS))
     return [counts[round(place)] for place in places]
 
 
-def _panel(images: Sequence[FlowImage]) -> Panel:
+def _panel(images: Sequence[FlowImage], look: int, exact: FlowImage | None = None) -> Panel:
+    under = exact if exact and exact.map != images[0].map else None
     return Panel(
+        images[0].map,
         tuple((image.steps, _curves(image.outlines)) for image in images if image.outlines),
         tuple(image.steps for image in images if not image.outlines),
+        _curves(under.outlines) if under else (),
+        look,
     )
 
 
@@ -131,6 +163,7 @@ class _Layout:
 
     total: float
     left: float
+    top: float
     width: float
     height: float
     low: np.ndarray
@@ -144,43 +177,37 @@ class _Layout:
 
 def draw_flow(grid: Grid) -> Figure:
     layout = _layout(grid)
-    rows = len(grid.panels)
-    high = _TOP + rows * layout.height + (rows - 1) * _GAP + _BOTTOM
+    columns = grid.in_a_row
+    rows = -(-len(grid.panels) // columns)
+    high = rows * (layout.top + layout.height) + (rows - 1) * _GAP + _BOTTOM
     figure = sheet(high, layout.total, layout=None)
-    for i, row in enumerate(grid.panels):
-        for j, panel in enumerate(row):
-            x = layout.left + j * (layout.width + _GAP)
-            y = _BOTTOM + (rows - 1 - i) * (layout.height + _GAP)
-            place = x / layout.total, y / high, layout.width / layout.total, layout.height / high
-            axes = figure.add_axes(place)
-            _frame(axes, layout, left=j == 0, bottom=i == rows - 1)
-            _draw_panel(axes, panel, grid, SERIES[j % len(SERIES)], layout)
-            if i == 0:
-                axes.set_title(_heading(j, grid) + _missing(panel, grid))
-        if grid.rows:
-            y = _BOTTOM + (rows - 0.5 - i) * layout.height + (rows - 1 - i) * _GAP
-            figure.text(
-                _ROW_PLACE / layout.total,
-                y / high,
-                grid.rows[i],
-                rotation=90,
-                ha="center",
-                va="center",
-            )
+    for k, panel in enumerate(grid.panels):
+        i, j = divmod(k, columns)
+        x = layout.left + j * (layout.width + _GAP)
+        y = _BOTTOM + (rows - 1 - i) * (layout.height + _GAP + layout.top)
+        place = x / layout.total, y / high, layout.width / layout.total, layout.height / high
+        axes = figure.add_axes(place)
+        _frame(axes, layout, left=j == 0, bottom=k + columns >= len(grid.panels))
+        _draw_panel(axes, panel, grid, layout)
+        axes.set_title(_heading(k, grid, int(layout.width / _LETTER)))
     return figure
 
 
-def _heading(index: int, grid: Grid) -> str:
-    """With its letter, where each column is one panel; a paper's letters run through all rows."""
-    name, count = grid.columns[index], len(grid.columns)
-    longest = max(4, _LONGEST * 3 // count)
-    short = name if len(name) <= longest else f"{name[: longest - 1]}…"
-    return short if grid.rows or count > 26 else f"({chr(ord('a') + index)}) {short}"
+def _heading(index: int, grid: Grid, most: int) -> str:
+    """With its letter, where a panel has all images; else under the count that its group has."""
+    panel = grid.panels[index]
+    longest = max(4, most if grid.counts else most - len("(a) "))
+    name = panel.name if len(panel.name) <= longest else f"{panel.name[: longest - 1]}…"
+    if grid.counts:
+        group, first = divmod(index, len(grid.groups[0]))
+        return f"{'' if first else grid.counts[group]}\n{name}"
+    letter = f"({chr(ord('a') + index)}) " if grid.in_a_row <= 26 else ""
+    return f"{letter}{name}{_missing(panel)}"
 
 
-def _missing(panel: Panel, grid: Grid) -> str:
+def _missing(panel: Panel) -> str:
     """Which images a panel of several has not."""
-    if grid.rows or not panel.missing:
+    if not panel.missing:
         return ""
     first, *others = panel.missing
     more = f" and {len(others)} more" if others else ""
@@ -191,18 +218,19 @@ def _layout(grid: Grid) -> _Layout:
     """Equal axes: a panel is as high as what it shows, within limits."""
     low, high = grid.size
     longest = max(len(_tick(y)) for y in _ticks().tick_values(low[1], high[1]))
-    left = _LEFT + _LETTER * longest + (_ROW_LABEL if grid.rows else 0)
-    columns = len(grid.columns)
-    total = _WIDTH if columns > 1 else _NARROW
+    left = _LEFT + _LETTER * longest
+    columns = grid.in_a_row
+    total = NARROW if columns == 1 else _SEVERAL if columns <= 3 else WIDE
     width = (total - left - _RIGHT - (columns - 1) * _GAP) / columns
     span = np.maximum(high - low, 1e-300)
     middle, span = (low + high) / 2, span + 2 * _ROOM * span.max()
-    if not grid.rows:  # room for the images' labels
+    if not grid.counts:  # room for the images' labels
         span = span + 2 * (_LABEL + 4) * span[0] / width
     ratio = min(_HIGHEST, max(_LOWEST, float(span[1] / span[0])))
     half = max(span[0], span[1] / ratio) / 2
     reach = np.array([half, half * ratio])
-    return _Layout(total, left, width, width * ratio, middle - reach, middle + reach)
+    top = _TOP + (_SECOND_LINE if grid.counts else 0)
+    return _Layout(total, left, top, width, width * ratio, middle - reach, middle + reach)
 
 
 def _frame(axes: Any, layout: _Layout, *, left: bool, bottom: bool) -> None:
@@ -225,13 +253,19 @@ def _tick(x: float, _: object = None) -> str:
     return f"{x:g}".replace("-", "−")
 
 
-def _draw_panel(axes: Any, panel: Panel, grid: Grid, colour: str, layout: _Layout) -> None:
+def _draw_panel(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
     _shape(axes, grid.before, INK, layout, before=True)
+    if panel.exact:
+        path = _path([thinned(curve, _DETAIL / layout.scale) for curve in panel.exact[:1]])
+        faint = to_rgba(INK, 0.3)
+        axes.add_artist(
+            PathPatch(path, fill=False, edgecolor=faint, linewidth=_EXACT, clip_on=False)
+        )
     for _, curves in panel.images:
-        _shape(axes, curves, colour, layout)
-    if not grid.rows:
+        _shape(axes, curves, SERIES[panel.look % len(SERIES)], layout)
+    if not grid.counts:
         _name_all(axes, panel, grid, layout)
-    if panel.missing and grid.rows:
+    if panel.missing and grid.counts:
         axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
 
 

@@ -8,34 +8,35 @@ from matplotlib.figure import Figure
 from verify.pages.figures.axes import MOST_STYLES, decades, grid_lines, line_style, step_sizes
 from verify.pages.figures.figures import Line, plot_line
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import sheet
+from verify.pages.figures.notebook_figure import WIDE, sheet
 from verify.pages.figures.svg import INK
 from verify.pages.text.typography import start
 from verify.scenes.results.growth import GrowthLawResult
 
-_HEIGHT = 520
+_HEIGHT = 260
 _GUIDE_GAP = 0.4  # decades between the guide and the points below it
-_LEGEND = 2  # columns
+_LEGEND = 5  # columns
 
 
 def draw_predicted_against_measured(orbits: Sequence[GrowthLawResult]) -> Figure:
     """(a) |Λ|, measured as points on the predicted lines; (b) |relative difference| beside h."""
-    figure = sheet(_HEIGHT)
-    above, below = figure.subplots(2, 1, sharex=True)
+    figure = sheet(_HEIGHT, WIDE)
+    left, right = figure.subplots(1, 2)
     for index, orbit in enumerate(orbits):
         style = line_style(index, len(orbits))
-        _prediction(above, orbit, style)
-        plot_line(below, _line(orbit, "difference"), style)
-    _guide(below, [_line(orbit, "difference") for orbit in orbits])
-    for axes in (above, below):
+        _prediction(left, orbit, style)
+        plot_line(right, _line(orbit, "difference"), style)
+    _guide(right, [_line(orbit, "difference") for orbit in orbits])
+    sizes = [p.step_size for orbit in orbits for p in orbit.predictions]
+    for axes in (left, right):
         grid_lines(axes)
         axes.margins(y=0.08)
         decades(axes.yaxis, most=6)
-    step_sizes(below, [p.step_size for orbit in orbits for p in orbit.predictions])
-    above.set_title("(a) |Λ|: points measured, lines predicted")
-    below.set_title("(b) |predicted − measured| / |measured|")
+        step_sizes(axes, sizes)
+    left.set_title("(a) |Λ|: points measured, lines predicted")
+    right.set_title("(b) |predicted − measured| / |measured|")
     if len(orbits) <= MOST_STYLES:
-        handles, labels = above.get_legend_handles_labels()
+        handles, labels = left.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=_LEGEND, handlelength=3.2)
     return figure
 

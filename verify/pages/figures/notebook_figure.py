@@ -6,7 +6,7 @@ from typing import Any, Literal
 from matplotlib.figure import Figure
 
 _POINT = 1 / 72  # inch; a point is the user unit of the SVG
-_WIDTH = 370
+NARROW, WIDE = 370, 900  # of a figure in half of the page, of one that spans it
 _DOTS = 144  # an inch; twice a point, so that it is sharp on a fine screen too
 Layout = Literal["constrained"] | None
 
@@ -20,7 +20,7 @@ class Drawing(Figure):
         return stream.getvalue()
 
 
-def sheet(height: float, width: float = _WIDTH, layout: Layout = "constrained") -> Drawing:
+def sheet(height: float, width: float = NARROW, layout: Layout = "constrained") -> Drawing:
     """An empty figure of that size in points."""
     return Drawing(figsize=(width * _POINT, height * _POINT), layout=layout)
 
@@ -37,8 +37,9 @@ def canvas_on(ax: Any, height: float) -> tuple[Figure, Any]:
 
 
 def legend(figure: Figure | None, axes: Any, ncols: int = 1) -> None:
-    """A legend below the figure of ours; inside the axes where the figure is the caller's."""
+    """A legend of these axes below the figure of ours; inside of them where it is the caller's."""
     if figure is None:
         axes.legend(handlelength=3.2)
     else:
-        figure.legend(loc="outside lower center", ncols=ncols, handlelength=3.2)
+        handles, labels = axes.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=ncols, handlelength=3.2)

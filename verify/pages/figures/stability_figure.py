@@ -1,4 +1,4 @@
-"""Verdicts in the plane of step size and stiffness, one scheme a picture, as inline SVG."""
+"""Verdicts in the plane of step size and stiffness, one scheme a panel, as inline SVG."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,17 +7,18 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import decades, grid_lines
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import canvas
+from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import Kind, StabilityMapResult
 
-_HEIGHT = 380
-_LEGEND = 2  # columns
+_COLUMNS = 3
+_PANEL = 165  # points high
+_SMALLER = 0.45  # marks, where several panels stand in a row
 _ROOM = 0.04  # of an axis, beyond its first and last point
 
 # What a kind looks like; shapes differ as well as colours.
 _MARKS: dict[Kind, dict[str, Any]] = {
-    "stable": {"marker": ".", "color": SERIES[0], "s": 12},
+    "stable": {"marker": ".", "color": SERIES[0], "s": 40},
     "drifts": {"marker": "o", "color": SERIES[2], "s": 20, "facecolors": "none"},
     "unstable: scheme": {"marker": "s", "color": SERIES[1], "s": 26},
     "unstable: arithmetic": {"marker": "X", "color": SERIES[6], "s": 40},
@@ -28,9 +29,39 @@ _MARKS: dict[Kind, dict[str, Any]] = {
 }
 
 
-def draw_plane(over: StabilityMapResult) -> Figure:
-    """Each cell by its verdict's mark; the line is linear theory's step size."""
-    figure, axes = canvas(_HEIGHT)
+def draw_planes(maps: Sequence[StabilityMapResult]) -> Figure:
+    """A panel for each scheme, each cell by its verdict's mark; the line is linear theory's step.
+
+    All maps are over the same steps and values; they share their axes and one legend.
+    """
+    columns = min(len(maps), _COLUMNS)
+    rows = -(-len(maps) // columns)
+    figure = sheet(_PANEL * rows + 60, WIDE if columns > 1 else NARROW)
+    panels: Any = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    size = 1 if columns == 1 else _SMALLER
+    for axes, over in zip(panels.flat, maps, strict=False):
+        _panel(axes, over, size)
+    for axes in panels.flat[len(maps) :]:
+        axes.set_axis_off()
+    for axes in panels[:, 0]:
+        axes.set_ylabel(f"{maps[0].parameter} (logarithmic)")
+    for j in range(columns):
+        lowest = max(i for i in range(rows) if i * columns + j < len(maps))
+        panels[lowest, j].set_xlabel("step size h (logarithmic)")
+        panels[lowest, j].tick_params(labelbottom=True)
+    named = {
+        label: handle
+        for axes in panels.flat
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(
+        named.values(), named, loc="outside lower center", ncols=5 if columns > 1 else 2,
+        handlelength=1.6,
+    )  # fmt: skip
+    return figure
+
+
+def _panel(axes: Any, over: StabilityMapResult, size: float) -> None:
     xs, ys = [lg(h) for h in over.step_sizes], [lg(v) for v in over.values]
     for kind, mark in _MARKS.items():
         cells = [
@@ -40,21 +71,19 @@ def draw_plane(over: StabilityMapResult) -> Figure:
             if cell.kind == kind
         ]
         if cells:
-            axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **mark)
+            look = {**mark, "s": mark["s"] * size}
+            axes.scatter(*zip(*cells, strict=True), label=kind, linewidths=0.9, **look)
     limits = [(lg(h), y) for h, y in zip(over.linear, ys, strict=True) if h and float(h) > 0]
     if limits:
         ends = zip(*limits, strict=True)
         axes.plot(*ends, color=INK, linewidth=1.4, label="limit of linear theory")
-    _frame(axes, xs, ys, over.parameter)
-    figure.legend(loc="outside lower center", ncols=_LEGEND, handlelength=1.6)
-    return figure
+    _frame(axes, xs, ys)
+    axes.set_title(over.scheme)
 
 
-def _frame(axes: Any, xs: Sequence[float], ys: Sequence[float], parameter: str) -> None:
+def _frame(axes: Any, xs: Sequence[float], ys: Sequence[float]) -> None:
     for axis, places, limit in ((axes.xaxis, xs, axes.set_xlim), (axes.yaxis, ys, axes.set_ylim)):
         room = _ROOM * (max(places) - min(places) or 1)
         limit(min(places) - room, max(places) + room)
         decades(axis, most=6)
     grid_lines(axes)
-    axes.set_xlabel("step size h (logarithmic)")
-    axes.set_ylabel(f"{parameter} (logarithmic)")

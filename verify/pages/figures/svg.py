@@ -7,10 +7,12 @@ matplotlib's own settings do not go so far: `svg.id` names the root alone, all o
 are the same in each figure; a style for `*` and paths of six decimals stay whatever is set.
 """
 
+import hashlib
 import io
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from itertools import groupby
 from typing import Any
 from xml.etree import ElementTree
 
@@ -30,6 +32,7 @@ _SVG = "http://www.w3.org/2000/svg"
 _HREF = "{http://www.w3.org/1999/xlink}href"
 _PLACES = 1  # decimals of a coordinate: a tenth of a point is less than a pixel
 _UNITS: int = 10**_PLACES
+_OWN = ("x", "y", "href")  # of a mark
 _NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 _UNWANTED = {"font", "font-family", "font-style", "font-variant", "font-weight", "font-stretch"}
 _RC: Any = {
@@ -107,6 +110,7 @@ def _inline(root: Any, name: str, label: str) -> Markup:
     for attribute in ("width", "height", "version"):
         root.attrib.pop(attribute)
     used: set[str] = set()
+    name = _short(name)
     for element in root.iter():
         element.tag = element.tag.removeprefix(f"{{{_SVG}}}")
         element.text, element.tail = _stripped(element.text), _stripped(element.tail)
@@ -115,6 +119,7 @@ def _inline(root: Any, name: str, label: str) -> Markup:
         if element.get("id", "") not in used:
             element.attrib.pop("id", None)
     _unwrap(root)
+    _group_marks(root)
     root.set("role", "img")
     root.set("aria-label", label)
     root.set("font-size", str(_RC["font.size"]))
@@ -140,6 +145,34 @@ def _unwrap(root: Any) -> None:
         for index, child in reversed(list(enumerate(parent))):
             if (child.tag == "g" and not child.attrib) or (child.tag == "defs" and not len(child)):
                 parent[index : index + 1] = list(child)
+
+
+def _group_marks(root: Any) -> None:
+    """What equal marks in a row have in common is said once, by a group around them."""
+    for parent in list(root.iter()):
+        found: list[Any] = []
+        for look, alike in groupby(list(parent), key=_look):
+            marks = list(alike)
+            if look is not None and len(marks) > 1:
+                group = ElementTree.Element("g", dict(look))
+                for mark in marks:
+                    mark.attrib = {k: mark.attrib[k] for k in _OWN if k in mark.attrib}
+                group.extend(marks)
+                marks = [group]
+            found += marks
+        parent[:] = found
+
+
+def _look(element: Any) -> tuple[tuple[str, str], ...] | None:
+    """All of a mark but where it stands; None of what is none."""
+    if element.tag != "use":
+        return None
+    return tuple(sorted((k, v) for k, v in element.attrib.items() if k not in _OWN))
+
+
+def _short(name: str) -> str:
+    """A prefix of ids: thousands of marks name theirs."""
+    return f"f{hashlib.sha256(name.encode()).hexdigest()[:8]}"
 
 
 def _stripped(text: str | None) -> str | None:

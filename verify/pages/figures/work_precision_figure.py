@@ -1,8 +1,8 @@
 """Error and |Λ| against run time and step size, digits against run time, as inline SVG.
 
 Full marks are limited by truncation, hollow ones by rounding; a cross at the upper edge is a run
-that failed; grey dots are the rounding part of each error. Marks at the ends of a line are labelled
-where there is room.
+that failed; grey dots are the rounding part of each error. A line has its name beside it, where
+there is room.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,14 +18,14 @@ from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import DASHES, MARKERS, decades, grid_lines, whole_numbers
 from verify.pages.figures.label_place import within
-from verify.pages.figures.notebook_figure import sheet
+from verify.pages.figures.notebook_figure import WIDE, sheet
 from verify.pages.figures.svg import INK, SERIES
 
 _WIDTH = 400
-_PANEL, _LEGEND_ROW = 300, 17
+_PANEL, _LEGEND_ROW, _IN_A_ROW = 200, 17, 2
 _SIZE = 5.5
 _PEER_MARKERS = ("1", "2", "3", "4")  # without a face: a peer's marks are neither full nor hollow
-_LABEL = 9
+_LABEL = 10
 _OFFSETS = (
     (6, 3), (6, -11), (-6, 3), (-6, -11), (0, 8), (0, -16), (8, -4), (-8, -4), (10, 12), (-10, 12),
     (10, -20), (-10, -20),
@@ -36,7 +36,7 @@ _APART = 5  # pixels between places of a line that a label must not cover
 
 @dataclass(frozen=True)
 class Mark:
-    """A point, by finite logarithms: of the abscissa and of the ordinate; its label if it has one.
+    """A point, by finite logarithms: of the abscissa and of the ordinate.
 
     `full`: limited by truncation. A failed run has no `y`.
     """
@@ -44,14 +44,14 @@ class Mark:
     x: float
     y: float | None
     full: bool = True
-    label: str = ""
 
 
 @dataclass(frozen=True)
 class DrawnLine:
-    """One line of marks. `place`: which of the looks it has, the same in every figure; those of
-    peers are apart."""
+    """One line of marks. `label`: its entry in the legend, which is that of the first panel.
+    `place`: which of the looks it has, the same in every figure; those of peers are apart."""
 
+    name: str
     label: str
     marks: tuple[Mark, ...]
     place: int
@@ -74,27 +74,35 @@ class Panel:
 
 
 def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
-    """The panels below one another, with one legend for all: the labels of the first.
+    """The panels, two in a row, with one legend for all: the labels of the first.
 
     `quantity`: what stands at all vertical axes, where the titles do not suffice.
     """
-    count = len(shown[0].lines) + len(_explained(shown))
-    height = _PANEL * len(shown) + _LEGEND_ROW * (count + 1) // 2 + 12
-    figure = sheet(height, _WIDTH)
+    columns = min(2, len(shown))
+    rows = -(-len(shown) // columns)
+    entries = _entries(shown)
+    legend_rows = -(-len(entries) // (_IN_A_ROW * columns))
+    width = WIDE if columns > 1 else _WIDTH
+    figure = sheet(_PANEL * rows + _LEGEND_ROW * legend_rows + 16, width)
     figure.set_dpi(72)
     FigureCanvasAgg(figure)
     engine: Any = figure.get_layout_engine()
-    engine.set(hspace=0.04)
-    all_axes: Any = figure.subplots(len(shown), 1, squeeze=False)
-    for axes, panel in zip(all_axes[:, 0], shown, strict=True):
+    engine.set(hspace=0.04, wspace=0.04)
+    all_axes: Any = figure.subplots(rows, columns, squeeze=False).flat
+    for axes, panel in zip(all_axes, shown, strict=False):
         _panel(axes, panel)
         axes.set_ylabel(quantity)
-    _legend(figure, shown)
-    # The layout is made once, so that labels can be placed where nothing else is.
+    for axes in all_axes[len(shown) :]:
+        axes.set_axis_off()
+    figure.legend(
+        handles=entries, loc="outside lower center", ncols=_IN_A_ROW * columns,
+        handlelength=3.0, columnspacing=1.2, fontsize=10,
+    )  # fmt: skip
+    # The layout is made once, so that names can be placed where nothing else is.
     figure.canvas.draw()
     figure.set_layout_engine("none")
-    for axes, panel in zip(all_axes[:, 0], shown, strict=True):
-        _place_labels(axes, panel)
+    for axes, panel in zip(all_axes, shown, strict=False):
+        _place_names(axes, panel)
     return figure
 
 
@@ -192,31 +200,28 @@ def _explained(shown: Sequence[Panel]) -> list[Line2D]:
     return [Line2D([], [], label=label, **grey, **look) for seen, label, look in known if seen]
 
 
-def _legend(figure: Figure, shown: Sequence[Panel]) -> None:
-    entries = [Line2D([], [], label=line.label, **style(line)) for line in shown[0].lines]
-    figure.legend(
-        handles=[*entries, *_explained(shown)], loc="outside lower center", ncols=2,
-        handlelength=3.0, columnspacing=1.2, fontsize=10,
-    )  # fmt: skip
+def _entries(shown: Sequence[Panel]) -> list[Line2D]:
+    lines = [Line2D([], [], label=line.label, **style(line)) for line in shown[0].lines]
+    return [*lines, *_explained(shown)]
 
 
-# -- labels ---------------------------------------------------------------------------------------
+# -- names ----------------------------------------------------------------------------------------
 
 
-def _place_labels(axes: Any, panel: Panel) -> None:
-    """Each label at the first of a few places near its mark where it covers nothing."""
+def _place_names(axes: Any, panel: Panel) -> None:
+    """Each name near its line's last mark, or its first, or between, where it covers nothing."""
     renderer = axes.figure.canvas.get_renderer()
     taken = [Bbox.from_extents(x - 3, y - 3, x + 3, y + 3) for x, y in _covered(axes, panel)]
     inside = axes.get_window_extent(renderer)
     for line in panel.lines:
-        for mark in line.marks:
-            if not mark.label or mark.y is None or panel.beyond(mark):
-                continue
-            text = axes.annotate(
-                mark.label, (mark.x, mark.y), xytext=(0, 0), textcoords="offset points",
-                fontsize=_LABEL, color=style(line)["color"],
-            )  # fmt: skip
-            _settle(text, taken, inside, renderer)
+        seen = [m for m in line.marks if m.y is not None and not panel.beyond(m)]
+        text = axes.annotate(
+            line.name, (0, 0), xytext=(0, 0), textcoords="offset points",
+            fontsize=_LABEL, color=style(line)["color"],
+        )  # fmt: skip
+        ends = [*seen[-1:], *seen[:1], *seen[1:-1]]
+        if not any(_settles(text, (m.x, m.y), taken, inside, renderer) for m in ends):
+            text.remove()
 
 
 def _covered(axes: Any, panel: Panel) -> Iterator[tuple[float, float]]:
@@ -233,12 +238,15 @@ def _covered(axes: Any, panel: Panel) -> Iterator[tuple[float, float]]:
                 yield x0 + (x1 - x0) * k / count, y0 + (y1 - y0) * k / count
 
 
-def _settle(text: Any, taken: list[Bbox], inside: Bbox, renderer: Any) -> None:
+def _settles(
+    text: Any, at: tuple[float, float | None], taken: list[Bbox], inside: Bbox, renderer: Any
+) -> bool:
+    text.xy = at
     for x, y in _OFFSETS:
         text.set_ha("left" if x > 0 else "right" if x < 0 else "center")
         text.set_position((x, y))
         box = text.get_window_extent(renderer)
         if within(box, inside) and not any(map(box.overlaps, taken)):
             taken.append(box)
-            return
-    text.remove()
+            return True
+    return False

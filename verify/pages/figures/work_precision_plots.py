@@ -3,81 +3,79 @@
 The drawing, and with it matplotlib, is imported only where something is drawn.
 """
 
-from collections.abc import Iterator, Sequence
-from decimal import Decimal
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from math import isfinite, log10
 from statistics import median
+from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
 from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.figures.logarithm import lg
-from verify.pages.text.typography import listed, superscript
+from verify.pages.text.typography import listed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import LimitedBy, WorkLine, WorkPoint, WorkPrecisionResult
 
 if TYPE_CHECKING:
-    from verify.pages.figures.work_precision_figure import Mark, Panel
+    from verify.pages.figures.work_precision_figure import DrawnLine, Mark, Panel
+
+_RUN_TIME = "run time in seconds"
 
 
 def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
-    """The figures for which there is something to draw."""
-    if any(_timed(line) for line in found.lines):
-        yield _errors(found, name)
-    if any(_area(line) for line in found.lines):
-        yield _areas(found, name)
-    if any(point.certified for point in found.systems):
-        yield _digits(found, name)
+    """All that there is to draw, as the panels of one figure."""
+    own = [line for line in found.lines if not line.peer]
+    told = [
+        (list(_error_panels(found)), _caption([line for line in own if _timed(line)])),
+        (list(_area_panels(found)), _of_areas(found)),
+        (list(_digit_panels(found)), _of_digits(found)),
+    ]
+    panels = [panel for own_panels, _ in told for panel in own_panels]
+    if not panels:
+        return
+    from verify.pages.figures.work_precision_figure import draw_panels
 
-
-def _errors(found: WorkPrecisionResult, name: str) -> Plot:
-    from verify.pages.figures import work_precision_figure as figure
-
-    return plotted(
-        lambda: figure.draw_panels(error_panels(found)),
+    lettered = [
+        replace(panel, title=f"({letter}) {panel.title}") if len(panels) > 1 else panel
+        for letter, panel in zip(ascii_lowercase, panels, strict=False)
+    ]
+    what = listed(panel.title for panel in panels)
+    yield plotted(
+        lambda: draw_panels(lettered),
         name=f"work-of-{name}",
-        lead=f"Solution error at T = {found.time} against run time, and against the step size h",
-        caption=_caption([x for x in found.lines if _timed(x) and not x.peer]),
+        lead=f"Over [0, {found.time}]: {what}",
+        caption=" ".join(caption for own_panels, caption in told if own_panels and caption),
     )
 
 
 def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
     """Solution error against run time and, of the schemes, against the step size."""
-    from verify.pages.figures import work_precision_figure as figure
+    return list(_error_panels(found))
 
+
+def _error_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
     lines = [line for line in found.lines if _timed(line)]
     own = [line for line in lines if not line.peer]
-    against_time = figure.Panel(
-        "(a) error against run time",
-        f"run time over [0, {found.time}] in seconds",
-        tuple(
-            figure.DrawnLine(_labelled(line), tuple(_by_time(line)), _place(found, line), line.peer)
-            for line in lines
-        ),
-        tuple(_floor(own)),
-    )
-    against_h = figure.Panel(
-        "(b) error against h",
-        "step size h",
-        tuple(
-            figure.DrawnLine(line.name, tuple(_by_step(line)), _place(found, line)) for line in own
-        ),
-        tuple(_floor(own, by_step=True)),
-    )
-    return [against_time, against_h] if own else [against_time]
+    if lines:
+        from verify.pages.figures.work_precision_figure import Panel
+
+        of_time = tuple(_drawn(found, line, _by_time(line)) for line in lines)
+        yield Panel("error against run time", _RUN_TIME, of_time, tuple(_floor(own)))
+    if own:
+        of_step = tuple(_drawn(found, line, _by_step(line)) for line in own)
+        floor = tuple(_floor(own, by_step=True))
+        yield Panel("error against h", "step size h", of_step, floor)
 
 
-def _areas(found: WorkPrecisionResult, name: str) -> Plot:
-    from verify.pages.figures import work_precision_figure as figure
+def _area_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
+    lines = tuple(_drawn(found, line, _area(line)) for line in found.lines if _area(line))
+    if lines:
+        from verify.pages.figures.work_precision_figure import Panel
 
-    lines = [line for line in found.lines if _area(line)]
-    panel = figure.Panel(
-        "(c) |Λ| against run time",
-        f"run time over [0, {found.time}] in seconds",
-        tuple(
-            figure.DrawnLine(_labelled(line, of_area=True), tuple(_area(line)), _place(found, line))
-            for line in lines
-        ),
-    )
+        yield Panel("|Λ| against run time", _RUN_TIME, lines)
+
+
+def _of_areas(found: WorkPrecisionResult) -> str:
     caption = "Λ in float64 by the closed form of ΔJ."
     keeping = [line for line in found.lines if line.area_preserving]
     if keeping:
@@ -85,23 +83,23 @@ def _areas(found: WorkPrecisionResult, name: str) -> Plot:
             f" For {listed(line.name for line in keeping)} ΔJ ≡ 0 is proved and Λ is 0; what is "
             "drawn, hollow, is what rounding makes of the plain product of determinants."
         )
-    if none := [line.name for line in keeping if line not in lines]:
+    if none := [line.name for line in keeping if not _area(line)]:
         caption += f" That of {listed(none)} is exactly 1 and has no place here."
-    lead = f"|Λ| over [0, {found.time}] against run time"
-    return plotted(
-        lambda: figure.draw_panels([panel]), name=f"area-of-{name}", lead=lead, caption=caption
-    )
+    return caption
 
 
-def _digits(found: WorkPrecisionResult, name: str) -> Plot:
-    from verify.pages.figures import work_precision_figure as figure
-
+def _digit_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
     names = dict.fromkeys(p.arithmetic for p in found.systems if p.certified)
+    if not names:
+        return
+    from verify.pages.figures.work_precision_figure import DrawnLine, Mark, Panel
+
     lines = tuple(
-        figure.DrawnLine(
+        DrawnLine(
+            arithmetic,
             arithmetic,
             tuple(
-                figure.Mark(log10(p.seconds_median), float(p.certified))
+                Mark(log10(p.seconds_median), float(p.certified))
                 for p in found.systems
                 if p.arithmetic == arithmetic and p.certified and p.seconds_median
             ),
@@ -109,15 +107,20 @@ def _digits(found: WorkPrecisionResult, name: str) -> Plot:
         )
         for place, arithmetic in enumerate(names)
     )
-    lead = f"Certified digits of the end state against run time, {_systems_of(found)}"
-    panel = figure.Panel("(d) certified digits", "run time in seconds", lines, logarithmic=False)
-    said = (
-        "Run time is the stepping with all that certifies it, on the clock; that of float64 is its "
-        "compiled loop’s."
+    yield Panel("certified digits", "run time in seconds", lines, logarithmic=False)
+
+
+def _of_digits(found: WorkPrecisionResult) -> str:
+    return (
+        f"Certified digits are of the end state by {_systems_of(found)}; run time there is the "
+        "stepping with all that certifies it, that of float64 its compiled loop’s."
     )
-    return plotted(
-        lambda: figure.draw_panels([panel]), name=f"digits-of-{name}", lead=lead, caption=said
-    )
+
+
+def _drawn(found: WorkPrecisionResult, line: WorkLine, marks: "Iterable[Mark]") -> "DrawnLine":
+    from verify.pages.figures.work_precision_figure import DrawnLine
+
+    return DrawnLine(line.name, _labelled(line), tuple(marks), _place(found, line), line.peer)
 
 
 def _systems_of(found: WorkPrecisionResult) -> str:
@@ -135,8 +138,8 @@ def _caption(own: Sequence[WorkLine]) -> str:
     return said
 
 
-def _labelled(line: WorkLine, *, of_area: bool = False) -> str:
-    slope = line.lambda_slope if of_area else line.error_slope
+def _labelled(line: WorkLine) -> str:
+    slope = line.error_slope
     return f"{line.name}, slope {float(slope.value):.2f}" if slope.value else line.name
 
 
@@ -150,11 +153,10 @@ def _timed(line: WorkLine) -> list[WorkPoint]:
 
 
 def _by_time(line: WorkLine) -> Iterator["Mark"]:
-    """Error against run time; the first and the last of a line with a label."""
+    """Error against run time."""
     timed = _timed(line)
     for point in line.points:
-        label = _end_label(point, timed)
-        yield from _mark(_run_time(point, timed), point.error, point.limited_by, label)
+        yield from _mark(_run_time(point, timed), point.error, point.limited_by)
 
 
 def _by_step(line: WorkLine) -> Iterator["Mark"]:
@@ -170,21 +172,18 @@ def _area(line: WorkLine) -> list["Mark"]:
     timed = _timed(line)
     for point in timed:
         value = point.lam_plain if line.area_preserving else point.lam
-        label = _end_label(point, timed)
-        found += _mark(_run_time(point, timed), value, point.lambda_limited_by, label)
+        found += _mark(_run_time(point, timed), value, point.lambda_limited_by)
     return found
 
 
-def _mark(
-    x: float | None, value: Value | None, limited_by: LimitedBy | None, label: str = ""
-) -> Iterator["Mark"]:
+def _mark(x: float | None, value: Value | None, limited_by: LimitedBy | None) -> Iterator["Mark"]:
     """None where there is no place for it: no abscissa, or no known digit of the value."""
     from verify.pages.figures.work_precision_figure import Mark
 
     if x is not None and limited_by == "failed":
         yield Mark(x, None)
     elif x is not None and value and isfinite(lg(value.value)):
-        yield Mark(x, lg(value.value), limited_by != "rounding", label)
+        yield Mark(x, lg(value.value), limited_by != "rounding")
 
 
 def _run_time(point: WorkPoint, timed: Sequence[WorkPoint]) -> float | None:
@@ -201,26 +200,6 @@ def _floor(own: Sequence[WorkLine], *, by_step: bool = False) -> Iterator[tuple[
             x = lg(point.step_size) if by_step and point.step_size else _run_time(point, ())
             if point.rounding and x is not None and isfinite(lg(point.rounding.value)):
                 yield x, lg(point.rounding.value)
-
-
-def _end_label(point: WorkPoint, timed: Sequence[WorkPoint]) -> str:
-    """Of the first and of the last of these points."""
-    if point not in (*timed[:1], *timed[-1:]):
-        return ""
-    if point.step_size:
-        return f"h = {_short(point.step_size)}"
-    return f"tol {_short(point.tolerance or '')}"
-
-
-def _short(text: str) -> str:
-    """Two digits, as a power of ten where it is small."""
-    if "/" in text:
-        return text
-    if Decimal(text) > Decimal("0.001"):
-        return f"{float(Decimal(text)):.2g}"
-    mantissa, _, power = f"{Decimal(text):.1e}".partition("e")
-    scale = f"10{superscript(int(power))}"
-    return scale if float(mantissa) == 1 else f"{mantissa}·{scale}"
 
 
 # -- a file of its own ----------------------------------------------------------------------------

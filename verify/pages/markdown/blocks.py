@@ -16,7 +16,7 @@ _STRONG = {"finding", "label"}  # what the page sets in other letters
 _CONTAINERS = {"article", "div", "figure", "header", "section"}
 _LINES = {"p", "figcaption"}
 _HEADINGS = {f"h{level}": "#" * level for level in range(1, 7)}
-_OWN = {"details", "dl", "footer", "img", "pre", "table", "ul"}
+_OWN = {"details", "dl", "footer", "img", "ol", "pre", "table", "ul"}
 _BLOCKS = {*_OWN, *_CONTAINERS, *_LINES, *_HEADINGS}
 
 
@@ -72,8 +72,10 @@ class _Writer:
             yield from tables(node)
         elif node.tag == "details":
             yield from self._details(node)
-        elif node.tag == "ul":
-            yield _list(self.inside(item) for item in node.elements("li"))
+        elif node.tag in ("ul", "ol"):
+            yield _list(
+                (self.inside(item) for item in node.elements("li")), numbered=node.tag == "ol"
+            )
         elif node.tag == "dl":
             yield _list(map(self._defined, node.elements("div")))
         elif node.tag == "footer":
@@ -128,8 +130,10 @@ def _code(node: Node) -> Markdown:
     return Markdown(f"{fence}{language}\n{node.text.strip(chr(10))}\n{fence}")
 
 
-def _list(items: Iterable[list[Markdown]]) -> Markdown:
+def _list(items: Iterable[list[Markdown]], *, numbered: bool = False) -> Markdown:
     """Each item with what belongs to it below its text."""
-    shown = [re.sub(r"\n(?!\n)", "\n  ", "\n\n".join(item)) for item in items]
+    indent = "   " if numbered else "  "
+    shown = [re.sub(r"\n(?!\n)", f"\n{indent}", "\n\n".join(item)) for item in items]
     between = "\n\n" if any("\n" in item for item in shown) else "\n"
-    return Markdown(between.join(f"- {item}" for item in shown))
+    marks = (f"{n}." if numbered else "-" for n, _ in enumerate(shown, start=1))
+    return Markdown(between.join(f"{mark} {item}" for mark, item in zip(marks, shown, strict=True)))

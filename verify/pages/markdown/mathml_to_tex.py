@@ -6,6 +6,7 @@ A leaf is never taken for a command: its letters are set one by one or as uprigh
 """
 
 import re
+from unicodedata import normalize
 
 from verify.pages.markdown.markup import Node
 from verify.pages.text.mathml import GREEK
@@ -66,6 +67,8 @@ def _operator(node: Node) -> str:
 def _leaf(text: str) -> str:
     if text in _FUNCTIONS:
         return f"\\{text} "
+    if over := re.fullmatch("([0-9]+)\N{FRACTION SLASH}([0-9]+)", normalize("NFKC", text)):
+        return rf"\tfrac{{{over[1]}}}{{{over[2]}}}"
     shown = "".join(_character(c) for c in text)
     if len(text) > 1 and not re.fullmatch(r"[0-9.]+", text):
         return rf"\mathrm{{{shown}}}"

@@ -43,12 +43,12 @@ def render(report: Report) -> tuple[str, dict[str, str]]:
     figures: dict[str, str] = {}  # in the order in which the text shows them
 
     def image(plot: Plot) -> Markup:
-        """The image, with its lead as the text alternative."""
+        """The image with its text alternative."""
         from verify.pages.figures import svg  # and with it matplotlib, where something is drawn
 
         path = f"{FIGURES}/figure-{len(figures) + 1:02}.svg"
         figures[path] = svg.document([plot.svg])
-        return Markup('<img src="{}" alt="{}">').format(path, plot.lead)
+        return Markup('<img src="{}" alt="{}">').format(path, plot.alternative)
 
     templates = environment(drawn=image)
     content = templates.from_string(_CONTENT).render(page=page_view(report))

@@ -21,7 +21,9 @@ def picture_sentences(flow: FlowResult, grid: Grid) -> Iterator[str]:
 
 def _stretched(grid: Grid) -> Iterator[str]:
     """By the first map that has images, at the most steps: for the eye the others are as it is."""
-    images = [image for row in grid.panels for image in row[0].images]
+    first = grid.panels[0]
+    own = [panel for panel in grid.panels if panel.name == first.name]
+    images = [image for panel in own for image in panel.images]
     if not images:
         return
     steps, curves = max(images, key=lambda image: image[0])
@@ -29,7 +31,7 @@ def _stretched(grid: Grid) -> Iterator[str]:
     if times >= _NOTED:
         said = whole(round(times)) if times >= 10 else f"{times:.1f}"
         yield (
-            f"After N{NBSP}={NBSP}{whole(steps)} steps by {_map(grid.columns[0])} the outline is "
+            f"After N{NBSP}={NBSP}{whole(steps)} steps by {_map(first.name)} the outline is "
             f"{said} times as long as before."
         )
 
@@ -57,8 +59,7 @@ def _upon_before(grid: Grid) -> Iterator[str]:
     """Images that hide what was before."""
     hidden = {
         steps
-        for row in grid.panels
-        for panel in row
+        for panel in grid.panels
         for steps, curves in panel.images
         if _lies_upon(curves[0], grid.before[0], _NEAR * line_width(grid))
     }

@@ -7,16 +7,16 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from verify.pages.figures.captioned_plot import Plot, computed, few, plotted
+from verify.pages.figures.captioned_plot import Plot, computed, plotted
 from verify.pages.sections.claim_view import ClaimView
-from verify.pages.text.typography import is_decimal, start, whole
+from verify.pages.text.typography import is_decimal
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
 
 if TYPE_CHECKING:
-    from verify.pages.figures.figures import Line
+    from verify.pages.figures.figures import Line, Quantity
 
 # -- against the step size ------------------------------------------------------------------------
 
@@ -31,24 +31,25 @@ def against_step_size(
 
     order = proof.order
     span = f"over [0, {scene.time}]" if scene.time else "over all steps"
-    lam = figures.lines(runs, "lambda")
-    if lam:
-        guides = (order - 1, order) if order is not None and order > 1 else ()
+    of_lam = (order - 1, order) if order is not None and order > 1 else ()
+    of_ratio = (order, order + 1) if order is not None else ()
+    lam = figures.Quantity("|Λ|", figures.lines(runs, "lambda"), of_lam)
+    ratio = figures.Quantity("MSE/|Λ|", figures.lines(runs, "mse", "lambda"), of_ratio)
+    shown = [each for each in (lam, ratio) if each.lines]
+    if shown:
+        bound = [_bound(runs, of_lam)] if lam.lines else []
         yield plotted(
-            lambda: figures.draw_against_step_size(lam, "|Λ|", guides),
-            name=f"lambda-of-{name}",
-            lead=f"Cumulative total error |Λ| {span} against the step size h",
-            caption=" ".join([_trend(lam), _bound(runs, guides), _guides(guides), computed(runs)]),
+            lambda: figures.draw_against_step_size(shown),
+            name=f"step-sizes-of-{name}",
+            lead=f"{' and '.join(each.title for each in shown)} {span} against the step size h",
+            caption=" ".join([*map(_told, shown), *bound, computed(runs)]),
         )
-    ratio = figures.lines(runs, "mse", "lambda")
-    if ratio:
-        guides = (order, order + 1) if order is not None else ()
-        yield plotted(
-            lambda: figures.draw_against_step_size(ratio, "MSE/|Λ|", guides),
-            name=f"ratio-of-{name}",
-            lead=f"Ratio MSE/|Λ| {span} against the step size h",
-            caption=" ".join([_trend(ratio), _guides(guides), computed(runs)]),
-        )
+
+
+def _told(shown: "Quantity") -> str:
+    """What its lines do, and which guides stand beside them."""
+    trend = _trend(shown.lines)
+    return f"{shown.title}: {trend[0].lower()}{trend[1:]} {_guides(shown.guides)}".rstrip()
 
 
 def _trend(plotted: Sequence["Line"]) -> str:
@@ -85,29 +86,7 @@ def _guides(guides: Sequence[int]) -> str:
     return f"Grey: the slopes of {' and '.join(_h(g) for g in guides)}." if guides else ""
 
 
-# -- over time ------------------------------------------------------------------------------------
-
-
-def over_time(run: RunResult, *, name: str) -> Plot:
-    """det J, ΔJ and Λ along one run."""
-    from verify.pages.figures import figures
-
-    source = f"For {run.source}: " if run.source else ""
-    lead = f"{source}h = {run.step_size} from {start(run)}: (a) det J, (b) ΔJ and (c) Λ over time"
-    bucket = max(point.last - point.first + 1 for point in figures.merged(run.series))
-    seen = ""
-    if {"delta_j_max", "lambda"} <= set(run.values):
-        top, end = (few(run.values[key].value) for key in ("delta_j_max", "lambda"))
-        seen = f" The greatest |ΔJ| is {top}; at the end Λ is {end}."
-    if run.status == "left range":
-        seen = f" The run left the range of {run.arithmetic} before its {whole(run.steps)} steps."
-    band = "Each level is one step."
-    if bucket > 1:
-        band = (
-            f"Each band reaches from the least to the greatest value within {whole(bucket)} steps."
-        )
-    caption = f"{band}{seen} {computed([run])}"
-    return plotted(lambda: figures.draw_over_time(run), name=name, lead=lead, caption=caption)
+# -- printed tables ------------------------------------------------------------------------------
 
 
 def table(claim: ClaimView, *, name: str) -> Plot | None:

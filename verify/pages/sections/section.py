@@ -30,12 +30,16 @@ class Place:
 
 @dataclass(frozen=True)
 class Entry:
-    """A place in the contents: verdicts counted in it, and the places within."""
+    """A place in the contents: verdicts counted in it, and the places within.
+
+    `is_numbered`: these are told by their numbers alone, in a line.
+    """
 
     anchor: str
     title: str | Markup
     counts: Counts = ()
     inner: tuple["Entry", ...] = ()
+    is_numbered: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,6 +82,7 @@ class Section:
     title: str = ""  # its heading, and its name in the contents; "": its template has its own
     anchor: str = ""  # where the page's contents and links lead, with that of its scene
     entries: Callable[[Any], Iterable[Entry]] = _nothing  # within its own; or in its place
+    is_numbered: bool = False  # its entries are numbers
     inner: Callable[[Any], Iterable["Shown"]] = _nothing  # the sections within it
     pictures: Callable[[Any], Iterable[Picture]] = _nothing
     keeps: Callable[[Any], Iterable[tuple[Plot, Place]]] = _nothing  # plots that stand only here
@@ -106,6 +111,11 @@ class Shown:
         return f"{own}-of-{of}" if own and of else own
 
     @property
+    def stem(self) -> str:
+        """The name of its file, with hyphens: a class of its own in the style sheet."""
+        return self.template.partition("/")[2].removesuffix(".html").replace("_", "-")
+
+    @property
     def name(self) -> str:
         """What a link to it is called."""
         return f"{self.section.title}, {self.place.name}" if self.place.name else self.section.title
@@ -116,7 +126,8 @@ class Shown:
         inner = tuple(self.section.entries(self.view))
         if not (self.section.title and self.anchor):
             return inner
-        return (Entry(self.anchor, self.section.title, inner=inner),)
+        numbered = self.section.is_numbered
+        return (Entry(self.anchor, self.section.title, inner=inner, is_numbered=numbered),)
 
     @property
     def pictures(self) -> Iterator[tuple[tuple[int, ...], Plot, Place]]:

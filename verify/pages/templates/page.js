@@ -1,5 +1,5 @@
-// The page needs none of this: it opens the claim that a link leads to, and all for printing;
-// a tile shows the claims that it counts, and all again.
+// The page needs none of this: it opens the claim that a link leads to, a tile shows the claims that
+// it counts, and all again, and the contents mark where one is.
 (() => {
   const reveal = () => {
     const target = document.getElementById(location.hash.slice(1));
@@ -14,8 +14,6 @@
     const link = event.target.closest('a[href^="#"]');
     if (link && link.hash === location.hash) reveal();
   });
-  if (!CSS.supports("selector(::details-content)"))
-    addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((each) => (each.open = true)));
   const claims = [...document.querySelectorAll(".claim[data-told]")];
   const tiles = [...document.querySelectorAll(".tile[data-told]")].filter((tile) =>
     claims.some((claim) => claim.dataset.told === tile.dataset.told));
@@ -39,5 +37,13 @@
   addEventListener("hashchange", () => {
     if (document.getElementById(location.hash.slice(1))?.closest("[hidden]")) show(null);
   }, { capture: true });
+  const links = new Map([...document.querySelectorAll(".contents a")].map((link) =>
+    [document.getElementById(link.hash.slice(1)), link]));
+  const mark = () => {
+    const passed = [...links.keys()].filter((each) => each && each.getBoundingClientRect().top < innerHeight / 3);
+    for (const link of links.values()) link.removeAttribute("aria-current");
+    links.get(passed.at(-1))?.setAttribute("aria-current", "location");
+  };
+  addEventListener("scroll", mark, { passive: true });
   reveal();
 })();

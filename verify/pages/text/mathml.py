@@ -18,6 +18,7 @@ from markupsafe import Markup, escape
 
 from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
+from verify.pages.text.inline_math import in_line
 from verify.pages.text.terms import Term, factor_key, terms_of
 
 Expr: TypeAlias = sympy.Expr
@@ -47,7 +48,7 @@ _SLASH = '<mo lspace="0" rspace="0">/</mo>'
 def formula(text: str) -> Markup:
     """The formula as inline markup."""
     expression = read(text)
-    return plain(text) if expression is None else _math(_sum(expression))
+    return plain(text) if expression is None else _math(in_line(_sum(expression)))
 
 
 def equation(left: str, text: str) -> Markup:
@@ -251,7 +252,7 @@ def _atom(base: Expr) -> str:
 
 def _call(function: Expr, power: str) -> str:
     text = type(function).__name__
-    label = f"<mi>{_NAMES.get(text, text)}</mi>"
+    label = _word(_NAMES.get(text, text))
     head = f"<msup>{label}{power}</msup>" if power else label
     (argument,) = function.args
     if argument.is_Symbol or argument is sympy.pi or (argument.is_Integer and argument >= 0):
@@ -270,11 +271,17 @@ def _bracketed(expression: Expr) -> str:
 def identifier(text: str) -> str:
     """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript."""
     stem, below = _parts(text)
-    letter = f"<mi>{escape(GREEK.get(stem, stem))}</mi>"
+    letter = _word(GREEK.get(stem, stem))
     if not below:
         return letter
-    tag = "mn" if below.isdigit() else "mi"
-    return f"<msub>{letter}<{tag}>{escape(GREEK.get(below, below))}</{tag}></msub>"
+    index = f"<mn>{below}</mn>" if below.isdigit() else _word(GREEK.get(below, below))
+    return f"<msub>{letter}{index}</msub>"
+
+
+def _word(text: str) -> str:
+    """A letter slants, a word stands upright; see the style sheet."""
+    upright = ' mathvariant="normal"' if len(text) > 1 else ""
+    return f"<mi{upright}>{escape(text)}</mi>"
 
 
 def _parts(text: str) -> tuple[str, str]:

@@ -19,6 +19,7 @@ NBSP = "\u00a0"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _GROUP, _IN_A_LINE = 5, 3  # digits to a group, groups to a line
 _UNGROUPED = 17  # digits at most of a number that is left in one piece
+_ZEROS = 6  # at the end of a number, which nobody counts
 _SMALL_STEP = Decimal("0.0001")
 _MOST_DIGITS = 60  # of one number on the page; the others are in results.json
 
@@ -42,6 +43,22 @@ def number(text: str) -> str:
     power = int(exponent or 0)
     scale = f"{NBSP}×{NBSP}10{superscript(power)}" if power else ""
     return f"{sign}{digits}{scale}"
+
+
+def exact(text: str) -> str:
+    """A whole number with many zeros at its end as a product with a power of ten; else `number`.
+
+    >>> exact("1000000000000"), exact("-2700000000")
+    ('10¹²', '−27\\xa0×\\xa010⁸')
+    """
+    digits = text.lstrip("-")
+    zeros = len(digits) - len(digits.rstrip("0"))
+    if not digits.isdecimal() or zeros < _ZEROS:
+        return number(text)
+    mantissa = digits[:-zeros]
+    sign = "−" if text.startswith("-") else ""
+    scale = f"10{superscript(zeros)}"
+    return f"{sign}{scale}" if mantissa == "1" else f"{sign}{mantissa}{NBSP}×{NBSP}{scale}"
 
 
 def step(size: str) -> str:

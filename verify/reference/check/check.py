@@ -24,7 +24,7 @@ from verify.execution.executors import (
     open_place,
     results_of,
 )
-from verify.execution.keeping import versions
+from verify.execution.machine import versions
 from verify.files import MOST_BYTES, read_bytes, text_of
 from verify.formats import check_format
 from verify.reference.check import consistency

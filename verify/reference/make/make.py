@@ -9,7 +9,7 @@ from typing import Any
 
 from verify.content import content
 from verify.errors import InputError
-from verify.execution.keeping import versions
+from verify.execution.machine import versions
 from verify.files import MOST_BYTES, read_text, write_atomically
 from verify.formats import names_format
 from verify.reference.make.models import (

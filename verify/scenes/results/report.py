@@ -60,7 +60,10 @@ class SceneResult(Frozen):
 
 
 class Provenance(Frozen):
-    """What made a report: the command, versions, machine, and time."""
+    """What made a report: the command, versions, machine, time it took, and when it was `made`.
+
+    `commit`: that of the checkout whose code it was, or "".
+    """
 
     command: str
     versions: dict[str, str]
@@ -68,6 +71,8 @@ class Provenance(Frozen):
     seconds: Seconds
     kept: int  # results taken from an earlier, interrupted or finished, call
     computed: int
+    made: str = ""
+    commit: str = ""
 
 
 class Report(Frozen):

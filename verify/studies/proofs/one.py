@@ -1,18 +1,24 @@
 """The task of a proof for one H and one scheme."""
 
 import time
-from typing import Literal
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, Literal
 
 from verify.algebra.formula import to_text
 from verify.arithmetic.exact import text
 from verify.execution.keeping import Keeper
 from verify.execution.task import SchemeTask
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.proof import Formulas, ProofResult
 from verify.schemes import get
-from verify.schemes.step_map import grouped
+from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap, grouped
 
 _COST = 10_000_000  # of a proof, about
+_LONG = 12  # digits of a value that no formula is read with
+_FORMULAS = ("delta_j", "p_next", "q_next", "jacobian")
 
 
 class ProofTask(SchemeTask):
@@ -36,11 +42,7 @@ class ProofTask(SchemeTask):
         begun = time.perf_counter()
         step_map = scheme.step_map(hamiltonian)
         proof = prove(step_map, scheme)
-        closed, p_next, q_next, jacobian = step_map.closed, None, None, None
-        if closed is not None and self.formulas:
-            elements = (closed.p_next, closed.q_next, *closed.jacobian)
-            p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in elements)
-            jacobian = (a, b), (c, d)
+        written = _written(step_map) if self.formulas else dict.fromkeys(_FORMULAS)
         return ProofResult(
             **hamiltonian.texts,
             scheme=self.scheme,
@@ -48,15 +50,45 @@ class ProofTask(SchemeTask):
             reason=proof.reason,
             order=proof.order,
             leading=proof.first.text,
-            delta_j=step_map.delta_j_text if self.formulas else None,
             area_preserving=proof.area_preserving,
             convergence_order=proof.convergence_order,
             witness={name: text(value) for name, value in proof.witness.items()},
             enclosure=proof.enclosure,
             domain=proof.domain.texts,
             where=proof.domain.prose,
-            p_next=p_next,
-            q_next=q_next,
-            jacobian=jacobian,
+            **written,
+            symbolic=_symbolic(hamiltonian, scheme, proof.order) if self.formulas else None,
             seconds=time.perf_counter() - begun,
         )
+
+
+def _written(step_map: StepMap) -> dict[str, Any]:
+    """The map, its Jacobian and ΔJ as texts, each None where it is too large."""
+    found: dict[str, Any] = dict.fromkeys(_FORMULAS)
+    found["delta_j"] = step_map.delta_j_text
+    if (closed := step_map.closed) is not None:
+        elements = (closed.p_next, closed.q_next, *closed.jacobian)
+        p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in elements)
+        found |= {"p_next": p_next, "q_next": q_next, "jacobian": ((a, b), (c, d))}
+    return found
+
+
+def _symbolic(hamiltonian: Hamiltonian, scheme: Scheme, order: int | None) -> Formulas | None:
+    """The same with symbols for long values; None where no value is long.
+
+    A leading coefficient is given where it is of the same order: for a value of its own a
+    parameter may have another one.
+    """
+    long = tuple(name for name, value in hamiltonian.values if _digits(value) >= _LONG)
+    if not long:
+        return None
+    kept = tuple((name, value) for name, value in hamiltonian.values if name not in long)
+    step_map = scheme.step_map(replace(hamiltonian, values=kept))
+    proof = prove(step_map, scheme)
+    same = order is not None and proof.order == order
+    leading = proof.first.text if same else None
+    return Formulas(symbols=long, leading=leading, **_written(step_map))
+
+
+def _digits(value: Fraction) -> int:
+    return max(len(str(abs(value.numerator))), len(str(value.denominator)))

@@ -16,7 +16,7 @@ from verify.arithmetic import about
 from verify.arithmetic.exact import text, upper
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
-from verify.execution.keeping import machine
+from verify.execution.machine import machine
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tests.unit.pages.test_page import page_of, real
 from verify.pages.figures.axes import decades
-from verify.pages.figures.figures import merged
+from verify.pages.figures.over_time_figure import merged
 from verify.pages.page import render
 from verify.scenes.results.run import SeriesPoint
 
@@ -23,8 +23,7 @@ def figures(page: str) -> list[Any]:
 
 def test_figures_are_inline_images_that_follow_the_theme() -> None:
     found = figures(page_of("real"))
-    # The highlight, the table, |Λ| and MSE/|Λ| over h, and one series.
-    assert len(found) == 4  # one each: table, |Λ|, ratio, series
+    assert len(found) == 3, "the table, |Λ| and MSE/|Λ| over h, one series"
     ids = [e.get("id") for svg in found for e in svg.iter() if e.get("id")]
     assert ids
     assert len(ids) == len(set(ids))
@@ -45,7 +44,7 @@ def test_figures_are_inline_images_that_follow_the_theme() -> None:
 
 
 def test_lines_differ_by_more_than_colour() -> None:
-    plot = figures(page_of("real"))[2]
+    plot = figures(page_of("real"))[1]
     lines = [e for e in plot.iter() if e.get("style", "").startswith("stroke: var(--series")]
     assert len({e.get("style") for e in lines}) == 2
     assert len({e.get("stroke-dasharray") for e in lines if e.tag == "path"}) == 2

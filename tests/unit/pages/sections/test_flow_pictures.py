@@ -46,7 +46,7 @@ def test_of_a_map_whose_last_image_failed_the_last_known_change_is_told_too() ->
 def test_a_row_without_any_image_is_not_drawn_and_it_is_said() -> None:
     drawn_out = image(outlines=(outline(spiral()),))
     made = flow(drawn_out, FAILED)
-    assert [row.partition(",")[0] for row in grid_of(made).rows] == ["N = 100"]
+    assert [row.partition(",")[0] for row in grid_of(made).counts] == ["N = 100"]
     assert "At N = 400 there is no image." in caption_of(made)
     assert "there is no image" not in caption_of(flow(drawn_out))
 

@@ -198,5 +198,5 @@ def test_a_series_names_what_it_repeats_only_where_the_scene_says_so() -> None:
         for i in range(1, 4)
     )
     page = render(report((scene(series=(run(series=points, source="Figure 10"),)),)))
-    assert "For Figure 10: h = 0.01 from" in text_of(page)
+    assert "p₀ = −0.5 (for Figure 10)." in text_of(page)
     assert "Figure" not in text_of(render(report((scene(series=(run(series=points),)),))))

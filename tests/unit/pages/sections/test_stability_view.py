@@ -80,7 +80,7 @@ def test_a_map_is_a_figure_with_counts_and_the_line_of_linear_theory() -> None:
 
 def test_without_a_limit_the_map_has_no_line() -> None:
     page = page_of(stability_maps=(MAP.model_copy(update={"linear": ("0", "0")}),))
-    assert "Linear theory has no stable step for this scheme." in text_of(page)
+    assert "linear theory has no stable step." in text_of(page)
     assert "limit of linear theory" not in page
 
 

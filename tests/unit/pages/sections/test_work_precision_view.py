@@ -84,7 +84,6 @@ def test_the_figure_has_hollow_marks_crosses_and_the_floor_only_where_they_occur
     for said in ("hollow: limited by rounding", "× at the edge: failed", "floor: rounding part"):
         assert said in found
     assert "lie2, slope 2.00" in found
-    assert "h = 0.1" in found
     bare = "".join(figures(page_of(ladder()))[0].itertext())
     assert "hollow" not in bare
     assert "failed" not in bare
@@ -92,11 +91,11 @@ def test_the_figure_has_hollow_marks_crosses_and_the_floor_only_where_they_occur
 
 def test_an_error_without_meaning_is_at_the_edge_and_hides_no_other() -> None:
     lost = point(error="1e200", step_size="0.2", steps=5, seconds=5e-6)
-    page = page_of(with_points("lie2", lost), systems=(system(certified="99.0"),))
-    errors, _, digits = ("".join(svg.itertext()) for svg in figures(page))
+    (errors,) = ("".join(svg.itertext()) for svg in figures(page_of(with_points("lie2", lost))))
     assert "beyond the edge" in errors
     assert "10²⁰⁰" not in errors
-    assert "beyond" not in digits, "digits are no logarithms"
+    (digits,) = figures(page_of(systems=(system(certified="99.0"),)))
+    assert "beyond" not in "".join(digits.itertext()), "digits are no logarithms"
     assert "beyond" not in "".join(figures(page_of(ladder()))[0].itertext())
 
 
@@ -130,13 +129,27 @@ def test_peers_stand_beside_the_schemes_or_are_named_as_left_out() -> None:
     assert "Not drawn: DOP853 (scipy is not installed)." in left
 
 
-def test_number_systems_have_a_table_and_a_figure_of_their_own() -> None:
+def test_number_systems_have_a_table_and_a_panel_of_their_own() -> None:
     page = page_of(ladder(), systems=(system(), system(arithmetic="fixed", seconds_median=1e-4)))
     assert "Certified digits of the end state" in text_of(page)
-    assert len(figures(page)) == 3
-    assert len(figures(page_of(ladder()))) == 2
+    assert "(d) certified digits" in drawn(page)
+    assert "certified digits" not in drawn(page_of(ladder()))
     lost = system(certified=None, reason="left range", seconds_min=None, seconds_median=None)
     assert "– (left range)" in text_of(page_of(ladder(), systems=(lost,)))
+
+
+def drawn(page: str) -> str:
+    """All words of its one figure."""
+    (svg,) = figures(page)
+    return " ".join(svg.itertext())
+
+
+def test_each_line_has_its_name_beside_it_in_each_panel() -> None:
+    """Beside the legend: both errors and Λ have a line of each scheme."""
+    names = [
+        t.text for t in figures(page_of(ladder("a"), ladder("c")))[0].iter() if t.tag == "text"
+    ]
+    assert names.count("a") == names.count("c") == 3
 
 
 def test_a_line_keeps_its_look_in_every_figure() -> None:
@@ -145,10 +158,11 @@ def test_a_line_keeps_its_look_in_every_figure() -> None:
     gone = gone.model_copy(
         update={"points": tuple(p.model_copy(update={"lam_plain": None}) for p in gone.points)}
     )
-    both = figures(page_of(ladder("a"), gone, ladder("c")))
-    third = "--series-3"
-    assert all(third in source(svg) for svg in both)
-    assert "--series-2" not in source(both[1])
+    (three,) = figures(page_of(ladder("a"), gone, ladder("c")))
+    colours = {t.text: t.get("style") for t in three.iter() if t.tag == "text" and t.get("style")}
+    assert "--series-3" in (colours["c"] or "")
+    panels = [source(g) for g in three.iter() if g.get("id", "").endswith("axes_3")]
+    assert not any("--series-2" in panel for panel in panels)
 
 
 def source(svg: Any) -> str:
@@ -166,7 +180,7 @@ def test_the_figures_are_one_file_too() -> None:
         ElementTree.fromstring(standalone(each))  # noqa: S314 - our own
         for each in (result(ladder(), systems=(system(),)), result())
     )
-    assert len(full.findall("{http://www.w3.org/2000/svg}svg")) == 3
+    assert len(full.findall("{http://www.w3.org/2000/svg}svg")) == 1
     assert empty.tag == "{http://www.w3.org/2000/svg}svg"
 
 

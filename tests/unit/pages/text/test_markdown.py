@@ -259,11 +259,11 @@ def test_a_claim_that_is_closed_shows_its_statement() -> None:
     for statement, shown in (
         ("ΔJ = O(`h^η`), *a*", "ΔJ = O(h<sup>η</sup>), *a*"),
         ("It is `3*p**2*q`.", "It is 3 p<sup>2</sup> q."),  # no MathML in a <summary>
-        ("It is `p*sqrt(q)/(1 + h*q)`.", "(p √q)/(1+h q)"),
+        ("It is `p*sqrt(q)/(1 + h*q)`.", "p √q/(1+h q)"),
         (f"{EVIL} $x$", "&lt;script&gt;"),
     ):
         text, _ = render(report(claims=(claim(statement=read_prose(statement)),)))
-        (summary,) = re.findall(r"<summary>(.*)</summary>", text)
+        summary, _ = re.findall(r"<summary>(.*)</summary>", text)  # its own, and that of the terms
         assert shown in summary
         assert "<script" not in text
 
@@ -282,7 +282,7 @@ def test_every_figure_is_a_file_with_a_text_alternative(tmp_path: Path) -> None:
     path = write(real(), tmp_path)
     assert path == tmp_path / "report.md"
     images = [t for t in parsed(path.read_text(encoding="utf-8")) if t.type == "image"]
-    assert len(images) == 4
+    assert len(images) == 3
     for image in images:
         assert image.content
         root = ElementTree.fromstring((tmp_path / str(image.attrs["src"])).read_text())  # noqa: S314
@@ -316,9 +316,9 @@ def test_the_same_report_gives_the_same_text() -> None:
 @pytest.mark.parametrize(
     ("formula", "expected"),
     [
-        ("p**2/2 - cos(q)", r"\frac{p^{2}}{2}-\cos q"),
+        ("p**2/2 - cos(q)", r"\tfrac{1}{2}\,p^{2}-\cos q"),
         ("3*delta*h**3*p*q", r"3\,h^{3}\,\delta \,p\,q"),
-        ("sqrt(p)/(1 + omega0**2)", r"\frac{\sqrt{p}}{1+{{\omega }_{0}}^{2}}"),
+        ("sqrt(p)/(1 + omega0**2)", r"\sqrt{p}/(1+{{\omega }_{0}}^{2})"),
         ("k_max*exp(-q)", r"k_{\mathrm{max}}\,e^{-q}"),
     ],
 )

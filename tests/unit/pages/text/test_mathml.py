@@ -1,7 +1,9 @@
 """Formula text → MathML: exact snapshots, and the value of the markup against the formula's."""
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
+from unicodedata import numeric
 from xml.etree import ElementTree
 
 import pytest
@@ -17,7 +19,11 @@ APPLY_THIN = '<mo lspace="0" rspace="0.17em">\u2061</mo>'
 OPEN, CLOSE = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
 H2 = "<msup><mi>h</mi><mn>2</mn></msup>"
 Q2 = "<msup><mi>q</mi><mn>2</mn></msup>"
-SIN_Q = f"<mrow><mi>sin</mi>{APPLY_THIN}<mi>q</mi></mrow>"
+WORD = '<mi mathvariant="normal">{}</mi>'  # a letter alone slants
+SIN, COS, LN, ARCTAN, MAX, MASS = (
+    WORD.format(word) for word in ("sin", "cos", "ln", "arctan", "max", "mass")
+)
+SIN_Q = f"<mrow>{SIN}{APPLY_THIN}<mi>q</mi></mrow>"
 
 SNAPSHOTS = {
     "0": "<mn>0</mn>",
@@ -31,12 +37,12 @@ SNAPSHOTS = {
         f"<mrow><mn>1</mn><mo>−</mo><mrow><mfrac>{H2}<mn>2</mn></mfrac>{TIMES}<mrow>{OPEN}<mrow>"
         f"<mn>1</mn><mo>+</mo><mrow><mn>3</mn>{TIMES}{Q2}</mrow></mrow>{CLOSE}</mrow></mrow></mrow>"
     ),
-    "cos(q)**2": f"<mrow><msup><mi>cos</mi><mn>2</mn></msup>{APPLY_THIN}<mi>q</mi></mrow>",
+    "cos(q)**2": f"<mrow><msup>{COS}<mn>2</mn></msup>{APPLY_THIN}<mi>q</mi></mrow>",
     "(q - 1)**2": (
         f"<msup><mrow>{OPEN}<mrow><mi>q</mi><mo>−</mo><mn>1</mn></mrow>{CLOSE}</mrow><mn>2</mn></msup>"
     ),
     "sin(2*q)": (
-        f"<mrow><mi>sin</mi>{APPLY}"
+        f"<mrow>{SIN}{APPLY}"
         f"<mrow>{OPEN}<mrow><mn>2</mn>{TIMES}<mi>q</mi></mrow>{CLOSE}</mrow></mrow>"
     ),
     "exp(-q)": "<msup><mi>e</mi><mrow><mo>−</mo><mi>q</mi></mrow></msup>",
@@ -49,10 +55,10 @@ SNAPSHOTS = {
     "omega0**2*q": (
         f"<mrow><msup><msub><mi>ω</mi><mn>0</mn></msub><mn>2</mn></msup>{TIMES}<mi>q</mi></mrow>"
     ),
-    "k_max*mass": f"<mrow><msub><mi>k</mi><mi>max</mi></msub>{TIMES}<mi>mass</mi></mrow>",
+    "k_max*mass": f"<mrow><msub><mi>k</mi>{MAX}</msub>{TIMES}{MASS}</mrow>",
     "log(q) + atan(p)": (
-        f"<mrow><mrow><mi>arctan</mi>{APPLY_THIN}<mi>p</mi></mrow><mo>+</mo>"
-        f"<mrow><mi>ln</mi>{APPLY_THIN}<mi>q</mi></mrow></mrow>"
+        f"<mrow><mrow>{ARCTAN}{APPLY_THIN}<mi>p</mi></mrow><mo>+</mo>"
+        f"<mrow>{LN}{APPLY_THIN}<mi>q</mi></mrow></mrow>"
     ),
 }  # fmt: skip
 
@@ -63,9 +69,33 @@ def tree(markup: str) -> ElementTree.Element:
 
 @pytest.mark.parametrize("text", SNAPSHOTS)
 def test_a_formula_has_this_markup(text: str) -> None:
-    markup = str(mathml.formula(text))
-    inside = markup.removeprefix("<math><mrow>").removesuffix("</mrow></math>")
-    assert inside == SNAPSHOTS[text]
+    assert inside(stacked(text)) == SNAPSHOTS[text]
+
+
+def stacked(text: str) -> str:
+    """As it stands in a display."""
+    markup = mathml.matrix("", [[text]])
+    assert markup is not None
+    return re.search("<mtd>(.*)</mtd>", markup)[1]  # type: ignore[index]
+
+
+def inside(markup: str) -> str:
+    return markup.removeprefix("<math><mrow>").removesuffix("</mrow></math>")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("-h**3*p*q/2", "−½\u2062h3\u2062p\u2062q"),
+        ("3*q**2/2", "3\u2062q2/2"),
+        ("2*q/3 - 5/6", "⅔\u2062q−⅚"),
+        ("p*(1 + q)*h/24", "(h/24)\u2062p\u2062(1+q)"),
+        ("(1 + q)/(2*p)", "(1+q)/(2\u2062p)"),
+        ("p*sin(q/2)", "p\u2062sin\u2061(½\u2062q)"),
+    ],
+)
+def test_within_a_line_no_fraction_is_stacked(text: str, expected: str) -> None:
+    assert "".join(tree(mathml.formula(text)).itertext()) == expected
 
 
 # -- the markup means what the formula means ------------------------------------------------------
@@ -110,7 +140,8 @@ def value(element: ElementTree.Element) -> float:
         case "msub":
             return AT[{"ω0": "omega0", "kmax": "k_max"}["".join(element.itertext())]]
         case "mn":
-            return float(element.text or "")
+            digits = element.text or ""
+            return numeric(digits) if len(digits) == 1 else float(digits)
     constants = {"e": math.e, "π": math.pi}
     return (constants | AT)[element.text or ""]
 
@@ -155,18 +186,19 @@ def called(head: ElementTree.Element, rest: Iterator[ElementTree.Element]) -> fl
     return float(function(value(argument))) ** power
 
 
+@pytest.mark.parametrize("set_as", [mathml.formula, lambda text: stacked(text)])
 @pytest.mark.parametrize("text", FORMULAS)
-def test_the_markup_has_the_value_of_the_formula(text: str) -> None:
+def test_the_markup_has_the_value_of_the_formula(text: str, set_as: Callable[[str], str]) -> None:
     names = set(AT) | {"p", "q", "h"}
     expected = float(
         parse(text, names).subs({sympy.Symbol(n, real=True): x for n, x in AT.items()})
     )
-    assert math.isclose(value(tree(mathml.formula(text))), expected, rel_tol=1e-12)
+    assert math.isclose(value(tree(set_as(text))), expected, rel_tol=1e-12)
 
 
 @pytest.mark.parametrize("text", FORMULAS)
 def test_fractions_powers_and_indices_have_two_parts(text: str) -> None:
-    for element in tree(mathml.formula(text)).iter():
+    for element in tree(stacked(text)).iter():
         if element.tag in ("mfrac", "msup", "msub", "mroot"):
             assert len(element) == 2, element.tag
 

@@ -101,7 +101,9 @@ def _hunted(gallery: Gallery) -> Iterator[str]:
         f"{whole(gallery.steps)} steps."
     )
     yield (
-        "Of each shape of H only the worst scene is shown, the worst of all first. What it "
+        "Of scenes that are one again (H of the same shape; or about as bad by the same scheme, "
+        "from the same start or with more terms) only the worst is shown, the worst of all "
+        "first. What it "
         "measures was measured again with twice the digits, and is the same."
     )
 
@@ -114,9 +116,14 @@ def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
         anchor=anchor,
         title=f"Scene {place}: {said}",
         setting=_setting(each, gallery.steps),
-        finding=(*lambda_of(each), *run_beyond(each)),
+        finding=(*lambda_of(each), *run_beyond(each), *_at_rest(each)),
         plots=tuple(_plots(each, place, gallery.steps, anchor)),
     )
+
+
+def _at_rest(each: GalleryScene) -> Iterator[str]:
+    if len(each.orbit) > 1 and len(set(each.orbit)) == 1:
+        yield "The orbit stays where it starts."
 
 
 def _setting(each: GalleryScene, steps: int) -> Markup:
@@ -145,7 +152,7 @@ def _plots(each: GalleryScene, place: int, steps: int, anchor: str) -> Iterator[
             lead=f"Scene {place}: |truncation| and |rounding| in Λ against the number of steps",
             caption=Markup(" ").join([*formula, _parts_sentence(each)]),
         )
-    if len(each.orbit) > 1:
+    if len(set(each.orbit)) > 1:
         from verify.pages.figures import gallery_figure
 
         yield plotted(
@@ -180,9 +187,7 @@ def _orbit_sentence(each: GalleryScene, steps: int) -> str:
     shown = len(each.orbit) - 1
     every = -(-steps // shown)
     points = "each step" if every == 1 else f"every {whole(every)} steps"
-    still = len(set(each.orbit)) == 1
-    at_rest = " It stays where it starts." if still else ""
-    return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits.{at_rest}"
+    return f"The scheme’s own orbit, a point {points}, in numbers of 40 digits."
 
 
 def _is_known(size: str) -> bool:

@@ -5,9 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.by_key import by_key
 from verify.pages.sections.claim_view import Anchors, ClaimView
 from verify.pages.sections.given import Given, SceneView
-from verify.pages.sections.section import Place, Section, walk
+from verify.pages.sections.section import Entry, Place, Section, walk
 from verify.scenes.paper_figures import PaperFigure
 
 _NAMED = re.compile(r"^fig(ure|\.)?\s+", re.IGNORECASE)
@@ -23,6 +24,16 @@ class PaperFigureView:
     finding: str
     claims: tuple[ClaimView, ...]
     scene: SceneView | None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it takes the whole width of the page."""
+        return any(plot.span == "full" for plot in self.plots)
+
+    @property
+    def drawn_from(self) -> list[tuple[str, list[ClaimView]]]:
+        """What the paper draws from it: each statement once, with its readings."""
+        return list(by_key(self.claims, lambda c: c.result.statement or c.result.id).items())
 
 
 def _views(given: Given) -> tuple[PaperFigureView, ...]:
@@ -74,5 +85,7 @@ SECTION = Section(
     title="The paper’s figures, made again",
     anchor="figures",
     view=_views,
+    entries=lambda views: (Entry(v.anchor, _NAMED.sub("", v.figure.label)) for v in views),
+    is_numbered=True,
     keeps=_keeps,
 )

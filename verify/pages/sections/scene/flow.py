@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
@@ -12,6 +13,9 @@ from verify.pages.sections.section import Picture, Place, Section
 from verify.pages.text.typography import listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.scenes.results.report import SceneResult
+
+if TYPE_CHECKING:
+    from verify.pages.figures.flow_figure import Grid
 
 
 @dataclass(frozen=True)
@@ -107,7 +111,10 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
     from verify.pages.sections.flow_pictures import picture_sentences
 
     grid, what = grid_of(flow), _the(flow)
-    maps = listed(f"the {name}" if name == EXACT_FLOW else name for name in grid.columns)
+    maps = listed(
+        f"the {name}" if name == EXACT_FLOW else name
+        for name in dict.fromkeys(image.map for image in flow.images)
+    )
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
     found = " ".join(picture_sentences(flow, grid))
     return plotted(
@@ -115,21 +122,20 @@ def _plot(flow: FlowResult, anchor: str) -> Plot | None:
         name=f"panels-of-{anchor}",
         lead=lead,
         label=f"{lead}. {found}".strip(),
-        caption=f"{_caption(flow, len(grid.rows))} {found}".strip(),
-        wide=len(grid.columns) > 1,
+        caption=f"{_caption(flow, grid)} {found}".strip(),
     )
 
 
-def _caption(flow: FlowResult, rows: int) -> str:
-    counts = len({image.steps for image in flow.images})
-    placed = "a row for each number of steps N" if rows else "labelled by the number of steps N"
-    some = f" {whole(rows)} of {whole(counts)} are drawn." if rows and rows < counts else ""
+def _caption(flow: FlowResult, grid: "Grid") -> str:
+    counts, shown = len({image.steps for image in flow.images}), len(grid.counts)
+    under = "; broad and grey: the exact flow" * any(panel.exact for panel in grid.panels)
+    some = f" {whole(shown)} of {whole(counts)} are drawn." if 0 < shown < counts else ""
     none = sorted({i.steps for i in flow.images} - {i.steps for i in flow.images if i.outlines})
     if none:
         some += f" At N{IS}{listed(map(whole, none))} there is no image."
     return (
-        f"Grey: before. In colour: where each map carries it, {placed}.{some} What is tinted is "
-        f"{region_of(flow)}, whose area is measured. One scale for q and for p in all panels."
+        f"Grey: before; in colour: after N steps by each map{under}.{some} Tinted is "
+        f"{region_of(flow)}, whose area is measured. One scale for q and p in all panels."
     )
 
 

@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from verify.arithmetic.exact import plain, short
 from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.sections.by_key import by_key
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text.prose import prose
@@ -39,7 +40,7 @@ MEANINGS: dict[Kind, str] = {
 class StabilityView:
     """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded.
 
-    `runs`: each with its name and its step size.
+    `runs`: each with its name and its step size. `plots`: each with how many kinds of run it shows.
     """
 
     finding: tuple[str, ...]
@@ -47,7 +48,7 @@ class StabilityView:
     runs: tuple[tuple[str, str, StabilityResult], ...]
     largest: tuple[Row, ...]
     bound: str
-    plots: tuple[tuple[StabilityMapResult, Plot], ...]
+    plots: tuple[tuple[int, Plot], ...]
 
 
 def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
@@ -61,7 +62,7 @@ def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
         runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in runs),
         largest=tuple(map(_largest, steps)),
         bound=_bound(steps),
-        plots=tuple((over, _plot(over, f"{i}-of-{anchor}")) for i, over in enumerate(maps)),
+        plots=tuple(_plots(maps, anchor)),
     )
 
 
@@ -120,38 +121,54 @@ def _bound(steps: Sequence[LargestStepResult]) -> str:
     return f"until t = {listed(list(times))}" if times else ""
 
 
-def _plot(over: StabilityMapResult, name: str) -> Plot:
-    """The drawing, and with it matplotlib, is imported only where there is a map."""
-    from verify.pages.figures.stability_figure import draw_plane
+def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[int, Plot]]:
+    """One for the maps of all schemes over the same steps and values.
 
-    return plotted(
-        lambda: draw_plane(over),
-        name=f"stability-{name}",
-        lead=f"Stability of {over.scheme} over the step size h and {over.parameter}",
-        caption=_caption(over),
-    )
+    The drawing, and with it matplotlib, is imported only where there is a map.
+    """
+    together = by_key(maps, lambda m: (m.parameter, m.values, m.step_sizes, m.steps, m.q, m.p))
+    for index, of in enumerate(together.values()):
+        from verify.pages.figures.stability_figure import draw_planes
+
+        names = listed(over.scheme for over in of)
+        lead = f"Stability of {names} over the step size h and {of[0].parameter}"
+        counts = "; ".join(f"{m.scheme}: {counts_of(m.counted())}" for m in of)
+        plot = plotted(
+            lambda of=of: draw_planes(of),  # type: ignore[misc]
+            name=f"stability-{index}-of-{anchor}",
+            lead=lead,
+            label=f"{lead}. {counts}.",
+            caption=_caption(of, counts),
+        )
+        yield len({kind for over in of for kind in over.counted()}), plot
 
 
-def _caption(over: StabilityMapResult) -> str:
-    parts = counts_of(over.counted())
+def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
+    """What a picture of one map is, with its counts; those of several are in their alternative."""
+    over = maps[0]
     limit = ""
-    if any(h and Fraction(h) > 0 for h in over.linear):
+    if any(_is_positive(h) for m in maps for h in m.linear):
         limit = (
             " The line is where h times the orbit’s greatest frequency reaches the limit of linear "
             "theory."
         )
-    elif any(over.linear):
-        limit = " Linear theory has no stable step for this scheme."
+    never = [m.scheme for m in maps if any(m.linear) and not any(map(_is_positive, m.linear))]
+    if never:
+        limit += f" For {listed(never)} linear theory has no stable step."
     return (
         f"Each mark is a run of {whole(over.steps)} steps from q = {number(over.q)}, "
-        f"p = {number(over.p)}: {parts}.{limit}"
+        f"p = {number(over.p)}.{limit}" + f" {counts}." * (len(maps) == 1)
     )
+
+
+def _is_positive(step_size: str | None) -> bool:
+    return bool(step_size) and Fraction(step_size or 0) > 0
 
 
 def _pictures(view: StabilityView) -> Iterator[Picture]:
     """That with the most kinds of run tells the most."""
-    for over, plot in view.plots:
-        yield Picture((1, -len(over.counted())), plot)
+    for kinds, plot in view.plots:
+        yield Picture((1, -kinds), plot)
 
 
 def _terms(views: Sequence[StabilityView]) -> dict[str, Markup]:

@@ -105,7 +105,7 @@ def _agreement(found: Sequence[PredictionResult]) -> Iterator[str]:
     )
     shares = [share for p in found if (share := _share(p)) is not None]
     if shares:
-        parts = between(_percent(min(shares)), _percent(max(shares)))
+        parts = between(_part(min(shares)), _part(max(shares)))
         yield f"The bounded part is {parts} as large as the secular one."
 
 
@@ -133,8 +133,11 @@ def _few(value: Fraction) -> str:
     return number(f"{size:.3g}")
 
 
-def _percent(value: Fraction) -> str:
-    return f"{float(100 * value):.2g}{NBSP}%" if value < 10 else f"{float(value):.2g} times"
+def _part(value: Fraction) -> str:
+    """Two digits: per cent of what is smaller than the whole, else how many times the whole."""
+    if value < 1:
+        return f"{number(f'{float(100 * value):.2g}')}{NBSP}%"
+    return f"{whole(round(value)) if value >= 10 else f'{float(value):.2g}'} times"
 
 
 # -- figure ---------------------------------------------------------------------------------------

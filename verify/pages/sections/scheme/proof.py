@@ -20,12 +20,11 @@ class ProofView:
 
 
 def _view(_: SceneResult, proof: ProofResult, __: str) -> ProofView:
+    jacobian, leading = proof.shown.jacobian, proof.shown.leading or proof.leading
     return ProofView(
         proof=proof,
-        matrix=mathml.matrix(mathml.NAMED["J"], proof.jacobian) if proof.jacobian else None,
-        leading=(
-            None if proof.order is None else mathml.order_equation(proof.leading, proof.order)
-        ),
+        matrix=mathml.matrix(mathml.NAMED["J"], jacobian) if jacobian else None,
+        leading=None if proof.order is None else mathml.order_equation(leading, proof.order),
     )
 
 

@@ -1,0 +1,59 @@
+"""What something is computed by: versions, machine, commit."""
+
+import os
+import platform
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+from verify.content import checkout
+
+_VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
+_PROCESSOR = Path("/proc/cpuinfo")
+_SECONDS = 5.0  # for git to answer
+_LETTERS = 12  # of a commit
+
+
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    python = ".".join(map(str, sys.version_info[:3]))
+    return {"Python": python} | {name: version(name) for name in _VERSIONED}
+
+
+def machine() -> str:
+    """What this process runs on, as a report tells it."""
+    own = f"{platform.system()} {platform.machine()}"
+    return ", ".join(filter(None, (own, _processor(), f"{os.cpu_count()} cores")))
+
+
+def commit() -> str:
+    """That of the checkout this code lies in, "and changes" where files differ; "" without one."""
+    root = checkout()
+    if root is None or not (root / ".git").exists():
+        return ""
+    head = _git(root, "rev-parse", f"--short={_LETTERS}", "HEAD")
+    changed = head and _git(root, "status", "--porcelain", "--untracked-files=no")
+    return f"{head} and changes" if changed else head
+
+
+def _git(root: Path, *command: str) -> str:
+    """What git says, or "" where there is none, or it has nothing to say of this folder."""
+    try:
+        ran = subprocess.run(  # noqa: S603 - words of our own
+            ("git", "-C", str(root), *command),  # noqa: S607 - whichever git the user has
+            capture_output=True, text=True, timeout=_SECONDS, check=True,
+        )  # fmt: skip
+    except (OSError, subprocess.SubprocessError, UnicodeDecodeError):
+        return ""
+    return ran.stdout.strip()
+
+
+def _processor() -> str:
+    """Its name, where the system tells it."""
+    try:
+        told = _PROCESSOR.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return platform.processor()
+    names = (line.partition(":")[2].strip() for line in told.splitlines() if "model name" in line)
+    return next(names, "")
