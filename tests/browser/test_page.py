@@ -133,6 +133,27 @@ def test_a_tile_shows_the_claims_that_it_counts_and_all_again(
         assert found.page.evaluate(f"{seen}.length") == every
 
 
+def test_on_demand_the_refuted_statements_come_first_with_their_readings(
+    browser: Browser, folder: Path
+) -> None:
+    with opened(browser, file_of(folder, page_of("paper"))) as found:
+        told = "[...document.querySelectorAll('.claim')].map(c => [c.id, c.dataset.told])"
+        seen = "[...document.querySelectorAll('.claim')].filter(c => c.checkVisibility())"
+        before = found.page.evaluate(told)
+        button = found.page.locator("button.sort")
+        button.click()
+        after = found.page.evaluate(told)
+        ranks = ["refuted", "undecided", "measured"]
+        assert after == sorted(
+            before, key=lambda each: ranks.index(each[1]) if each[1] in ranks else len(ranks)
+        )
+        assert found.page.evaluate(f"{seen}.length") == len(before), "none is hidden"
+        assert found.page.locator("div.group > .claim").count() == len(before), "all in one list"
+        assert found.violations() == []
+        button.click()
+        assert found.page.evaluate(told) == before
+
+
 def test_without_scripts_a_claim_opens_by_hand(browser: Browser, folder: Path) -> None:
     with opened(browser, file_of(folder, page_of("paper")), script=False) as found:
         evidence = found.page.locator("#claim-table-9 .evidence")

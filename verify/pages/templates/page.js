@@ -37,10 +37,32 @@
   addEventListener("hashchange", () => {
     if (document.getElementById(location.hash.slice(1))?.closest("[hidden]")) show(null);
   }, { capture: true });
+  // All statements with their readings in one list, what is refuted in each reading first.
+  const groups = [...document.querySelectorAll(".group")];
+  const RANKS = ["refuted", "undecided", "measured"];
+  const rank = (claims) => (RANKS.indexOf(claims[0].dataset.told) + RANKS.length + 1) % (RANKS.length + 1);
+  if (claims.some((claim) => claim.dataset.told === "refuted") && claims.length > 1) {
+    const [button, list] = [document.createElement("button"), document.createElement("div")];
+    button.className = "sort";
+    button.textContent = "Refuted first";
+    button.setAttribute("aria-pressed", "false");
+    groups[0].before(button, list);
+    list.className = "group";
+    button.addEventListener("click", () => {
+      const sorted = button.getAttribute("aria-pressed") === "false";
+      button.setAttribute("aria-pressed", sorted);
+      for (const group of groups) for (const claim of claims.filter((each) => each.home === group)) group.append(claim);
+      if (!sorted) return;
+      const statements = claims.reduce((found, claim) =>
+        claim.classList.contains("again") ? [...found.slice(0, -1), [...found.at(-1), claim]] : [...found, [claim]], []);
+      list.append(...statements.toSorted((a, b) => rank(a) - rank(b)).flat());
+    });
+    for (const claim of claims) claim.home = claim.parentElement;
+  }
   const links = new Map([...document.querySelectorAll(".contents a")].map((link) =>
     [document.getElementById(link.hash.slice(1)), link]));
   const mark = () => {
-    const passed = [...links.keys()].filter((each) => each && each.getBoundingClientRect().top < innerHeight / 3);
+    const passed = [...links.keys()].filter((each) => each?.offsetParent && each.getBoundingClientRect().top < innerHeight / 3);
     for (const link of links.values()) link.removeAttribute("aria-current");
     links.get(passed.at(-1))?.setAttribute("aria-current", "location");
   };

@@ -21,6 +21,8 @@ def notation(text: str) -> Markup:
     'f = (−H<sub>q</sub>, H<sub>p</sub>)'
     >>> str(notation("L_{H_p}(q_k) + O(h^12)"))
     'L<sub>H<sub>p</sub></sub>(q<sub>k</sub>) + O(h¹²)'
+    >>> str(notation("10^-6.3010"))
+    '10<sup>−6.3010</sup>'
     """
     return applied(text, (INDEX, INTERVAL, POWER, RAISED, MINUS))
 
@@ -71,5 +73,5 @@ INDEX: Rule = (
 INTERVAL: Rule = (re.compile(rf"\[(-?{NUMBER}) \+/- ({NUMBER})\]"), _interval)
 # Names such as stormer-verlet have hyphens, between letters.
 MINUS: Rule = (re.compile(r"(?<![A-Za-z])-|-(?![A-Za-z])"), lambda _: Markup("−"))
-POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b"), _power)
-RAISED: Rule = (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+)"), _raised)
+POWER: Rule = (re.compile(r"\b(10|[A-Za-z])\^(-?[0-9]+)\b(?!\.[0-9])"), _power)
+RAISED: Rule = (re.compile(r"(?<=\S)\^(\((?:[^()]|\([^()]*\))*\)|[−-]?\w+(?:\.[0-9]+)?)"), _raised)
