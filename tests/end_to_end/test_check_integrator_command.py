@@ -1,4 +1,4 @@
-"""`verify check-integrator` and the examples of docs/check-integrator.md, as users run them."""
+"""`verify check-integrator` and the examples of its how-to page, as users run them."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from tests.end_to_end.test_command_line import apart, here, json_of
 from tests.helpers.pages import PAGES, blocks
 from tests.paths import ROOT
 
-FILES = {block.file: block.text for block in blocks(PAGES["docs/check-integrator.md"])}
+FILES = {block.file: block.text for block in blocks(PAGES["docs/how-to/check-integrator.md"])}
 EXAMPLE, TESTED = FILES["mine.py"], FILES["test_mine.py"]
 KEYS = {"verdict", "order", "leading", "delta_j", "area_preserving", "convergence_order",
         "telescopes", "potential", "seconds", "reason", "witness"}  # fmt: skip

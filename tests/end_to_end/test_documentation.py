@@ -8,7 +8,7 @@ from tests.helpers.page_session import PageError, read_through
 from tests.helpers.pages import PAGES
 
 # What these define is looked at further, by a test that reads them through itself.
-ELSEWHERE = {"docs/notebooks.md": "test_example.py"}
+ELSEWHERE = {"docs/how-to/notebooks.md": "test_example.py"}
 
 
 @pytest.mark.parametrize("name", sorted(set(PAGES) - set(ELSEWHERE)))

@@ -1,4 +1,4 @@
-"""The notebook of docs/notebooks.md, run as it is printed."""
+"""The notebook of docs/how-to/notebooks.md, run as it is printed."""
 
 from typing import Any
 
@@ -11,7 +11,9 @@ from tests.helpers.pages import PAGES
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    return read_through(PAGES["docs/notebooks.md"], tmp_path_factory.mktemp("notebook")).names
+    return read_through(
+        PAGES["docs/how-to/notebooks.md"], tmp_path_factory.mktemp("notebook")
+    ).names
 
 
 def test_the_proof_has_order_3_and_shows_it(made: dict[str, Any]) -> None:

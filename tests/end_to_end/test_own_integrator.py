@@ -1,4 +1,4 @@
-"""The property test of docs/tests-of-your-own.md, run as it is printed, and with errors."""
+"""The property test of docs/how-to/tests-of-your-own.md, run as it is printed, and with errors."""
 
 import os
 import re
@@ -10,7 +10,7 @@ import pytest
 from tests.helpers.pages import PAGES, blocks
 from tests.paths import ROOT
 
-BLOCKS = blocks(PAGES["docs/tests-of-your-own.md"])
+BLOCKS = blocks(PAGES["docs/how-to/tests-of-your-own.md"])
 (EXAMPLE,) = (block.text for block in BLOCKS if block.file == "test_mine.py")
 (SHOWN,) = (block.text for block in BLOCKS if block.before.endswith("shows the simplest failure:"))
 

@@ -11,7 +11,11 @@ from markdown_it import MarkdownIt
 from tests.paths import ROOT
 
 # The documentation, which a user follows: by its place in the repository, its text.
-PATHS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+MADE = ROOT / "docs" / "_build"  # the built manual
+PATHS = [
+    ROOT / "README.md",
+    *sorted(path for path in (ROOT / "docs").rglob("*.md") if MADE not in path.parents),
+]
 PAGES = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in PATHS}
 NAMED = re.compile(r"(?P<how>[Ss]ave this as|[Aa]ppend this to) `(?P<name>[\w.-]+)`[^`]*:$")
 LEFT_OUT = "…"  # alone on a line: some lines of the output are left out

@@ -18,14 +18,17 @@ LEFT_OUT = {
     Path(__file__),  # it plants what is not there
     ROOT / "tests" / "mutants" / "README.md",  # made from results on an older source, by a program
 }
+BUILT = ROOT / "docs" / "_build"  # the manual, where it was built
 FILES = [
-    *(p for name in FOLDERS for p in sorted((ROOT / name).rglob("*")) if p.suffix in KINDS),
+    *(p for name in FOLDERS for p in sorted((ROOT / name).rglob("*"))
+      if p.suffix in KINDS and BUILT not in p.parents),
     *sorted(ROOT.glob("*.md")),
     ROOT / "pyproject.toml",
-]
+]  # fmt: skip
 DOTTED = re.compile(r"(?<![\w./-])verify(?:\.\w+)+")
 PATHS = re.compile(r"(?<![\w./:-])(?:verify|tests|reports|reference|docs)/[\w/.-]*\w")
 PATTERN = re.compile(r"[A-Z]{4,}")  # FAMILY/NAME.py stands for any
+LINK = re.compile(r"\]\([^)]*\)")
 ONLY_IN_A_WHEEL = re.compile(r"verify[/.]data\b")
 NO_NAMES = {
     "ARCHITECTURE.md": {"reference/make"},  # in a table of folders of `verify`
@@ -122,6 +125,8 @@ def read(path: Path) -> str:
     text = path.read_text(encoding="utf-8")
     if path.name == "CHANGELOG.md":
         return of_today(text)
+    if path.parent == ROOT / "docs":
+        return LINK.sub("]", text)  # relative to its folder; test_documentation.py follows it
     of_a_test = path.suffix == ".py" and path.is_relative_to(ROOT / "tests")
     return told(text) if of_a_test else text
 

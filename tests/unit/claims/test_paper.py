@@ -9,7 +9,7 @@ from tests.paths import ROOT
 from verify.claims.file import load_claims
 
 FILE = load_claims(ROOT / "reports" / "paper" / "claims.toml")
-PAGES = ("README.md", "docs/results-of-the-paper.md")
+PAGES = ("README.md", "docs/explanation/results-of-the-paper.md")
 EQUATIONS = range(1, 33)
 CRITERIA = range(1, 5)
 FIGURES = range(1, 15)
