@@ -42,15 +42,25 @@ class Claim(Frozen):
     only_here: ClassVar[str] = ""
 
     id: Annotated[str, Field(pattern=r"^[^\s\x00-\x1f]+$", max_length=80)]
+    """What the claim is called, each its own."""
     kind: str
+    """Which kind of claim it is."""
     source: str = ""
+    """Where the paper states it, such as `Eq. 19`."""
     section: str = ""
+    """Under which headline a report has it."""
     statement: str = ""
+    """What the paper states, in words; a formula stands between backticks."""
     reading_of: str = ""
+    """Of which statement it is one reading."""
     reading: str = ""
+    """How that reading takes the statement, in words."""
     standing: Standing = "fair"
+    """How close the reading is to what is printed."""
     scene: str = ""
+    """The scene that it speaks of: a `[[scene]]` of the file, or a file beside it."""
     scheme: SchemeName
+    """The scheme that it speaks of."""
 
     # -- of which scene it speaks -----------------------------------------------------------------
 

@@ -35,13 +35,21 @@ class RunKeys(Frozen):
     """Of which runs; None where the claim does not say."""
 
     step_size: StepSize | None = None
+    """The step size h."""
     step_sizes: tuple[StepSize, ...] | None = None
+    """The step sizes, where there are several."""
     time: Time | None = None
+    """The length of each run, N = T/h rounded down; or `steps`."""
     steps: Steps | None = None
+    """The number of steps of each run; or `time`."""
     q: Number | None = None
+    """The initial displacement."""
     p: Number | None = None
+    """The initial momentum."""
     initial_values: tuple[InitialValue, ...] | None = None
+    """The initial values, where there are several."""
     digits: Digits | None = None
+    """Certified digits; by default 20, and five more than are printed."""
 
 
 class RunClaim(Claim):

@@ -27,6 +27,7 @@ class OrderedClaim(QuantifiedClaim):
     """The base of the kinds that say an order; with `at_least`, that it is no lower one."""
 
     at_least: bool = False
+    """Whether a higher order is as claimed, too."""
 
     @property
     @abstractmethod

@@ -24,6 +24,7 @@ class QuantifiedClaim(Claim):
     """The base of the kinds that have `every`."""
 
     every: Literal["hamiltonian", "separable hamiltonian"] | None = None
+    """Of which H, all of them, in place of one."""
 
     @property
     def looked_at(self) -> int:

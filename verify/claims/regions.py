@@ -57,6 +57,7 @@ class FlowClaim(Claim):
     exact = False
     only_here = "a region that is carried is that of its own scene"
     flows: Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+    """The `source` of each `[[flow]]` of the scene that it speaks of."""
 
     def scene_of_its_own(
         self, label: str, scene: Scene, runs: Mapping[str, Any]

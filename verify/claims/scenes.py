@@ -23,8 +23,11 @@ class ClaimedHamiltonian(Frozen):
     """Of which H; `parameters` are of `system` or `hamiltonian`."""
 
     system: SystemName | None = None
+    """A named system."""
     hamiltonian: str | None = None
+    """H as a formula in p, q and parameters."""
     parameters: dict[str, Number] = Field(default_factory=dict)
+    """The values of H's parameters; those without one stay symbols."""
 
 
 def scene_for(

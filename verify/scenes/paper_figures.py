@@ -24,11 +24,17 @@ class PaperFigure(Frozen):
     """See the module's text for the keys."""
 
     label: Annotated[str, Field(min_length=1, max_length=80)]
+    """What the paper calls it."""
     caption: Annotated[str, Field(max_length=1000)] = ""
+    """The paper's own caption."""
     scene: str
+    """The scene whose runs it is made from."""
     shows: Literal["runs", "series", "flow"]
+    """What of the scene it shows: the section whose `source` is the label, or its `[grid]`."""
     assumed: Annotated[str, Field(max_length=2000)] = ""
+    """What the paper leaves open, and is assumed here."""
     claims: Annotated[tuple[str, ...], Field(max_length=100)] = ()
+    """The ids of the claims that the paper draws from it."""
 
     def check(self, scene: Scene, claims: Collection[str]) -> None:
         """InputError where the scene has not what is to be shown, or a claim is unknown."""

@@ -48,10 +48,15 @@ class PlacedShape(Frozen):
     """A shape by its name, as a polygon or as an SVG path; then where it is put, and how large."""
 
     shape: str | None = None
+    """A shape by its name; or `polygon`, or `path`."""
     polygon: Annotated[tuple[Corner, ...], Field(max_length=10_000)] | None = None
+    """A polygon by its corners (q, p)."""
     path: Annotated[str, Field(max_length=100_000)] | None = None
+    """An outline as SVG path data, whose y points down: p = −y."""
     centre: InitialValue = InitialValue(q=Fraction(0), p=Fraction(0))
+    """Where the shape's (0, 0) is put."""
     scale: Number = Fraction(1)
+    """By which it is made larger first."""
 
     @model_validator(mode="after")
     def _check_shape(self) -> Self:
@@ -112,13 +117,21 @@ class Flow(PlacedShape):
     """See the module's text for the keys."""
 
     step_size: StepSize
+    """The step size h."""
     steps: Annotated[tuple[Steps, ...], Field(max_length=100)] = ()
+    """After how many steps the region is looked at, each once; or `times`."""
     times: Annotated[tuple[Time, ...], Field(max_length=100)] = ()
+    """At which times it is looked at, N = T/h rounded down; or `steps`."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
+    """The maps; the scene's schemes, where it is left out."""
     exact: Annotated[bool, Field(strict=True)] = True
+    """Whether the exact flow stands beside them, with the distance from it."""
     mean_lambda: Annotated[bool, Field(strict=True)] = True
+    """Whether the mean of Λ over the region is computed, where a map changes area."""
     digits: Digits = 17
+    """With more than 17, all points are carried with 33 or more."""
     source: Annotated[str, Field(max_length=80)] = ""
+    """What of a paper it repeats, for its caption."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -84,6 +84,7 @@ class OfSchemes(Frozen):
     """A section that may name schemes of its own."""
 
     schemes: Schemes = ()
+    """The schemes; the scene's, where it is left out."""
 
     @model_validator(mode="after")
     def _known(self) -> Self:
@@ -97,10 +98,15 @@ class Stability(OfSchemes):
     """See the module's text for the keys."""
 
     name: Annotated[str, Field(max_length=80)] = ""
+    """Part of the names of its cases."""
     time: Time | None = None
+    """The length of each run; or `steps`."""
     steps: Steps | None = None
+    """The number of steps of each run; or `time`."""
     step_sizes: StepSizes
+    """The step sizes; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
+    """Where the runs start."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -119,17 +125,24 @@ class LargestStepOver(OfSchemes):
     """See the module's text for the keys."""
 
     time: Time
+    """Until when the motion is to stay bounded."""
     initial_value: InitialValue
+    """Where the runs start."""
 
 
 class StabilityMap(OfSchemes):
     """See the module's text for the keys."""
 
     parameter: str
+    """The parameter of H that is varied."""
     values: Values
+    """Its values; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
     step_sizes: StepSizes
+    """The step sizes, likewise."""
     steps: Annotated[int, Field(ge=1, le=_MOST_MAP_STEPS, strict=True)]
+    """The number of steps of each run."""
     initial_value: InitialValue
+    """Where the runs start."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -104,4 +104,6 @@ class InitialValue(Frozen):
     """Where a run starts, exactly."""
 
     q: Number
+    """The displacement."""
     p: Number
+    """The momentum."""

@@ -44,6 +44,20 @@ def get(name: str) -> "Scheme":
 
 
 @cache
+def family(name: str) -> str:
+    """The family of the scheme of that name: the folder of `methods/` that its file lies in.
+
+    Raises InputError where there is no such scheme.
+
+    >>> family("leapfrog"), family("lie2")
+    ('splitting', 'taylor')
+    """
+    plain = canonical(get(name).name)
+    file = next(file for file in _candidates(plain) if _made(file, plain) is not None)
+    return _FILES.folder(file).replace("_", "-")
+
+
+@cache
 def aliases() -> "Mapping[str, str]":
     """Other names that schemes go by, each with the name of its scheme."""
     ours = filter(_is_ours, _FILES.names)

@@ -21,6 +21,7 @@ class AreaClaim(QuantifiedClaim):
 
     kind: Literal["area_preserving"]
     area_preserving: Annotated[bool, Field(strict=True)]
+    """Whether det J ≡ 1 is claimed, or that it is not so."""
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         known = delta_j_order(map_of(self, findings))

@@ -24,6 +24,7 @@ class BoundedClaim(RunClaim):
     only_here = ""
     kind: Literal["bounded"]
     bound: Annotated[ExactNumber, Field(ge=0)]
+    """What |Λ| is not to pass."""
 
     def quantities(self) -> tuple[str, ...]:
         return ("lambda_max",)

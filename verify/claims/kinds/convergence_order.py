@@ -20,6 +20,7 @@ class ConvergenceOrderClaim(OrderedClaim):
 
     kind: Literal["convergence_order"]
     convergence_order: Order
+    """The order of the global error."""
 
     @property
     def claimed(self) -> int:

@@ -27,6 +27,7 @@ class CriteriaClaim(RunClaim):
     numbers: Annotated[
         tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...], Field(min_length=1)
     ]
+    """The criteria that are satisfied."""
 
     def quantities(self) -> tuple[str, ...]:
         return ()

@@ -39,7 +39,9 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
 
     kind: Literal["delta_j", "mse_summand", "lambda_factor"]
     formula: str
+    """ΔJ in p, q, h and parameters; for every H in `H_p`, `H_pq`, … and h."""
     up_to: Order | None = None
+    """Up to which power of h, + O(h^up_to); exactly, where it is left out."""
 
     def formulas(self) -> dict[str, str]:
         return {"formula": self.formula}

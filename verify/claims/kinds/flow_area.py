@@ -25,6 +25,7 @@ class FlowAreaClaim(FlowClaim):
 
     kind: Literal["flow_area"]
     within: Annotated[ExactNumber, Field(gt=0)] | None = None
+    """The largest part of the area that the change may be; exactly 0, where it is left out."""
 
     def judge(self, findings: Findings) -> ClaimResult:
         images = self.images(findings)

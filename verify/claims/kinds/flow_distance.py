@@ -19,6 +19,7 @@ class FlowDistanceClaim(FlowClaim):
 
     kind: Literal["flow_distance"]
     within: Annotated[ExactNumber, Field(gt=0)]
+    """The largest distance of the outlines."""
 
     def judge(self, findings: Findings) -> ClaimResult:
         images = self.images(findings)

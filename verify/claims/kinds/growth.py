@@ -41,6 +41,7 @@ class GrowthClaim(RunClaim):
     only_here = ""
     kind: Literal["growth"]
     growth: Literal["bounded", "linear"]
+    """How max |Λ| over [0, t] grows, t = T/8 … T."""
 
     def quantities(self) -> tuple[str, ...]:
         return ("lambda_max",)

@@ -16,7 +16,9 @@ class LessClaim(RunClaim):
     only_here = ""
     kind: Literal["less"]
     quantity: Quantity
+    """The smaller one."""
     than: Quantity
+    """The larger one."""
 
     def quantities(self) -> tuple[str, ...]:
         return (self.quantity, self.than)

@@ -29,8 +29,11 @@ class MagnitudeClaim(RunClaim):
 
     kind: Literal["magnitude"]
     step_size: StepSize
+    """The step size that is spoken of."""
     exponents: Annotated[dict[Quantity, int], Field(min_length=1)]
+    """The power of ten of each quantity."""
     quantifier: Literal["some", "every"]
+    """Of how many of the initial values."""
 
     def quantities(self) -> tuple[str, ...]:
         return tuple(self.exponents)

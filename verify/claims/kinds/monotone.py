@@ -19,7 +19,9 @@ class MonotoneClaim(RunClaim):
     only_here = ""
     kind: Literal["monotone"]
     quantity: Quantity
+    """What is looked at."""
     direction: Literal["increases", "decreases"]
+    """Which way it goes as the step size increases."""
 
     def quantities(self) -> tuple[str, ...]:
         return (self.quantity,)

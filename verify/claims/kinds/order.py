@@ -16,6 +16,7 @@ class OrderClaim(OrderedClaim):
 
     kind: Literal["order"]
     order: Order
+    """The first power of h in ΔJ."""
 
     @property
     def claimed(self) -> int:

@@ -21,7 +21,9 @@ class SpreadClaim(RunClaim):
     only_here = "a spread is over the initial values of its own scene"
     kind: Literal["spread"]
     quantity: Quantity
+    """What is looked at."""
     factor: Annotated[ExactNumber, Field(ge=1)]
+    """The largest quotient of two of its values at one step size."""
 
     def quantities(self) -> tuple[str, ...]:
         return (self.quantity,)

@@ -15,7 +15,9 @@ class StepMapClaim(FormulaClaim):
 
     kind: Literal["step_map"]
     p_next: str
+    """p′ in p, q, h and parameters."""
     q_next: str
+    """q′ likewise; it may use `p_next`."""
 
     def formulas(self) -> dict[str, str]:
         return {"p_next": self.p_next, "q_next": self.q_next}

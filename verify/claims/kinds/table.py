@@ -27,9 +27,13 @@ class TableClaim(RunClaim):
 
     kind: Literal["table"]
     quantity: Literal["lg_mse", "mse", "lambda", "lg_abs_lambda"] = "lg_mse"
+    """What is printed."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1)]
+    """The step sizes, in the order of the values."""
     printed: Row | None = None
+    """One row that every initial value has; or `rows`."""
     rows: Annotated[tuple[Row, ...], Field(min_length=1, max_length=1000)] | None = None
+    """A row for each initial value; or `printed`."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

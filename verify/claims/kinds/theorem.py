@@ -18,7 +18,9 @@ class TheoremClaim(Claim):
     only_here = "a theorem says nothing of drawn Hamiltonians"
     kind: Literal["theorem"]
     name: str
+    """The name of its function in `verify.claims.theorems`."""
     scheme: str = ""
+    """None."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -23,7 +23,9 @@ class ValueClaim(RunClaim):
     always_own = True
     kind: Literal["mse", "lambda"]
     printed: Printed | None = None
+    """The number as printed; or `lg_printed`."""
     lg_printed: Printed | None = None
+    """Its logarithm to the base 10 as printed; or `printed`."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -18,6 +18,7 @@ class AlikeClaim(RunClaim):
     only_here = "a pattern is over the initial values of its own scene"
     kind: Literal["alike"]
     quantity: Quantity
+    """What is looked at."""
 
     def quantities(self) -> tuple[str, ...]:
         return (self.quantity,)

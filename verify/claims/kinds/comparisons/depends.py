@@ -28,7 +28,9 @@ class DependsClaim(RunClaim):
     only_here = "on what values depend is seen on the grid of its own scene"
     kind: Literal["depends"]
     of: Annotated[tuple[Quantity, ...], Field(min_length=1)]
+    """What is said to vary."""
     on: Annotated[tuple[On, ...], Field(min_length=1)]
+    """With what it varies."""
 
     def quantities(self) -> tuple[str, ...]:
         return self.of

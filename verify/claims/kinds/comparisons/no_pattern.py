@@ -36,6 +36,7 @@ class NoPatternClaim(RunClaim):
     only_here = "a pattern is over the initial values of its own scene"
     kind: Literal["no_pattern"]
     within: Annotated[ExactNumber, Field(gt=0, lt=1)]
+    """A law that predicts every Λ to this part of it is a pattern."""
 
     def quantities(self) -> tuple[str, ...]:
         return ("lambda",)

@@ -28,9 +28,13 @@ class PrintedPowerClaim(Claim):
     only_here = "printed numbers say nothing of drawn Hamiltonians"
     kind: Literal["printed_power"]
     scheme: str = ""
+    """None: only what is printed is looked at."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2)]
+    """The step sizes of the row."""
     lg_printed: Row
+    """The printed logarithms, one a step size."""
     beyond_power: Annotated[int, Field(ge=0, le=64, strict=True)]
+    """The power of the step size."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

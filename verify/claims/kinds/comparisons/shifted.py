@@ -42,6 +42,7 @@ class ShiftedClaim(RunClaim):
     only_here = "which claims are made again is a matter of their own scene"
     kind: Literal["shifted"]
     again: Annotated[tuple[dict[str, Any], ...], Field(min_length=1, max_length=100)]
+    """Claims of the same scene and scheme, each its kind and its keys."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

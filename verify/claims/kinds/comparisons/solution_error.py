@@ -47,9 +47,13 @@ class SolutionErrorClaim(RunClaim):
     only_here = "an error at one time is that of its own runs"
     kind: Literal["solution_error"]
     step_size: StepSize | None = None
+    """That of the grid's runs which is spoken of; all, where it is left out."""
     within: Annotated[ExactNumber, Field(gt=0)] | None = None
+    """The error is at most this part of the orbit's reach; or `beyond`."""
     beyond: Annotated[ExactNumber, Field(gt=0)] | None = None
+    """The error is at least this part of the orbit's reach; or `within`."""
     quantifier: Literal["every", "some"] = "every"
+    """Of how many of the runs."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -26,6 +26,7 @@ class TableUntilClaim(TableClaim):
     only_here = "a printed table is that of its own runs"
     kind: Literal["table_until"]  # type: ignore[assignment]
     quantity: Literal["lg_mse"] = "lg_mse"
+    """What the row prints."""
 
     def quantities(self) -> tuple[str, ...]:
         return ("delta_j_max",)

@@ -1,0 +1,1 @@
+"""What the manual takes from the code when it is built: parts of pages, toctrees, docstrings."""

@@ -1,0 +1,45 @@
+"""The kinds of claims: what each states, and its keys."""
+
+import inspect
+import sys
+from collections.abc import Iterator
+
+from docs._generate.keys import keys
+from docs._generate.markdown import prose
+from verify.claims.claim import Claim
+from verify.claims.kinds import models
+from verify.claims.on_runs import RunKeys
+from verify.claims.scenes import ClaimedHamiltonian
+
+_EVERY = tuple(name for name in Claim.model_fields if name != "scheme")
+
+
+def text() -> str:
+    """The keys that all have, those of H and of runs, and a section for each kind."""
+    return "\n".join(
+        [
+            f"## Keys of every claim\n\n{keys(Claim)}",
+            f"## Keys of H\n\n{_OF_H}\n\n{keys(ClaimedHamiltonian)}",
+            f"## Keys of runs\n\n{_OF_RUNS}\n\n{keys(RunKeys)}",
+            "## Kinds\n",
+            *("\n\n".join(_section(kind, model)) for kind, model in models().items()),
+        ]
+    )
+
+
+_OF_H = (
+    "A claim says of which H it speaks by one of these, by `scene`, or by `every` where it has it."
+)
+_OF_RUNS = (
+    "A claim that is decided by runs says of which; what it does not say, those of its scene say."
+)
+
+
+def _section(kind: str, model: type[Claim]) -> Iterator[str]:
+    yield f"### {kind}"
+    yield prose(inspect.cleandoc(sys.modules[model.__module__].__doc__ or ""))
+    yield "It is decided by " + ("algebra." if model.exact else "runs.")
+    own = [key for key in model.model_fields if key not in _EVERY]
+    if own:
+        without = [key for key in model.model_fields if key not in own]
+        yield keys(model, without)

@@ -1,0 +1,26 @@
+"""The named systems: H, parameters, regimes, and how the exact flow is known."""
+
+from collections.abc import Iterator
+
+from docs._generate.markdown import code, prose, table
+from verify.hamiltonians.named_system import System
+from verify.hamiltonians.systems import all_systems
+
+
+def text() -> str:
+    """A section for each of them."""
+    return "\n\n".join("\n\n".join(_section(system)) for system in all_systems().values()) + "\n"
+
+
+def _section(system: System) -> Iterator[str]:
+    flow = "in closed form" if system.flow else "by numbers"
+    yield f"### {system.name}"
+    yield f"{prose(system.title)}: H = {code(system.formula)}. The exact flow is known {flow}."
+    if system.parameters:
+        yield table(
+            ("parameter", "is"), ((code(n), prose(x)) for n, x in system.parameters.items())
+        )
+    names = [*system.parameters, "q", "p"]
+    rows = ((code(n), *(code(at[x]) for x in names)) for n, at in system.regimes.items())
+    yield table(("regime", *names), rows)
+    yield f"Source: {prose(system.source)}."
