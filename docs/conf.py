@@ -1,4 +1,4 @@
-"""Sphinx's configuration: `sphinx-build -W docs docs/_build` makes the manual, without a network."""
+"""Sphinx's settings: `sphinx-build -W docs docs/_build` makes the manual, without a network."""
 
 import sys
 from importlib.metadata import version as version_of

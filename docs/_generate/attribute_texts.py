@@ -3,6 +3,7 @@
 import ast
 import inspect
 from functools import cache
+from itertools import pairwise
 
 from pydantic import BaseModel
 
@@ -18,12 +19,15 @@ def texts(model: type[BaseModel]) -> dict[str, str]:
 
 @cache
 def _own(model: type[BaseModel]) -> dict[str, str]:
-    (tree,) = ast.parse(inspect.getsource(model)).body
-    assert isinstance(tree, ast.ClassDef)
+    body = [node for each in ast.parse(inspect.getsource(model)).body for node in _within(each)]
     return {
         field.target.id: inspect.cleandoc(text.value.value)
-        for field, text in zip(tree.body, tree.body[1:], strict=False)
+        for field, text in pairwise(body)
         if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
         if isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)
         if isinstance(text.value.value, str)
     }
+
+
+def _within(node: ast.stmt) -> list[ast.stmt]:
+    return node.body if isinstance(node, ast.ClassDef) else []

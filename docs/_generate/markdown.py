@@ -31,7 +31,7 @@ def codes(texts: Iterable[str]) -> str:
 
 
 def prose(text: str) -> str:
-    """A docstring's sentences, in which `*` and `_` are themselves, and code stands in backticks."""
+    """A docstring's sentences, in which `*` and `_` are themselves; code stands in backticks."""
     parts = text.split("`")
     plain = (
         part.replace("*", "\\*").replace("_", "\\_").replace("<", "&lt;") for part in parts[::2]

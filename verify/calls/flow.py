@@ -34,7 +34,7 @@ def flow(
     Parameters
     ----------
     system, scheme, step_size, parameters: as in `verify.run`; `scheme` may be a list.
-    steps, times: one of the two, a number or a list; each time a whole number of steps.
+    steps, times: one of the two, a number or a list; of a time N = T/h, rounded down.
     shape: a name, circle, square or cat; or `polygon`, corners (q, p); or `path`, as SVG has it.
         Without any of them a circle.
     centre: (q, p) of where it is put; `scale`: how many times as large.

@@ -1,11 +1,12 @@
 """The base of all data here: frozen models that refuse what they do not know."""
 
 from functools import cache
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, cast, get_args
 
 from pydantic import (
     BaseModel,
     ConfigDict,
+    GetJsonSchemaHandler,
     PlainSerializer,
     PlainValidator,
     SerializationInfo,
@@ -14,6 +15,7 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
+from pydantic_core import CoreSchema
 
 from verify.prose import Prose
 
@@ -21,6 +23,7 @@ Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no e
 Seconds = Real
 PLAIN = {"parts": False}  # a context of `model_dump`
 _BESIDE = "_parts"  # the key of a prose's parts is its own and this
+_PARTS_SCHEMA = {"type": "array"}  # of texts and tables, or of such arrays
 
 
 def _read(given: object) -> Prose:
@@ -66,6 +69,17 @@ class WithProse(Frozen):
                 data[name + _BESIDE] = _data_of(getattr(self, name))
         return data
 
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """That of its fields, and of what stands beside them."""
+        schema = handler(cast(CoreSchema, _unserialized(core_schema)))
+        own = handler.resolve_ref_schema(schema)
+        beside = {name + _BESIDE: _PARTS_SCHEMA for name in _prose_fields(cls)}
+        own["properties"] = {**own.get("properties", {}), **beside}
+        return schema
+
     @model_validator(mode="before")
     @classmethod
     def _join_parts(cls, given: Any) -> Any:
@@ -77,6 +91,11 @@ class WithProse(Frozen):
             if parts is not None:
                 data[name] = _checked(parts, data.get(name), name)
         return data
+
+
+def _unserialized(schema: Any) -> Any:
+    """The core schema of a model without its serializer, of whose data pydantic knows no keys."""
+    return {key: value for key, value in schema.items() if key != "serialization"}
 
 
 @cache

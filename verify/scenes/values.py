@@ -105,5 +105,7 @@ class InitialValue(Frozen):
 
     q: Number
     """The displacement."""
+    """The displacement."""
     p: Number
+    """The momentum."""
     """The momentum."""
