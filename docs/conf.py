@@ -11,6 +11,7 @@ sys.path.insert(0, str(HERE.parent))
 from docs._generate.docstrings import as_rst  # noqa: E402
 from docs._generate.links import within_manual  # noqa: E402
 from docs._generate.parts import filled  # noqa: E402
+from docs._generate.parts.results_json import write as write_schema  # noqa: E402
 from docs._generate.toctrees import with_toctrees  # noqa: E402
 
 project = "areaproof"
@@ -20,6 +21,7 @@ version = release = version_of("areaproof")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton"]
 root_doc = "index"
 exclude_patterns = ["_build", "_generate", "README.md"]
+smartquotes = False  # quotation marks in sentences are code, too
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # types in signatures are not ours alone
 
@@ -62,5 +64,6 @@ def document(
 
 def setup(app: Any) -> None:
     """Sphinx calls it."""
+    write_schema()
     app.connect("source-read", read)
     app.connect("autodoc-process-docstring", document)

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
-_PAGE = re.compile(r"\]\(([\w./-]+)\.md\)")
+_PAGE = re.compile(r"\]\(([\w./-]+)\.md(?:#[\w-]+)?\)")
 
 
 def chapters(index: str) -> Iterator[tuple[str, list[str]]]:

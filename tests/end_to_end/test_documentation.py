@@ -1,4 +1,4 @@
-"""README.md and docs/*.md: what they tell to do is done, and what they print is what comes out."""
+"""README.md and docs: what they tell to do is done, and what they print is what comes out."""
 
 from pathlib import Path
 
@@ -8,7 +8,10 @@ from tests.helpers.page_session import PageError, read_through
 from tests.helpers.pages import PAGES
 
 # What these define is looked at further, by a test that reads them through itself.
-ELSEWHERE = {"docs/how-to/notebooks.md": "test_example.py"}
+ELSEWHERE = {
+    "docs/how-to/notebooks.md": "test_example.py",
+    "docs/reference/results-json.md": "test_results_schema.py",
+}
 
 
 @pytest.mark.parametrize("name", sorted(set(PAGES) - set(ELSEWHERE)))

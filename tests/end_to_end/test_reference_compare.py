@@ -14,7 +14,7 @@ from tests.paths import ROOT
 README = ROOT / "reference" / "README.md"
 GIVEN = ["--scene", "duffing", "--scheme", "lie2", "--step-size", "0.001", "--q", "1.5", "--p", "0"]
 EXAMPLES = ROOT / "reference" / "examples"
-LANGUAGES = {".c": "c", ".py": "python", ".jl": "julia"}
+LANGUAGES = {".c": "c", ".f90": "fortran", ".py": "python", ".jl": "julia"}
 
 
 def examples() -> dict[str, str]:
@@ -54,11 +54,19 @@ def test_a_quotation_that_is_not_word_for_word_is_seen(name: str) -> None:
 
 
 def by_c(folder: Path, source: str) -> str:
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    return compiled(folder, source, "mine.c", "cc", "gcc", "clang")
+
+
+def by_fortran(folder: Path, source: str) -> str:
+    return compiled(folder, source, "mine.f90", "gfortran", "flang")
+
+
+def compiled(folder: Path, source: str, file: str, *compilers: str) -> str:
+    compiler = next(filter(None, map(shutil.which, compilers)), None)
     if compiler is None:
-        pytest.skip("no C compiler")
-    (folder / "mine.c").write_text(source)
-    subprocess.run([compiler, "-O2", "mine.c", "-o", "mine"], cwd=folder, check=True)
+        pytest.skip(f"no {compilers[0]}")
+    (folder / file).write_text(source)
+    subprocess.run([compiler, "-O2", file, "-o", "mine"], cwd=folder, check=True)
     return subprocess.run(["./mine"], cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
@@ -68,7 +76,9 @@ def by_python(folder: Path, source: str) -> str:
     return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
-@pytest.mark.parametrize(("name", "run"), [("lie2.c", by_c), ("lie2.py", by_python)])
+@pytest.mark.parametrize(
+    ("name", "run"), [("lie2.c", by_c), ("lie2.f90", by_fortran), ("lie2.py", by_python)]
+)
 def test_an_example_program_differs_by_rounding(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, name: str, run: object
 ) -> None:

@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -19,7 +20,7 @@ from tests.paths import ROOT
 from verify.commands.main import cli, main
 
 # What else a page may tell to start, where nothing of it is run here.
-OTHERS = {"python3", "python", "pip", "pytest", "dask", ".", "eval"}
+OTHERS = {"python3", "python", "pip", "pytest", "dask", ".", "eval", "cc", "gfortran", "julia"}
 
 
 class PageError(AssertionError):
@@ -30,12 +31,13 @@ class Session:
     """Plays the blocks of one page in the current folder.
 
     `names`: what its Python defines, all blocks together. `ran`: how many commands were compared
-    with what they print.
+    with what they print. `by_hand`: what takes long is done too, as a person does it.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, by_hand: bool = False) -> None:
         self.names: dict[str, Any] = {"__name__": "page"}
         self.ran = 0
+        self.by_hand = by_hand
         self._status = 0  # of the last command
         self._kinds = {"console": self._console, "sh": self._sh, "python": self._python,
                        "pycon": self._pycon, "text": self._text}  # fmt: skip
@@ -44,6 +46,10 @@ class Session:
         try:
             if block.file:
                 self._save(block)
+            elif block.is_by_hand and (block.last_run is None or not self.by_hand):
+                self._sh(_typed(block))
+            elif block.is_by_hand and block.language == "sh":
+                _by_shell(block.text)
             elif block.language not in self._kinds:
                 raise ValueError(f"a block of {block.language!r} is neither saved nor started")
             else:
@@ -74,8 +80,8 @@ class Session:
         """Set-up, and what takes minutes: no more than that our commands have these options."""
         for line in text.replace("\\\n", " ").splitlines():
             for part in line.split("&&"):
-                words = shlex.split(part, comments=True)
-                if not words:
+                words = [*takewhile(">".__ne__, shlex.split(part, comments=True))]
+                if not words or words[0].startswith("./"):  # what a compiler has made
                     continue
                 program = words[0].rpartition("/")[2]
                 if program == "verify":
@@ -98,6 +104,20 @@ class Session:
 
     def _text(self, text: str) -> None:
         """What no command of the page prints; a test of its own looks at it."""
+
+
+def _typed(block: Block) -> str:
+    """The commands of a block, one a line, without what they print."""
+    if block.language != "console":
+        return block.text
+    return "\n".join(command for command, _ in commands(block.text) if command != "echo $?")
+
+
+def _by_shell(text: str) -> None:
+    """What stands in an `sh` block, by a shell that finds `verify` beside this Python."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "PYTHONPATH": str(ROOT)}
+    subprocess.run(["bash", "-euc", text], check=True, env=environment)
 
 
 def started(command: str) -> tuple[int, str]:
@@ -176,9 +196,9 @@ def folder_of_a_user(folder: Path) -> Iterator[None]:
                     del sys.modules[name]
 
 
-def read_through(page: str, folder: Path) -> Session:
+def read_through(page: str, folder: Path, *, by_hand: bool = False) -> Session:
     """Do all that a page says, in that folder, which is empty. PageError where it is not so."""
-    session = Session()
+    session = Session(by_hand=by_hand)
     with folder_of_a_user(folder):
         for block in blocks(page):
             session.play(block)

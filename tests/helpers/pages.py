@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import date
 from difflib import unified_diff
 from pathlib import Path
 
@@ -11,26 +12,41 @@ from markdown_it import MarkdownIt
 from tests.paths import ROOT
 
 # The documentation, which a user follows: by its place in the repository, its text.
-MADE = ROOT / "docs" / "_build"  # the built manual
-PATHS = [
-    ROOT / "README.md",
-    *sorted(path for path in (ROOT / "docs").rglob("*.md") if MADE not in path.parents),
-]
+DOCS = ROOT / "docs"
+PATHS = [ROOT / "README.md", DOCS / "README.md", *sorted(DOCS.glob("[!_]*/*.md"))]
 PAGES = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in PATHS}
 NAMED = re.compile(r"(?P<how>[Ss]ave this as|[Aa]ppend this to) `(?P<name>[\w.-]+)`[^`]*:$")
 LEFT_OUT = "…"  # alone on a line: some lines of the output are left out
+# What takes long is run by a person: when that was last done, and how long it took. Or why not.
+BY_HAND = re.compile(r"<!-- run by hand: (?P<date>[\d-]+), (?P<took>\d+ (?:s|min|h)) -->")
+NOT_RUN = re.compile(r"<!-- not run: (?P<why>[^<>]+) -->")
 RUN_TIME = re.compile(r"… s\b")
 SECONDS = r"\d+(?:\.\d+)?(?:e[-+]?\d+)? s"
 
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: its language, its text, its first line, and what stands right before it."""
+    """A fenced block: its language, its text, its first line, and what stands right before it.
+
+    `remarks`: the comments between that and the block, which a reader does not see.
+    """
 
     language: str
     text: str
     line: int
     before: str
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def is_by_hand(self) -> bool:
+        """Whether it is marked as run by a person, or as not run."""
+        return any(BY_HAND.match(x) or NOT_RUN.match(x) for x in self.remarks)
+
+    @property
+    def last_run(self) -> date | None:
+        """When a person last ran it. Raises ValueError where that is no day."""
+        marks = filter(None, map(BY_HAND.match, self.remarks))
+        return next((date.fromisoformat(mark["date"]) for mark in marks), None)
 
     @property
     def file(self) -> str:
@@ -46,15 +62,22 @@ class Block:
 
 def blocks(page: str) -> list[Block]:
     """The fenced blocks of a Markdown text, in its order."""
-    found, before = [], ""
+    found: list[Block] = []
+    before, remarks = "", list[str]()
     for token in MarkdownIt().enable("table").parse(page):
+        if token.type == "html_block" and token.content.startswith("<!--"):
+            remarks += token.content.splitlines()
+            continue
         if token.type == "fence":
             assert token.map is not None
-            found.append(Block(token.info.strip(), token.content, token.map[0] + 1, before))
-        if token.type in {"inline", "html_block"}:
+            line = token.map[0] + 1
+            found.append(Block(token.info.strip(), token.content, line, before, (*remarks,)))
+        if token.type == "inline":
             before = " ".join(token.content.split())
         elif token.type != "paragraph_close":
             before = ""
+        if token.type != "paragraph_close":
+            remarks = []
     return found
 
 

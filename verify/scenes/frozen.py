@@ -1,7 +1,7 @@
 """The base of all data here: frozen models that refuse what they do not know."""
 
 from functools import cache
-from typing import Annotated, Any, cast, get_args
+from typing import Annotated, Any, get_args
 
 from pydantic import (
     BaseModel,
@@ -15,7 +15,6 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
-from pydantic_core import CoreSchema
 
 from verify.prose import Prose
 
@@ -71,10 +70,10 @@ class WithProse(Frozen):
 
     @classmethod
     def __get_pydantic_json_schema__(
-        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+        cls, core_schema: Any, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         """That of its fields, and of what stands beside them."""
-        schema = handler(cast(CoreSchema, _unserialized(core_schema)))
+        schema = handler(_unserialized(core_schema))
         own = handler.resolve_ref_schema(schema)
         beside = {name + _BESIDE: _PARTS_SCHEMA for name in _prose_fields(cls)}
         own["properties"] = {**own.get("properties", {}), **beside}

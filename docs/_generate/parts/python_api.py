@@ -8,6 +8,7 @@ import verify
 from verify import strategies, testing
 
 _FURTHER = (testing, strategies)
+_MEMBERS = (":members:", ":exclude-members: model_config, model_post_init")  # pydantic's own
 
 
 def text() -> str:
@@ -18,7 +19,7 @@ def text() -> str:
     modules = {f"verify.{name}": x for name, x in found.items() if isinstance(x, ModuleType)}
     sections = [
         *_section("Calls", _directives("function", calls)),
-        *_section("Classes", _directives("class", classes, ":members:")),
+        *_section("Classes", _directives("class", classes, *_MEMBERS)),
     ]
     for name, module in (modules | {each.__name__: each for each in _FURTHER}).items():
         sections += _section(name, _of_module(module))

@@ -1,14 +1,17 @@
 """The keys of `results.json`, from the JSON Schema of the model that writes it."""
 
 import inspect
+import json
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from docs._generate.markdown import code, prose, table
 from verify.scenes.results.report import Report
 
-_PLAIN = {"string": "text", "integer": "whole number", "number": "number", "boolean": "true or false",
-          "null": "null"}  # fmt: skip
+FILE = Path(__file__).parents[2] / "_build" / "results.schema.json"  # git-ignored
+_PLAIN = {"string": "text", "integer": "whole number", "number": "number", "null": "null",
+          "boolean": "true or false"}  # fmt: skip
 
 
 def schema() -> dict[str, Any]:
@@ -17,11 +20,20 @@ def schema() -> dict[str, Any]:
     return dialect | Report.model_json_schema(mode="serialization")
 
 
+def write() -> None:
+    """The schema as a file, for readers to take along."""
+    FILE.parent.mkdir(exist_ok=True)
+    FILE.write_text(json.dumps(schema(), ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
+
+
 def text() -> str:
-    """A section for the report, and for each kind of object in it."""
+    """A link to the whole, and a section for the report and for each kind of object in it."""
     found = schema()
     parts = {"Report": found} | found["$defs"]
-    return "\n\n".join("\n\n".join(_section(name, part)) for name, part in parts.items()) + "\n"
+    link = f"The whole as a file: [{FILE.name}](path:../{FILE.parent.name}/{FILE.name}).\n\n"
+    return (
+        link + "\n\n".join("\n\n".join(_section(name, part)) for name, part in parts.items()) + "\n"
+    )
 
 
 def _section(name: str, part: Mapping[str, Any]) -> Iterator[str]:
