@@ -1,5 +1,6 @@
 """README.md and docs: what they tell to do is done, and what they print is what comes out."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ def test_what_a_page_prints_is_what_comes_out(name: str, tmp_path: Path) -> None
 @pytest.mark.parametrize("name", ELSEWHERE)
 def test_the_other_pages_are_read_through_elsewhere(name: str) -> None:
     test = Path(__file__).with_name(ELSEWHERE[name]).read_text(encoding="utf-8")
-    assert f'read_through(PAGES["{name}"]' in test
+    assert re.search(rf'read_through\(\s*PAGES\["{re.escape(name)}"\]', test)
 
 
 # -- a page that is wrong is seen -----------------------------------------------------------------
@@ -103,3 +104,38 @@ def test_a_page_that_is_wrong_is_seen(what: str, tmp_path: Path) -> None:
     assert PAGE.count(old) == 1
     with pytest.raises(PageError):
         read_through(PAGE.replace(old, new), tmp_path)
+
+
+BY_HAND = """
+<!-- run by hand: 2026-11-24, 6 min -->
+```console
+$ verify prove --system pendulum --scheme lie2
+REFUTED
+```
+
+<!-- run by hand: 2026-11-24, 6 min -->
+```sh
+echo done > made.txt && verify prove --system pendulum --scheme lie2 > proof.txt
+```
+"""
+
+
+def test_what_a_person_runs_is_only_parsed(tmp_path: Path) -> None:
+    page = BY_HAND.replace("echo done > made.txt && ", "")
+    assert read_through(page, tmp_path).ran == 0
+    assert not (tmp_path / "proof.txt").exists()
+    other = tmp_path / "other"
+    other.mkdir()
+    with pytest.raises(PageError, match="No such option"):
+        read_through(page.replace("--scheme", "--skeme"), other)
+
+
+def test_what_a_person_runs_is_compared_where_one_does(tmp_path: Path) -> None:
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.mkdir()
+    second.mkdir()
+    with pytest.raises(PageError, match="line 3"):
+        read_through(BY_HAND, first, by_hand=True)
+    assert read_through(BY_HAND.replace("REFUTED", "…"), second, by_hand=True).ran == 1
+    assert (second / "made.txt").read_text() == "done\n"
+    assert (second / "proof.txt").read_text().startswith("PROVED")

@@ -2,6 +2,8 @@
 
 import re
 from collections.abc import Iterator
+from datetime import date
+from pathlib import Path
 
 import click
 import pytest
@@ -108,6 +110,53 @@ def test_what_is_not_typed_is_looked_at_by_another_test() -> None:
     assert texts == {"docs/how-to/tests-of-your-own.md"}, (
         "test_own_integrator.py looks at its failure"
     )
+
+
+# -- what takes long ------------------------------------------------------------------------------
+
+
+def undone(page: str, today: date) -> list[str]:
+    """What is wrong with the marks of a page: which blocks nobody is known to have run."""
+    found = []
+    for block in blocks(page):
+        parts = re.split(r"&&|\n", block.text.replace("\\\n", " "))
+        starts = [part.split(maxsplit=1)[0] for part in parts if part.strip()]
+        ours = block.language == "sh" and any(Path(word).name == "verify" for word in starts)
+        if ours and not block.is_by_hand:
+            found.append(f"line {block.line}: no mark says when this was last run")
+        if any("run" in remark for remark in block.remarks) and not block.is_by_hand:
+            found.append(f"line {block.line}: no mark is written so")
+        try:
+            if block.last_run and block.last_run > today:
+                found.append(f"line {block.line}: {block.last_run} is to come")
+        except ValueError as error:
+            found.append(f"line {block.line}: {error}")
+    return found
+
+
+def test_what_the_suite_does_not_run_says_when_a_person_did() -> None:
+    today = date.today()
+    assert not {name: wrong for name, page in PAGES.items() if (wrong := undone(page, today))}
+    assert sum(block.last_run is not None for page in PAGES.values() for block in blocks(page)) > 10
+
+
+LONG = "so:\n\n<!-- run by hand: 2026-11-24, 6 min -->\n```sh\nverify report paper -o paper\n```\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("<!-- run by hand: 2026-11-24, 6 min -->\n", ""), ("11-24", "13-24"), ("11-24", "11-25"),
+        ("run by hand", "run by me"), ("6 min", "long"), (" 6 min", ""),
+        ("-->\n", "-->\n\nNow:\n\n"),
+    ],
+)  # fmt: skip
+def test_a_mark_that_is_missing_or_wrong_is_seen(old: str, new: str) -> None:
+    today = date(2026, 11, 24)
+    assert not undone(LONG, today)
+    assert not undone(LONG.replace("run by hand: 2026-11-24, 6 min", "not run: it is yours"), today)
+    assert LONG.count(old) == 1
+    assert undone(LONG.replace(old, new), today)
 
 
 def test_no_run_time_is_printed_as_a_fact() -> None:
