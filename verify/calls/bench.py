@@ -25,8 +25,8 @@ def bench(
 ) -> WorkPrecisionResult:
     """Solution error at `time` against run time in seconds, and area error, of schemes.
 
-    The arguments are those of `verify.run`; `scheme` may be a list. `step_sizes`: two at least,
-    each of which divides `time`. `repeats`: timings of each point. `peers`: solvers of other
+    The arguments are those of `verify.run`; `scheme` may be a list. `step_sizes`: two at least;
+    N is time/h, rounded down. `repeats`: timings of each point. `peers`: solvers of other
     libraries beside them, where they are installed. `verify.plot_work_precision` draws it. Raises
     InputError, one line.
     """

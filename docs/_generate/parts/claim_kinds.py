@@ -11,8 +11,6 @@ from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
 from verify.claims.scenes import ClaimedHamiltonian
 
-_EVERY = tuple(name for name in Claim.model_fields if name != "scheme")
-
 
 def text() -> str:
     """The keys that all have, those of H and of runs, and a section for each kind."""
@@ -39,7 +37,12 @@ def _section(kind: str, model: type[Claim]) -> Iterator[str]:
     yield f"### {kind}"
     yield prose(inspect.cleandoc(sys.modules[model.__module__].__doc__ or ""))
     yield "It is decided by " + ("algebra." if model.exact else "runs.")
-    own = [key for key in model.model_fields if key not in _EVERY]
-    if own:
-        without = [key for key in model.model_fields if key not in own]
+    without = [key for key in model.model_fields if not _is_own(model, key)]
+    if len(without) < len(model.model_fields):
         yield keys(model, without)
+
+
+def _is_own(model: type[Claim], key: str) -> bool:
+    """Whether the kind has the key, or takes something else there than every claim does."""
+    bases = model.__mro__[: model.__mro__.index(Claim)]
+    return key != "kind" and any(key in inspect.get_annotations(base) for base in bases)

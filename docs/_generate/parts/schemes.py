@@ -1,18 +1,27 @@
 """The schemes: what each claims, for which H it is, and what a step costs."""
 
+from collections.abc import Iterator
+
 from docs._generate.markdown import codes, prose, table
 from verify.schemes import aliases, family, get, names
 
-_HEAD = ("scheme", "order", "is", "for H", "a step", "H_p, H_q", "source")
+_HEAD = ("scheme", "order", "is", "for H", "a step", "H_p, H_q")
 
 
 def text() -> str:
-    """A table of each family, in which all of them stand."""
-    families = dict.fromkeys(sorted(family(name) for name in names()))
-    return "\n".join(
-        f"### {of}\n\n{table(_HEAD, (_row(name) for name in names() if family(name) == of))}"
-        for of in families
-    )
+    """A table of each family, in which all of them stand, and where they are from."""
+    families = sorted({family(name) for name in names()})
+    return "\n\n".join(part for of in families for part in _section(of))
+
+
+def _section(of: str) -> Iterator[str]:
+    own = [name for name in names() if family(name) == of]
+    yield f"### {of}"
+    yield table(_HEAD, map(_row, own))
+    sources: dict[str, list[str]] = {}
+    for name in own:
+        sources.setdefault(get(name).source, []).append(name)
+    yield "\n".join(f"- {codes(users)}: {prose(source)}" for source, users in sources.items())
 
 
 def _row(name: str) -> tuple[str, ...]:
@@ -27,5 +36,4 @@ def _row(name: str) -> tuple[str, ...]:
         "T(p) + V(q)" if scheme.needs_separable else "every smooth one",
         getattr(scheme.every_h, "a_step", ""),
         ", ".join(map(str, (scheme.evaluations or {}).values())),
-        prose(scheme.source),
     )
