@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -187,7 +188,7 @@ def close(x: Any, y: Any, digits: int) -> bool:
 
 # -- what must end ----------------------------------------------------------------------------
 
-_MEMORY = 4 << 30
+_MEMORY = 2 << 30  # more than there is when it begins
 _WAITING = 20  # times as long as the processor may be busy
 
 
@@ -212,8 +213,15 @@ def outcome(work: Callable[[], object], seconds: int = 6) -> str:
         process.join()
 
 
+def _address_space() -> int:
+    """What this process, a copy of the one that tests, has of it already, in bytes."""
+    pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[0]
+    return int(pages) * resource.getpagesize()
+
+
 def _attempt(work: Callable[[], object], seconds: int, sender: Connection) -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
+    most = _address_space() + _MEMORY
+    resource.setrlimit(resource.RLIMIT_AS, (most, most))
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, 2 * seconds))
     try:
         work()

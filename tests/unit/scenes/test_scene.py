@@ -22,6 +22,7 @@ from verify.scenes.results import run as run_results
 from verify.scenes.results import stability as stability_results
 from verify.scenes.results import work_precision as work_precision_results
 from verify.scenes.results.exploration import GalleryScene
+from verify.scenes.results.proof import Formulas
 from verify.scenes.results.report import Report, SceneResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import RatioResult
@@ -301,8 +302,19 @@ def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     made = make_report(
         "All", [scene], file.claims, store, figures=figures, command="test", where=THIS_PROCESS
     )
-    with_ratio = tuple(map(_with_ratio, made.scenes))
-    return made.model_copy(update={"gallery": gallery(shown()), "scenes": with_ratio})
+    scenes = tuple(_with_symbols(_with_ratio(each)) for each in made.scenes)
+    return made.model_copy(update={"gallery": gallery(shown()), "scenes": scenes})
+
+
+def _with_symbols(scene: SceneResult) -> SceneResult:
+    """A long value of a parameter is rare: the formulas that are read then stand here."""
+    first, *others = scene.proofs
+    symbolic = Formulas(
+        symbols=("delta",), leading=None, delta_j=None, p_next="p", q_next="q", jacobian=None
+    )
+    return scene.model_copy(
+        update={"proofs": (first.model_copy(update={"symbolic": symbolic}), *others)}
+    )
 
 
 def _with_ratio(scene: SceneResult) -> SceneResult:
