@@ -139,12 +139,16 @@ def scene_of(
     parameters: GivenParameters,
     *,
     name: str = "",
+    known_as: str | None = None,
     **sections: Any,
 ) -> Scene:
-    """A scene of the system and one scheme or several with these sections, and a name to show."""
+    """A scene of the system and one scheme or several with these sections, and a name to show.
+
+    `known_as`: the name of the system, where it has one.
+    """
     exact = hamiltonian_from(system, parameters)
     data = {
-        "hamiltonian": exact.formula,
+        **({"system": known_as} if known_as else {"hamiltonian": exact.formula}),
         "parameters": dict[str, Fraction](exact.values),
         "schemes": schemes_from(scheme, exact),
     }

@@ -17,7 +17,8 @@ from verify.scenes.results.report import Report
 from verify.scenes.results.statement import Outcome
 from verify.verdict import Verdict
 
-_LEAST = 2  # answers; of one alone the tiles say as much
+_LEAST = 2  # answers; of one alone the tiles say as much, but for the formula of a few ΔJ
+_FEW = 3  # schemes, and systems
 _MOST_LINKS = 12
 # Of one statement, and of several; those that are refuted stand last, before their links.
 _OUTCOMES = {
@@ -38,9 +39,11 @@ class Answer:
 
 
 def answers(report: Report, claims: Sequence[ClaimView]) -> tuple[Answer, ...]:
-    """The questions that are answered; none where there is but one."""
-    found = [*_theory(claims), *_area(report), *_tables(claims), *_use(report)]
-    return tuple(found) if len(found) >= _LEAST else ()
+    """The questions that are answered; of many proofs alone the page below says more."""
+    area = list(_area(report))
+    found = [*_theory(claims), *area, *_tables(claims), *_use(report)]
+    few = len(report.scenes) <= _FEW and all(len(each.lines) <= _FEW for each in area)
+    return tuple(found) if len(found) >= _LEAST or (area and few) else ()
 
 
 def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:

@@ -64,11 +64,18 @@ def test_what_is_not_decided_is_no_no() -> None:
     assert answered(made)["Is area preserved?"].lines == ("lie2: not decided",)
 
 
-def test_a_refuted_table_is_linked_and_a_report_of_proofs_alone_asks_nothing() -> None:
+def test_a_refuted_table_is_linked() -> None:
     tables = answered(real())["Do the printed tables stand?"]
     assert tables.lines
     assert all(": 4 of 4 entries are wrong" in line for line in tables.lines)
     assert tables.links
-    assert not answers(report((scene(),)), ())
-    assert 'class="answers"' not in render(report((scene(),)))
     assert 'class="answers"' in render(real())
+
+
+def test_of_a_few_proofs_alone_the_formula_is_told_and_of_many_the_page_below_says_more() -> None:
+    few, many = (report(tuple(scene(proofs=(proof(),)) for _ in range(n))) for n in (1, 4))
+    (only,) = answers(few, ())
+    assert only.question == "Is area preserved?"
+    assert not answers(many, ())
+    assert 'class="answers"' not in render(many)
+    assert not answers(report((scene(proofs=()),)), ()), "no proof, no question"

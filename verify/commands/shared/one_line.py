@@ -88,7 +88,10 @@ def scenes_of(
 
     own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes")}
     name = given["system"] or exact.formula
-    return [scene_of(exact, asked["schemes"], None, name=name, **sections(**own))]
+    made = scene_of(
+        exact, asked["schemes"], None, name=name, known_as=given["system"], **sections(**own)
+    )
+    return [made]
 
 
 def goes_alone(given: Mapping[str, Any]) -> None:
