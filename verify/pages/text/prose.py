@@ -4,6 +4,7 @@ A text is escaped as it is, and nothing is looked for in it.
 """
 
 import re
+from collections.abc import Sequence
 
 from markupsafe import Markup, escape
 
@@ -13,6 +14,7 @@ from verify.pages.text.typography import NBSP, is_number, number
 from verify.prose import Formula, Number, Prose, read_prose
 
 _EQUALS = " = "
+_NAME = 12  # characters of a formula that is given a value
 _ONE_LINE = 40  # characters of a formula that is not broken; a phone has room for them
 
 
@@ -23,7 +25,23 @@ def prose(text: str) -> Markup:
     '2 * 3 of e<sup>Nε</sup> below 1\\xa0×\\xa010⁻⁹'
     """
     parts = text.parts if isinstance(text, Prose) else (text,)
-    return Markup("").join(map(_set, parts, (*parts[1:], "")))
+    made, at = [], 0
+    while at < len(parts):
+        if _is_value(parts[at : at + 3]):  # p = 7/17 stays on one line
+            named, _, value = map(_set, parts[at : at + 3], ("", "", ""))
+            made.append(Markup('<span class="nowrap">{} = {}</span>').format(named, value))
+            at += 3
+        else:
+            made.append(_set(parts[at], parts[at + 1] if at + 1 < len(parts) else ""))
+            at += 1
+    return Markup("").join(made)
+
+
+def _is_value(parts: Sequence[str]) -> bool:
+    """A short formula, an equals sign and a number."""
+    if len(parts) < 3 or not isinstance(parts[0], Formula) or len(parts[0]) > _NAME:
+        return False
+    return type(parts[1]) is str and parts[1] == _EQUALS and isinstance(parts[2], Number)
 
 
 def quoted(text: str) -> Markup:

@@ -63,3 +63,10 @@ def test_a_sentence_and_a_cell_keep_their_parts() -> None:
     assert sentence(Prose()) == "."
     assert cell(Prose(Number("-1.5"))) == "−1.5"
     assert cell(Prose("a * b")) == "a * b"
+
+
+def test_a_name_and_its_value_stay_on_one_line_and_a_long_formula_may_break() -> None:
+    short = prose(Prose("at ", Formula("p"), " = ", Number("7/17"), "."))
+    assert '<span class="nowrap"><math><mrow><mi>p</mi></mrow></math> = 7/17</span>.' in short
+    long = prose(Prose(Formula("3*p*q + sin(q)**2*p**4"), " = ", Number("1")))
+    assert "nowrap" not in long
