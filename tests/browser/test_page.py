@@ -75,6 +75,15 @@ def test_the_page_is_quiet_closed_seen_in_full_and_kept_from_nobody(
         assert found.outside() == []
 
 
+def test_contents_that_are_longer_than_the_window_are_scrolled_by_keys(
+    browser: Browser, folder: Path
+) -> None:
+    with opened(browser, file_of(folder, page_of("paper")), width=DESK, height=200) as found:
+        contents = "document.querySelector('.contents > details')"
+        assert found.page.evaluate(f"{contents}.scrollHeight > {contents}.clientHeight")
+        assert found.violations() == []
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_what_others_wrote_stays_text(browser: Browser, folder: Path, name: str) -> None:
     with opened(browser, file_of(folder, page_of(name))) as found:

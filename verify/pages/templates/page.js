@@ -59,6 +59,8 @@
     });
     for (const claim of claims) claim.home = claim.parentElement;
   }
+  // Where they stand at the side they can be scrolled, so a keyboard must reach what is in them.
+  document.querySelector(".contents > details").open = matchMedia("(min-width: 1100px)").matches;
   const links = new Map([...document.querySelectorAll(".contents a")].map((link) =>
     [document.getElementById(link.hash.slice(1)), link]));
   const mark = () => {
