@@ -1,11 +1,27 @@
 """How the tests' own process takes care of what it keeps."""
 
 import gc
+import os
+import shutil
+import tempfile
 
 import pytest
 
+from verify.code_cache import VARIABLE
+
 # Objects; most of what an expression or a compiler makes on the way is gone by then.
 gc.set_threshold(50_000, 20, 20)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """A folder for kernels that this session compiles, of which none is of an earlier one.
+
+    All its processes share it: each kernel is compiled by the first of them that calls it.
+    """
+    if not hasattr(config, "workerinput"):  # which a worker has, and the environment besides
+        folder = tempfile.mkdtemp(prefix="verify-tests-")
+        os.environ[VARIABLE] = folder
+        config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
 
 
 @pytest.hookimpl(trylast=True)

@@ -110,6 +110,7 @@ def _in_child(
         # What is kept between runs of the same tests is kept for this child alone.
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(folder / "hypothesis")
         os.environ["NUMBA_CACHE_DIR"] = str(folder / "numba")
+        os.environ["VERIFY_CACHE"] = str(folder.absolute() / "verify")
         os.environ["TMPDIR"] = tempfile.tempdir = str(folder)
         said = os.open(folder / "said", os.O_WRONLY | os.O_CREAT)
         os.dup2(said, 1)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.cache import cache_option
 from verify.commands.shared.input import PATH
 from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
 from verify.commands.shared.output import plain_json
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", type=PATH, metavar="FILE.svg", help="Draw it there.")
 @cluster_option
 @answering
+@cache_option
 def bench(scene: str | None, output: Path | None, cluster: str | None, **given: Any) -> Answer:
     """Error against run time of the schemes in SCENE, a TOML file with a [work_precision].
 

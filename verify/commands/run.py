@@ -8,6 +8,7 @@ import click
 from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.cache import cache_option
 from verify.commands.shared.input import PATH, keepable, scheme_option, with_hamiltonian
 from verify.commands.shared.orbit_file import STANDARD_OUTPUT, check_orbit_file, write_orbit
 from verify.errors import InputError
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 @with_hamiltonian
 @scheme_option
 @answering
+@cache_option
 @click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
 @click.option("--time", metavar="T", help="N is T/H rounded down.")

@@ -6,6 +6,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.cache import cache_option
 from verify.commands.shared.input import scheme_option, with_hamiltonian
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 @with_hamiltonian
 @scheme_option
 @answering
+@cache_option
 @click.option(
     "--step-size",
     "step_sizes",

@@ -17,6 +17,7 @@ from tests.helpers.sampled import formulas as strategies
 from verify.arithmetic.systems import fixed, mpfr
 from verify.arithmetic.wide import engine
 from verify.arithmetic.wide.translate import Translator
+from verify.code_cache import OFF, VARIABLE
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import reach, stepping
@@ -272,6 +273,7 @@ def test_a_function_without_a_value_that_does_not_say_so_is_caught(
 ) -> None:
     anew(monkeypatch)
     monkeypatch.setattr(engine, "_compiled", engine._compiled.__wrapped__)
+    monkeypatch.setenv(VARIABLE, OFF)
     monkeypatch.setattr(Translator, "_require", lambda self, condition: None)
     assert wrong_kernel_runs()
 

@@ -1,19 +1,17 @@
-"""LLVM modules → native functions on this machine's processor."""
+"""Kernels in fixed point as native functions, those that were compiled before from disk."""
 
 import ctypes
-import threading
+import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache, lru_cache
 from operator import itemgetter
 from typing import Any
 
-from llvmlite import binding as llvm
-from llvmlite import ir
+from verify import code_cache
+from verify.arithmetic.wide import native
 
-from verify.arithmetic.wide.translate import Translator
-
-_LOCK = threading.Lock()  # LLVM's set-up is not made for threads
-_ENGINES: list[llvm.ExecutionEngine] = []  # what runs must not be freed
+Names = tuple[tuple[str, Any], ...]
 
 
 class Fixed:
@@ -51,36 +49,91 @@ def compiled(
 ) -> Callable[..., object]:
     """The function that the source defines (see `verify.arithmetic.wide.translate`).
 
-    It is compiled once, when it is first called, since not every kernel that is made is run. It
-    takes and gives `Fixed`, int and float. Raises OverflowError where an argument is outside the
-    format, and ValueError where a function had no value outside a loop.
+    It is compiled once, and linked when it is first called, since not every kernel that is made is
+    run. It takes and gives `Fixed`, int and float. Raises OverflowError where an argument is
+    outside the format, and ValueError where a function had no value outside a loop.
     """
     return _compiled(source, width, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
 
 
 @lru_cache(maxsize=256)
-def _compiled(
-    source: str, width: int, fraction: int, names: tuple[tuple[str, Any], ...]
-) -> Callable[..., object]:
+def _compiled(source: str, width: int, fraction: int, names: Names) -> Callable[..., object]:
+    key = code_cache.key_of(native.versions(), source, f"{width} {fraction}", repr(names))
+    kept = code_cache.load(key)
+    if kept is not None:
+        return callable_of(Translation.read(kept), width, fraction)
+
+    def keep(translation: Translation) -> None:
+        code_cache.keep(key, translation.written())
+
+    return callable_of(translated(source, width, fraction, names), width, fraction, keep)
+
+
+@dataclass(frozen=True)
+class Translation:
+    """What a source became: the kinds of what it takes and gives, and its machine code.
+
+    `code` is called once, and only for a kernel that is run: most of the time is LLVM's.
+    """
+
+    arguments: tuple[str, ...]
+    results: tuple[str, ...]
+    returns_tuple: bool
+    code: Callable[[], bytes]
+
+    def written(self) -> bytes:
+        """As it is kept: a line of JSON, then the object file."""
+        kinds = [self.arguments, self.results, self.returns_tuple]
+        return json.dumps(kinds).encode() + b"\n" + self.code()
+
+    @classmethod
+    def read(cls, raw: bytes) -> "Translation":
+        """What `written` wrote."""
+        head, _, code = raw.partition(b"\n")
+        arguments, results, returns_tuple = json.loads(head)
+        return cls(tuple(arguments), tuple(results), returns_tuple, lambda: code)
+
+
+def translated(source: str, width: int, fraction: int, names: Names) -> Translation:
+    """The source's translation, made now and from nothing that is kept."""
+    from verify.arithmetic.wide.translate import Translator
+
     translator = Translator(source, width, fraction, dict(names))
     module = translator.translate()
-    native = cache(lambda: _native(module))
+    kinds = tuple(kind for _, kind in translator.arguments)
+    code = cache(lambda: native.machine_code(module))
+    return Translation(kinds, tuple(translator.results), translator.returns_tuple, code)
+
+
+def callable_of(
+    translation: Translation,
+    width: int,
+    fraction: int,
+    keep: Callable[[Translation], None] = lambda _: None,
+) -> Callable[..., object]:
+    """The function that was translated; `keep` gets it once it is compiled, at the first call."""
     sizes = {"wide": width // 64, "sum": width // 64 + 1, "float": 1, "int": 1}
-    kinds = [kind for _, kind in translator.arguments]
-    room = 8 * (sum(sizes[kind] for kind in translator.results) + 1)
+    kinds = translation.arguments
+    room = 8 * (sum(sizes[kind] for kind in translation.results) + 1)
+
+    @cache
+    def function() -> native.Native:
+        made = native.linked(translation.code())
+        keep(translation)
+        return made
 
     def call(*arguments: Word) -> object:
         given = b"".join(map(_packed, arguments, kinds, (sizes[k] for k in kinds)))
         result = ctypes.create_string_buffer(room)
-        native()(given, result)
+        function()(given, result)
         values, at = [], 0
-        for kind in translator.results:
+        for kind in translation.results:
             words = result.raw[at : at + 8 * sizes[kind]]
             values.append(_unpacked(words, kind, fraction))
             at += 8 * sizes[kind]
         if not result.raw[at]:
             raise ValueError("a function has no value there")
-        return tuple(values) if translator.returns_tuple else values[0]
+        return tuple(values) if translation.returns_tuple else values[0]
 
     return call
 
@@ -97,36 +150,3 @@ def _unpacked(words: bytes, kind: str, fraction: int) -> Word:
         return ctypes.c_double.from_buffer_copy(words).value
     number = int.from_bytes(words, "little", signed=True)
     return number if kind == "int" else Fixed(number, fraction)
-
-
-def _native(module: ir.Module) -> Callable[[bytes, ctypes.Array[ctypes.c_char]], None]:
-    with _LOCK:
-        llvm.initialize_native_target()
-        llvm.initialize_native_asmprinter()
-        module.triple = llvm.get_process_triple()
-        parsed = llvm.parse_assembly(str(module))
-        parsed.verify()
-        target = llvm.Target.from_triple(module.triple).create_target_machine(
-            cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=2
-        )
-        _optimise(parsed, target)
-        engine = llvm.create_mcjit_compiler(parsed, target)
-        engine.finalize_object()
-        _ENGINES.append(engine)
-        address = engine.get_function_address("main")
-    return ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
-
-
-def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
-    """Registers for variables, and common subexpressions.
-
-    The rest of LLVM's pipeline makes these kernels no faster, and takes ten times as long.
-    """
-    passes = llvm.create_new_module_pass_manager()
-    passes.add_sroa_pass()
-    passes.add_simplify_cfg_pass()
-    passes.add_new_gvn_pass()
-    passes.add_dead_code_elimination_pass()
-    passes.add_simplify_cfg_pass()
-    builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options())
-    passes.run(module, builder)

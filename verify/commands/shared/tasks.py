@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import answering
+from verify.commands.shared.cache import cache_option
 from verify.commands.shared.input import PATH, keepable
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ cluster_option = click.option(
 
 
 def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --workers and --cluster, which it gets as one `where`."""
+    """The command with --workers and --cluster, which it gets as one `where`, and --no-cache."""
 
     @wraps(command)
     def given(*args: Any, workers: int | None, cluster: str | None, **options: Any) -> Any:
@@ -46,11 +47,11 @@ def with_placement(command: Callable[..., Any]) -> Callable[..., Any]:
 
         return command(*args, where=Placement(workers, cluster), **options)
 
-    return workers_option(cluster_option(given))
+    return workers_option(cluster_option(cache_option(given)))
 
 
 def with_tasks(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --keep, --workers, --cluster and --json."""
+    """The command with --keep, --workers, --cluster, --no-cache and --json."""
     return keep_option(with_placement(answering(command)))
 
 

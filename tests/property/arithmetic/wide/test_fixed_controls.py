@@ -27,7 +27,9 @@ def fresh() -> Format:
 
     def compiled(source: str, width: int, fraction: int, names: dict[str, Any]) -> Any:
         found = tuple(sorted(names.items(), key=itemgetter(0)))
-        return engine._compiled.__wrapped__(source, width, fraction, found)
+        return engine.callable_of(
+            engine.translated(source, width, fraction, found), width, fraction
+        )
 
     return Format(WIDTH, compiled)
 

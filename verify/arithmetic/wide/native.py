@@ -1,0 +1,82 @@
+"""LLVM modules → machine code of this machine's processor → functions of this process."""
+
+import ctypes
+import sys
+import threading
+from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import llvmlite
+from llvmlite import binding as llvm
+
+if TYPE_CHECKING:
+    from llvmlite import ir
+
+Native = Callable[[bytes, ctypes.Array[ctypes.c_char]], None]
+_LOCK = threading.Lock()  # LLVM's set-up is not made for threads
+_ENGINES: list[llvm.ExecutionEngine] = []  # what runs must not be freed
+# Read as this is imported, since a process that goes on while its files change has the old ones.
+_COMPILER = sha256(b"\n".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py"))))
+
+
+@cache
+def versions() -> str:
+    """All that machine code depends on besides its source: compilers, this one too, processor."""
+    python = ".".join(map(str, sys.version_info[:3]))
+    ours = f"Python {python}, {_COMPILER.hexdigest()}"
+    libraries = f"llvmlite {llvmlite.__version__}, LLVM {llvm.llvm_version_info}"
+    return f"{ours}, {libraries}, {llvm.get_process_triple()}, {' '.join(_processor())}"
+
+
+def machine_code(module: "ir.Module") -> bytes:
+    """The module as an object file. Any thread may ask for one, one is made at a time."""
+    with _LOCK:
+        target = _target()
+        module.triple = target.triple
+        parsed = llvm.parse_assembly(str(module))
+        parsed.verify()
+        _optimise(parsed, target)
+        return bytes(target.emit_object(parsed))
+
+
+def linked(code: bytes, name: str = "main") -> Native:
+    """The function of that name in an object file; it stays in memory for good."""
+    with _LOCK:
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target())
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        _ENGINES.append(engine)
+        address = engine.get_function_address(name)
+    return ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
+
+
+@cache
+def _processor() -> tuple[str, str]:
+    """Its name and its features."""
+    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+
+
+def _target() -> llvm.TargetMachine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    cpu, features = _processor()
+    target = llvm.Target.from_triple(llvm.get_process_triple())
+    return target.create_target_machine(cpu=cpu, features=features, opt=2)
+
+
+def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
+    """Registers for variables, and common subexpressions.
+
+    The rest of LLVM's pipeline makes these kernels no faster, and takes ten times as long.
+    """
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_sroa_pass()
+    passes.add_simplify_cfg_pass()
+    passes.add_new_gvn_pass()
+    passes.add_dead_code_elimination_pass()
+    passes.add_simplify_cfg_pass()
+    builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options())
+    passes.run(module, builder)
