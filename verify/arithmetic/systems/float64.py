@@ -11,8 +11,10 @@ from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import Any
 
+from verify.arithmetic import numba_code
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
 
 NAME = "float64"
@@ -110,10 +112,13 @@ def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     import numba
 
-    scope = {**namespace, "root": numba.njit(_root)}
+    # numba looks for the module of what it loads again.
+    scope = {**namespace, "root": numba.njit(_root), "__name__": __name__}
     exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
-    compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(scope[name])
-    return compiled
+    # A function's text has an address in it; the name says which it is, and `_root` is in the file.
+    named = {k: getattr(x, "__qualname__", None) or repr(x) for k, x in namespace.items()}
+    own = Path(__file__).read_text(encoding="utf-8")
+    return numba_code.compiled(scope[name], source, name, repr(sorted(named.items())), own)
 
 
 def _either(function: Callable[[float], float], beyond: Callable[[float], float]) -> Any:

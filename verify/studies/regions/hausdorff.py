@@ -12,11 +12,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import isfinite, sqrt
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from verify.arithmetic import numba_code
 from verify.errors import InputError
+from verify.studies.regions import segment_tree
 from verify.studies.regions.segment_tree import (
     boxes,
     make_compilable,
@@ -93,15 +96,14 @@ def _one_way(rows: Any, others: Any, known: float, rounding: float) -> tuple[flo
 
 @cache
 def _compiled() -> Callable[..., tuple[float, float]]:
-    import numba
     from numba.extending import register_jitable
 
     make_compilable()
     for function in (_distance, _upper, _greatest_on_segment):
         register_jitable(function)
-    compiled: Callable[..., tuple[float, float]]
-    compiled = numba.njit(nogil=True, error_model="numpy", fastmath=False)(_directed)
-    return compiled
+    files = (__file__, segment_tree.__file__)
+    texts = (Path(file).read_text(encoding="utf-8") for file in files)
+    return numba_code.compiled(_directed, *texts)
 
 
 def _distance(x: float, y: float, row: Any) -> float:
