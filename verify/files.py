@@ -6,7 +6,6 @@ are read. What is written replaces a regular file or nothing.
 
 import os
 import stat
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -102,6 +101,8 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     Raises InputError where a link, a device, a pipe or a read-only file stands there, and OSError,
     which names the file, where it cannot be written.
     """
+    import tempfile  # which takes as long to import as many a command
+
     check_replaceable(path)
     raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -7,8 +7,7 @@ import sys
 
 import click
 
-from verify.commands import commands
-from verify.commands.shared.as_typed import as_typed
+from verify.commands import Commands
 from verify.commands.shared.group import Group
 from verify.commands.shared.signals import heard_signals
 from verify.commands.shared.streams import Printable, printable_streams
@@ -45,8 +44,7 @@ def cli(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for command in commands():
-    cli.add_command(as_typed(command))
+cli.commands = Commands()  # type: ignore[assignment]  # none is ever added
 
 
 # -- entry ----------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cache
 from typing import Annotated, Any
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter
@@ -46,7 +47,9 @@ class Reached:
     series: tuple[SeriesPoint, ...] = ()
 
 
-_KEPT = TypeAdapter(Reached)
+@cache
+def _kept() -> TypeAdapter[Reached]:
+    return TypeAdapter(Reached)
 
 
 class ChunkedLoop:
@@ -205,10 +208,10 @@ class ChunkedLoop:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
         # A ball's radius is not kept; such runs are short.
         if self.arithmetic.radius is None and self.reached.done:
-            self.run.keeper.save(self._label, _KEPT.dump_python(self.reached, mode="json"))
+            self.run.keeper.save(self._label, _kept().dump_python(self.reached, mode="json"))
 
     def _restored(self, kept: Mapping[str, Any]) -> Reached:
-        found = _KEPT.validate_python(kept)
+        found = _kept().validate_python(kept)
         self.state = tuple(
             float(x) if kind == "float" else self.arithmetic.number(x)
             for kind, x in zip(self.kernel.kinds, found.state, strict=True)

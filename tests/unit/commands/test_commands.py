@@ -4,18 +4,20 @@ from pathlib import Path
 
 import pytest
 
-from verify.commands import commands, main
+from verify.commands import Commands, main
 from verify.commands.reference import reference
 from verify.commands.reference_compare import compare
 from verify.commands.shared import input as given
 
 
 def test_each_is_called_as_its_file_and_what_it_shares_is_none() -> None:
-    found = {command.name for command in commands()}
-    assert found == set(main.cli.commands)
+    found = {command.name for command in Commands().values()}
+    assert found == set(main.cli.commands) == set(Commands())
     assert {"run", "check-integrator", "reference"} <= found
     assert not found & {"input", "output", "tasks", "compare", "hunt"}
     assert compare in reference.commands.values()
+    for name in ("reference-compare", "main", "nothing"):
+        assert name not in main.cli.commands
 
 
 def test_a_folder_with_a_title_is_a_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
