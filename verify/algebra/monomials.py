@@ -107,6 +107,33 @@ def is_of_name(x: sympy.Expr) -> bool:
     return bool(x.is_Symbol or (x.is_Pow and x.base.is_Symbol and x.exp.is_Integer))
 
 
+def reads_back(x: sympy.Expr, most: int) -> bool:
+    """Whether x is a sum of monomials whose text, of at most so many characters, surely reads as x.
+
+    Its terms are then all taken by `Monomials`, which gives each number and powers as they stand
+    there, and sympy has one order for what is summed. Where the answer is no, it may be so too.
+    """
+    if not x.is_Add:
+        return False
+    length = 0
+    for term in x.args:
+        length += 4  # signs, spaces
+        for place, factor in enumerate(term.args if term.is_Mul else (term,)):
+            if factor.is_Rational and not place:
+                digits = [len(str(abs(n))) for n in (factor.p, factor.q)]
+                if max(digits) > _LONGEST:
+                    return False
+                length += sum(digits) + 2
+            elif is_of_name(factor):
+                name, power = factor.as_base_exp()
+                if not 0 < int(power) <= _MOST_POWER:
+                    return False
+                length += len(name.name) + 5
+            else:
+                return False
+    return length <= most
+
+
 def exponents(
     term: sympy.Expr, at: Mapping[str, int], length: int
 ) -> tuple[tuple[int, ...], sympy.Rational] | None:

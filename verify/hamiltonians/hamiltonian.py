@@ -10,7 +10,16 @@ import sympy
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import MAX_TERMS, embed
-from verify.algebra.formula import MAX_DEPTH, parameter_name, parse, read, symbol, to_text
+from verify.algebra.formula import (
+    MAX_DEPTH,
+    MAX_LENGTH,
+    parameter_name,
+    parse,
+    read,
+    symbol,
+    to_text,
+)
+from verify.algebra.monomials import reads_back
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
@@ -32,7 +41,8 @@ def _of_formula(formula: str) -> "Hamiltonian":
     """
     found, required = read(formula, source="hamiltonian")
     for _ in range(MAX_DEPTH):
-        again = parse(to_text(found), source="hamiltonian, written out")
+        same = reads_back(found, MAX_LENGTH)
+        again = found if same else parse(to_text(found), source="hamiltonian, written out")
         if again == found:
             made = Hamiltonian(found)
             written = Domain.of(required) if required else EVERYWHERE
