@@ -10,6 +10,9 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 
 
+_HALF = 70  # characters of formulas that half of the page has room for
+
+
 @dataclass(frozen=True)
 class ProofView:
     """`matrix` and `leading` are None where they are not known or too long to be shown."""
@@ -17,6 +20,13 @@ class ProofView:
     proof: ProofResult
     matrix: Markup | None
     leading: Markup | None
+
+    @property
+    def is_short(self) -> bool:
+        """Whether the map and ΔJ have room beside one another."""
+        shown = self.proof.shown
+        rows = [" ".join(row) for row in shown.jacobian or ()]
+        return all(len(text) <= _HALF for text in (*rows, shown.delta_j or ""))
 
 
 def _view(_: SceneResult, proof: ProofResult, __: str) -> ProofView:
