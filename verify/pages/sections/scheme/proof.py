@@ -9,7 +9,6 @@ from verify.pages.text import mathml
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 
-
 _HALF = 70  # characters of formulas that half of the page has room for
 
 
