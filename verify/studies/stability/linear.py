@@ -15,6 +15,7 @@ isolating the real roots of integer polynomials.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Protocol
 
 import flint
 import sympy
@@ -23,6 +24,7 @@ from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.schemes import get
 from verify.schemes.step_map import H_STEP, StepMap
+from verify.studies.stability.matrix_product import product, ring_polynomial
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
 
 Y = sympy.Symbol("y", positive=True)
@@ -68,16 +70,67 @@ def linear_stability(name: str) -> LinearStability:
 
 def of_map(name: str, step: StepMap) -> LinearStability:
     """The same for a step map of H = (p² + q²)/2, with h for y."""
+    return (_of_product(name, step) if step.of_parts else None) or _of_closed_form(name, step)
+
+
+def _of_product(name: str, step: StepMap) -> LinearStability | None:
+    """By the matrices of the parts; None where they have no product (`matrix_product`)."""
+    found = product(step)
+    if found is None:
+        return None
+    ring, (a, b, c, e) = found
+    trace, more = ring.reduce(a + e), ring.reduce(a * e - b * c - ring.one)  # more is ΔJ
+    signs = [-more, more + 2 - trace, more + 2 + trace]
+    vanish = [ring.vanishes(x) for x in signs]
+    conditions = [ring_polynomial(ring, x) for x, v in zip(signs, vanish, strict=True) if not v]
+    known = [f for f in conditions if f is not None]
+    if None in vanish or len(known) < len(conditions):
+        return None
+    shears = vanish[0] and (vanish[1] or vanish[2])
+    moves = any(ring.vanishes(x) is not True for x in (b, c))
+    interval = sympy.S.Zero if shears and moves else _interval(known)
+    delta_j = ring.expression(more).subs(H_STEP, Y)
+    return LinearStability(name, interval, sympy.factor(delta_j))
+
+
+def _of_closed_form(name: str, step: StepMap) -> LinearStability:
     entries = [sympy.together(x.subs(H_STEP, Y)) for x in step.jacobian]
     if any(x.free_symbols - {Y} for x in entries):
         raise InputError("scheme", name, "is not linear on the harmonic oscillator")
     a, b, c, e = entries
     det, trace = (sympy.cancel(x) for x in (a * e - b * c, a + e))
     conditions = [_polynomial(x) for x in (1 - det, 1 + det - trace, 1 + det + trace)]
-    interval = _interval(conditions)
+    interval = _interval([_SympyPolynomial(f) for f in conditions if not f.is_zero])
     if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
         interval = sympy.S.Zero
     return LinearStability(name, interval, sympy.factor(det - 1))
+
+
+class _Condition(Protocol):
+    """A polynomial in y that is not 0, and must not be negative.
+
+    `over_integers` has all of its roots; `is_negative` is asked at other y alone.
+    """
+
+    @property
+    def over_integers(self) -> flint.fmpz_poly: ...
+
+    def is_negative(self, y: Fraction, /) -> bool: ...
+
+
+@dataclass(frozen=True)
+class _SympyPolynomial:
+    f: sympy.Poly
+
+    @property
+    def over_integers(self) -> flint.fmpz_poly:
+        f = self.f.norm() if self.f.domain.is_Algebraic else self.f
+        return flint.fmpq_poly(
+            [flint.fmpq(int(x.p), int(x.q)) for x in f.all_coeffs()[::-1]]
+        ).numer()
+
+    def is_negative(self, y: Fraction) -> bool:
+        return bool(self.f.eval(sympy.Rational(y.numerator, y.denominator)) < 0)
 
 
 def _polynomial(x: sympy.Expr) -> sympy.Poly:
@@ -86,24 +139,12 @@ def _polynomial(x: sympy.Expr) -> sympy.Poly:
     return sympy.Poly(sympy.expand(above * below), Y, extension=True)
 
 
-def _interval(conditions: Sequence[sympy.Poly]) -> sympy.Expr | PositiveRoot:
+def _interval(conditions: Sequence[_Condition]) -> sympy.Expr | PositiveRoot:
     """The greatest Y such that all of them are ≥ 0 on (0, Y)."""
-    conditions = [f for f in conditions if not f.is_zero]
     left: sympy.Expr | PositiveRoot = sympy.S.Zero
     above = Fraction(0)  # the end of what encloses `left`
-    for root, (low, high) in positive_roots(_over_integers(f) for f in conditions):
-        if _one_is_negative(conditions, (above + low) / 2):
+    for root, (low, high) in positive_roots(f.over_integers for f in conditions):
+        if any(f.is_negative((above + low) / 2) for f in conditions):
             return left
         left, above = root.closed_form() or root, high
-    return left if _one_is_negative(conditions, above + 1) else sympy.oo
-
-
-def _over_integers(f: sympy.Poly) -> flint.fmpz_poly:
-    """A polynomial with integer coefficients that has all of f's roots."""
-    f = f.norm() if f.domain.is_Algebraic else f
-    return flint.fmpq_poly([flint.fmpq(int(x.p), int(x.q)) for x in f.all_coeffs()[::-1]]).numer()
-
-
-def _one_is_negative(conditions: Sequence[sympy.Poly], y: Fraction) -> bool:
-    at = sympy.Rational(y.numerator, y.denominator)
-    return any(f.eval(at) < 0 for f in conditions)
+    return left if any(f.is_negative(above + 1) for f in conditions) else sympy.oo

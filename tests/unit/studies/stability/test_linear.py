@@ -1,6 +1,7 @@
 """Stability intervals on the harmonic oscillator, against known ones and against powers of M."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -8,9 +9,12 @@ import pytest
 import sympy
 
 from verify import schemes
+from verify.algebra.enclosure import enclose
+from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.step_map import StepMap
+from verify.studies.stability import linear, matrix_product
 from verify.studies.stability.linear import Y, linear_stability, of_map
 
 KNOWN = {
@@ -117,3 +121,80 @@ def test_a_shear_is_stable_for_no_step_as_its_powers_grow(name: str) -> None:
 def test_what_is_not_linear_is_refused() -> None:
     with pytest.raises(InputError, match="not linear"):
         of_map("own", StepMap.from_formulas(HARMONIC, "p - h*q**2", "q"))
+
+
+# -- by the product of the parts' matrices --------------------------------------------------------
+
+COMPOSED = [
+    "symplectic-euler", "stormer-verlet", "yoshida4", "ruth3", "suzuki4", "mclachlan-atela2",
+    "mclachlan4", "blanes-moan4", "kick 1", "kick 1; kick -1; drift 0", "kick 1; drift 0",
+    "kick 1/3; drift sqrt(2); kick 2/3; drift 1 - sqrt(2)", "kick 2**(1/3); drift sqrt(3)",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COMPOSED)
+def test_the_product_of_the_parts_gives_what_the_closed_form_does(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    by_product = linear_stability(name)
+    monkeypatch.setattr(linear, "_of_product", lambda *_: None)
+    by_closed_form = linear_stability(name)
+    assert by_product == by_closed_form
+    assert by_product.exact == by_closed_form.exact
+
+
+def test_a_wrong_product_gives_another_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    def without_its_last_part(step: StepMap) -> object:
+        return matrix_product.product(replace(step, substeps=step.substeps[:-1]))
+
+    assert linear_stability("stormer-verlet").interval == 2
+    monkeypatch.setattr(linear, "product", without_its_last_part)
+    assert linear_stability("stormer-verlet").interval == 2 * sympy.sqrt(2)
+
+
+def splitting_of(parts: int) -> str:
+    """A splitting with so many rational parts that none is like another."""
+    sizes = [Fraction(1 + n % 7, 20 + n) for n in range(parts)]
+    kinds = ("kick", "drift")
+    return "; ".join(f"{kinds[n % 2]} {size}" for n, size in enumerate(sizes))
+
+
+def largest_power(name: str, y: float) -> float:
+    """The size of a high power of the matrix, in floats, from the coefficients in the name."""
+    total = np.eye(2)
+    for part in name.split(";"):
+        kind, size = part.split()
+        shear = np.eye(2)
+        shear[(0, 1) if kind == "kick" else (1, 0)] = float(Fraction(size)) * y
+        shear[0, 1] *= -1
+        total = shear @ total
+    return float(np.linalg.norm(np.linalg.matrix_power(total, 2000)))
+
+
+@pytest.mark.parametrize("parts", [30, 81])
+def test_a_splitting_of_many_parts_ends_where_powers_of_its_matrix_grow(parts: int) -> None:
+    name = splitting_of(parts)
+    end = float(linear_stability(name).decimal())
+    assert largest_power(name, 0.999 * end) < 1e4
+    assert largest_power(name, 1.001 * end) > 1e8
+
+
+def test_algebraic_coefficients_of_degree_fifteen_end_at_a_root_of_the_trace() -> None:
+    found = linear_stability("triple-jump6")
+    made = matrix_product.product(schemes.get("triple-jump6").step_map(HARMONIC))
+    assert made is not None
+    ring, (a, _, _, e) = made
+    point = {"p": Fraction(0), "q": Fraction(0), "h": Fraction(found.decimal(60))}
+    near = enclose(ring, a + e, point, 400)
+    assert near is not None
+    with working_precision(400):
+        assert abs(abs(near) - 2) < 1e-50
+    assert found.delta_j == 0
+
+
+def test_a_number_that_is_not_algebraic_has_no_product() -> None:
+    step = schemes.get("kick pi; drift 1").step_map(HARMONIC)
+    made = matrix_product.product(step)
+    assert made is not None
+    ring, (a, _, _, e) = made
+    assert matrix_product.ring_polynomial(ring, a + e - 2) is None
