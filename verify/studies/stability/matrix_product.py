@@ -7,6 +7,7 @@ relations, the newest generator first, take a polynomial in h to one over the in
 of its roots: the resultant of r and f in a generator vanishes where both have a common root in it.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,6 +20,7 @@ from verify.schemes.step_map import StepMap
 from verify.schemes.substep import h_inside
 
 _BITS = 128
+_MOST_DEGREE = 600  # of the polynomial over the integers, as it may be; its roots take seconds
 Entries = tuple[Poly, Poly, Poly, Poly]  # ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q
 
 
@@ -42,10 +44,15 @@ class RingPolynomial:
 
 
 def product(step: StepMap) -> tuple[Ring, Entries] | None:
-    """The matrix of the whole step; None where its parts are not as the module says."""
+    """The matrix of the whole step; None where its parts are not as the module says.
+
+    None, too, where there are so many of them, of so high a degree, that roots would take minutes.
+    """
     field = step.substeps[0].field
     ring = field.ring
     if step.implicit or any(part.field is not field for part in step.substeps):
+        return None
+    if len(step.substeps) * math.prod(power for _, power, _ in ring.relations) > _MOST_DEGREE:
         return None
     total: Entries = (ring.one, ring.zero, ring.zero, ring.one)
     for part in step.substeps:

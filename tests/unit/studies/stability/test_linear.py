@@ -198,3 +198,10 @@ def test_a_number_that_is_not_algebraic_has_no_product() -> None:
     assert made is not None
     ring, (a, _, _, e) = made
     assert matrix_product.ring_polynomial(ring, a + e - 2) is None
+
+
+def test_many_parts_of_a_field_of_high_degree_are_refused_at_once() -> None:
+    sizes = [f"sqrt({(2, 3, 5, 7)[n % 4]})/{n + 9} + 2**(1/3)/{n + 5}" for n in range(81)]
+    name = "; ".join(f"{('kick', 'drift')[n % 2]} {size}" for n, size in enumerate(sizes))
+    with pytest.raises(InputError, match="too large"):
+        linear_stability(name)
