@@ -7,6 +7,7 @@ import click
 
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.input import SCENE, target
+from verify.prose import count
 
 Task = Mapping[str, Any]  # as JSON has it
 
@@ -28,7 +29,8 @@ def plan(scene: str) -> Answer:
 
 
 def _print(planned: dict[str, Any]) -> None:
-    click.echo(f"{len(planned['tasks'])} tasks, {_about(float(planned['seconds']))}")
+    tasks = count(len(planned["tasks"]), "task")
+    click.echo(f"{tasks}, {_about(float(planned['seconds']))}")
     for task in planned["tasks"]:
         click.echo(f"  {_LINES[task['kind']](task)} ({'; '.join(task['reasons'])})")
     click.echo(f"{len(planned['left_out'])} left out")
