@@ -16,9 +16,9 @@ import flint
 
 from verify.algebra.enclosure import BALLS
 from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
+from verify.arithmetic.compiled import engine
+from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide import engine
-from verify.arithmetic.wide.engine import Fixed
 from verify.kernels.program import Op
 from verify.kernels.rounding import rounding_of
 

@@ -29,7 +29,7 @@ ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies",
          "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof",
          "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "errors", "files", "formats", "frames",
-          "lateral", "notebook", "prose", "verdict")  # fmt: skip
+          "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 
 
 def floor(name: str) -> int:
@@ -296,7 +296,7 @@ def test_pages_compute_nothing_themselves() -> None:
 
 def test_only_what_is_declared_is_imported() -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
-                "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
+                "greenlet", "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
                 "distributed", "pandas", "pyarrow", "tqdm", "verify", "xarray"}  # fmt: skip
     for name, path in NAMES.items():

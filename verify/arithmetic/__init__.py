@@ -57,4 +57,13 @@ def automatic() -> "tuple[NumberSystem, ...]":
 
 def step_cost(name: str) -> int:
     """About how many float64 steps a step is worth; of `auto` in the one that it tries first."""
-    return (automatic()[0] if name == AUTO else about(name)).cost
+    return _first(name).cost
+
+
+def in_lanes(name: str) -> bool:
+    """Whether several orbits are stepped together; of `auto` by the one that it tries first."""
+    return _first(name).in_lanes
+
+
+def _first(name: str) -> "NumberSystem":
+    return automatic()[0] if name == AUTO else about(name)

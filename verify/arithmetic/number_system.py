@@ -1,7 +1,7 @@
 """A number system: what it says of itself, and what a kernel needs of it at one precision."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from verify.arithmetic.arb import Ball
 
 Rounding = Callable[[str, int, "Ball"], "Ball"]
+State = Sequence[Any]  # the numbers that a kernel carries
+Walk = Callable[[Callable[..., Any], int, int, State, State], list[State]]
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,8 @@ class Arithmetic:
     number is an enclosure: how far from `exact` the true value may be, and `minimum` and `maximum`
     are then among the functions. `rounding`: how far the result of an operation may be off, by its
     kind in a program, its degree (of a root) and its size, a bound of |exact| and |computed|; None
-    where that is not known. Two arithmetics of one name and precision are equal.
+    where that is not known. `walk`: what does the work of `states`, where that is more
+    than calling a kernel again and again. Two arithmetics of one name and precision are equal.
     """
 
     name: str
@@ -48,6 +51,34 @@ class Arithmetic:
     absolute: bool = field(default=False, compare=False)
     radius: Callable[[Any], Fraction] | None = field(default=None, compare=False)
     rounding: Rounding | None = field(default=None, compare=False)
+    walk: "Walk | None" = field(default=None, compare=False)
+
+    def states(
+        self, kernel: Callable[..., Any], every: int, stops: int, fixed: State, state: State
+    ) -> list[State]:
+        """What a kernel carries after `every` steps, twice as many, … from a state, `stops` times;
+        fewer where a number left the arithmetic's range on the way.
+
+        `fixed`: its arguments between the number of steps and what it carries.
+        """
+        if self.walk is not None:
+            return self.walk(kernel, every, stops, fixed, state)
+        found: list[State] = []
+        for _ in range(stops):
+            try:
+                with self.context():
+                    done, *after = kernel(every, *fixed, *(found[-1] if found else state))
+            except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
+                break
+            if done < every or not all(self.finite(x) for x in after if not _is_double(x)):
+                break
+            found.append(after)
+        return found
+
+
+def _is_double(x: Any) -> bool:
+    """Whether it is carried in float64 beside the arithmetic's numbers."""
+    return isinstance(x, float)
 
 
 @dataclass(frozen=True)
@@ -59,6 +90,7 @@ class NumberSystem:
     has, whatever it is asked for. `compiles`: each kernel is compiled before its first step, which
     takes 0.2–0.8 s. `most_digits`: beyond them others are the faster ones. `automatic`: `auto` may
     take it; of those that it may, the one whose steps cost most has every range and function.
+    `in_lanes`: several orbits of one kernel are stepped together.
     """
 
     name: str
@@ -69,6 +101,7 @@ class NumberSystem:
     compiles: bool = False
     most_digits: float = math.inf
     automatic: bool = False
+    in_lanes: bool = False
 
 
 class UnsupportedError(Exception):

@@ -6,11 +6,12 @@ code is taken for one of this.
 """
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pydantic import ValidationError
 
+from verify.execution.ensembles import Group, groups, in_lockstep
 from verify.execution.executors import (
     ANYWHERE,
     THIS_PROCESS,
@@ -95,9 +96,18 @@ def execute(
             finish(name, kept)
 
     def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
-        for name, result in results_of(place, _calls(tasks, store, place), one_by_one=one_by_one):
-            store.put(name, result)
-            finish(name, result)
+        parts = groups(tasks, place.room)
+        if place.room == 0:
+            for part in parts:
+                for name, result in _computed(part, store):
+                    store.put(name, result)
+                    finish(name, result)
+            return
+        for _, found in results_of(place, _calls(parts, store, place), one_by_one=one_by_one):
+            for name, result in found.items():
+                if not place.local:
+                    store.put(name, result)
+                finish(name, result)
 
     if not waiting:
         return results
@@ -133,8 +143,32 @@ def _enough(tasks: Mapping[str, Task], where: Placement) -> Placement:
     return Placement(workers=max(1, min(os.cpu_count() or 1, len(tasks))))
 
 
-def _calls(tasks: Mapping[str, Task], store: Store, place: Place) -> Iterator[FunctionCall]:
+def _computed(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
+    """The results of tasks that are computed together, in this process."""
+
+    def compute(name: str, task: Task) -> Frozen:
+        return compute_task(task, store.keeper(name))
+
+    if len(part) > 1:
+        yield from in_lockstep(part, compute)
+        return
+    for name, task in part.items():
+        yield name, compute(name, task)
+
+
+def compute_group(part: Group, store: Store) -> dict[str, Frozen]:
+    """The same in a worker, which keeps each result in the store as soon as it is there."""
+    found = {}
+    for name, result in _computed(part, store):
+        store.put(name, result)
+        found[name] = result
+    return found
+
+
+def _calls(parts: Sequence[Group], store: Store, place: Place) -> Iterator[FunctionCall]:
     # Longest first, so that no worker is left with a long one at the end.
-    for name in sorted(tasks, key=lambda name: -tasks[name].cost):
-        keeper = store.keeper(name) if place.local else NOTHING
-        yield FunctionCall(name, compute_task, (tasks[name], keeper), tasks[name].description)
+    for part in parts:
+        name, task = next(iter(part.items()))
+        own = store if place.local else Store(None)
+        more = f" and {len(part) - 1} more" if len(part) > 1 else ""
+        yield FunctionCall(name, compute_group, (part, own), task.description + more)

@@ -32,6 +32,11 @@ class Task(Frozen):
         """About how many float64 steps the task is worth."""
         return 1
 
+    @property
+    def ensemble(self) -> str | None:
+        """A name that it has in common with those whose runs its own are stepped together with."""
+        return None
+
     @abstractmethod
     def compute(self, keeper: Keeper) -> Frozen:
         """Do it; a run goes on from the checkpoint that the keeper may have."""

@@ -1,17 +1,18 @@
 """One kernel's loop in chunks, what is noted on the way, and its checkpoints."""
 
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
+from itertools import takewhile
 from typing import Annotated, Any
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter
 
+from verify import lockstep
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number import Number
-from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.number_system import Arithmetic, State
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels import tangent_map
 from verify.kernels.kernel import Kernel
@@ -19,14 +20,34 @@ from verify.kernels.run_inputs import RunInputs
 from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
-State = tuple[Number, ...]
 _ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
                  "lambda_plain": "plain"}  # fmt: skip
 # Powers of the 2^s that the kernel carries.
 _SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1}
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
-Note = dict[str, Exact]
+Note = Mapping[str, Fraction]
+
+
+class LazyNote(Mapping[str, Fraction]):
+    """Numbers by their names, each made where it is first looked at: of most notes few are."""
+
+    def __init__(self, names: tuple[str, ...], make: Callable[[str], Fraction]) -> None:
+        self._names, self._make = names, make
+        self._made: dict[str, Fraction] = {}
+
+    def __getitem__(self, name: str) -> Fraction:
+        if name not in self._made:
+            if name not in self._names:
+                raise KeyError(name)
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
 
 
 @dataclass(frozen=True)
@@ -40,10 +61,10 @@ class Reached:
 
     done: int = 0
     seconds: float = 0.0
-    state: tuple[Exact, ...] = ()
-    seen: Note = field(default_factory=dict)
-    trail: tuple[Note, ...] = ()
-    tangents: tuple[Note, ...] = ()
+    state: Sequence[Exact] = ()
+    seen: dict[str, Exact] = field(default_factory=dict)
+    trail: tuple[Mapping[str, Exact], ...] = ()
+    tangents: tuple[Mapping[str, Exact], ...] = ()
     series: tuple[SeriesPoint, ...] = ()
 
 
@@ -68,7 +89,12 @@ class ChunkedLoop:
         self.fixed: list[Number] = [number(x) for x in run.inputs(kernel, shift).values()]
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
-        self.state = self._first_state()
+        self.state: State = self._first_state()
+        self._at = {name: k for k, name in enumerate(kernel.state_names)}
+        self._observables = ("p", "q", *sorted(run.observables & set(_ACCUMULATORS)))
+        known = (*(name for name in tangent_map.NAMES if name in self._at), "done")
+        self._tangent = known if "growth" in self._at else ()
+        self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = -(-run.steps // run.sections)  # steps between two notes
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
@@ -93,73 +119,98 @@ class ChunkedLoop:
         run = self.run
         self._advance(0)  # compiles: `seconds` is the stepping alone
         while self.done < run.steps:
-            left = self.section - self.done % self.section
-            count = min(self.arithmetic.chunk, left, run.steps - self.done)
-            begun = time.perf_counter()
-            after = self._advance(count)
-            self.seconds += time.perf_counter() - begun
-            if after is None:
-                self.done += self._last_good(count)
+            every, stops = self._ahead()
+            begun = lockstep.clock()
+            states = self._advance(every, stops)
+            self.seconds += lockstep.clock() - begun
+            for state in states:
+                self.state, self.done = state, self.done + every
+                self._note()
+                yield self.done
+                if run.keeper.due(self._label):
+                    self.keep()
+            if len(states) < stops:
+                self.done += self._last_good(every)
                 return
-            self.state, self.done = after, self.done + count
-            self._note()
-            yield self.done
-            if run.keeper.due(self._label):
-                self.keep()
 
-    def _advance(self, count: int) -> State | None:
-        """The state after `count` steps, or None where a number left the arithmetic's range."""
-        try:
-            with self.arithmetic.context():
-                done, *after = self.kernel.function(count, *self.fixed, *self.state)
-        except (ArithmeticError, ValueError):  # not float64: a pole, the log or root of a negative
-            return None
-        if done < count or not all(map(self._finite, after)):
-            return None
-        return tuple(after)
+    def _ahead(self) -> tuple[int, int]:
+        """So many steps to the next stop, and so many stops: to a note or to some, or on the way to
+        the next where that is far."""
+        left, chunk = self.section - self.done % self.section, self.arithmetic.chunk
+        rest = self.run.steps - self.done
+        # The first note is made by itself, since a run may be asked there whether to go on.
+        if self.done and left == self.section and 2 * self.section <= min(chunk, rest):
+            return self.section, min(chunk, rest) // self.section
+        return min(chunk, left, rest), 1
 
-    def _finite(self, x: Number) -> bool:
-        return x - x == 0 if isinstance(x, float) else self.arithmetic.finite(x)
+    def _advance(self, every: int, stops: int = 1) -> list[State]:
+        """The states at the next stops; fewer where a number left the arithmetic's range."""
+        kernel = self.kernel.function
+        found = self.arithmetic.states(kernel, every, stops, self.fixed, self.state)
+        return list(takewhile(self._finite, found))
+
+    def _finite(self, state: State) -> bool:
+        floats = (state[k] for k in self._doubles)
+        return all(x - x == 0 for x in floats)
 
     def _last_good(self, count: int) -> int:
         """The greatest number of steps below `count` that stays in range, by bisection."""
         good, bad = 0, count
         while bad - good > 1:
             middle = (good + bad) // 2
-            if self._advance(middle) is None:
-                bad = middle
-            else:
+            if self._advance(middle):
                 good = middle
+            else:
+                bad = middle
         return good
 
     # -- what is noted ------------------------------------------------------------------------
 
     def _note(self) -> None:
         """Takes up the state. It is taken up whole: an interruption may come amid this."""
-        raw = {n: self._exact(x) for n, x in zip(self.kernel.state_names, self.state, strict=True)}
-        before, seen = self.reached, self._extremes(raw)
-        after = replace(before, done=self.done, seconds=self.seconds, state=tuple(raw.values()),
-                        seen=seen)  # fmt: skip
-        if self.done % self.section == 0 or self.done == self.run.steps:
+        before, state, done = self.reached, self.state, self.done
+        seen = self._extremes(state)
+        after = replace(before, done=done, seconds=self.seconds, state=state, seen=seen)
+        if done % self.section == 0 or done == self.run.steps:
             tangents, series = before.tangents, before.series
-            if "growth" in raw:
-                known = {name: raw[name] for name in tangent_map.NAMES if name in raw}
-                tangents += (known | {"done": Fraction(self.done)},)
+            if self._tangent:
+                carried = LazyNote(self._tangent, lambda name: self._of_tangent(name, state, done))
+                tangents += (carried,)
             if seen:
                 series += (self._point(len(before.trail) * self.section + 1, seen),)
-            trail = (*before.trail, self._finals(raw))
+            final = LazyNote(self._observables, lambda name: self._final(name, state, done))
+            trail = (*before.trail, final)
             after = replace(after, seen={}, trail=trail, tangents=tangents, series=series)
         self.reached = after
 
-    def _extremes(self, raw: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    def _extremes(self, state: State) -> dict[str, Fraction]:
         """Those since the last note."""
         radius, found = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self.reached.seen)
-        for name, x in zip(self.kernel.state_names, self.state, strict=True):
-            if name in _EXTREMES:
-                low = name.endswith("low")
-                end = raw[name] - radius(x) if low else raw[name] + radius(x)
+        for name in _EXTREMES:
+            if name in self._at:
+                x, low = state[self._at[name]], name.endswith("low")
+                end = self._exact(x) - radius(x) if low else self._exact(x) + radius(x)
                 found[name] = (min if low else max)(end, found.get(name, end))
         return found
+
+    def _of_tangent(self, name: str, state: State, done: int) -> Fraction:
+        return Fraction(done) if name == "done" else self._exact(state[self._at[name]])
+
+    def _final(self, name: str, state: State, done: int) -> Fraction:
+        """p, q or an observable after the steps done, as the exact rational that it is."""
+        value = self._observed(name, state, done, self._exact)
+        return value - 1 if name == "lambda_plain" else value
+
+    def _observed(
+        self, name: str, state: State, done: int, of: Callable[[Number], Fraction]
+    ) -> Fraction:
+        """The same of what is carried, or of its radii; Π det J as it is."""
+        carried = _ACCUMULATORS.get(name, name)
+        total = of(state[self._at[carried]])
+        if (rest := f"{carried}_rest") in self._at:
+            total += of(state[self._at[rest]])
+        total = self._unscaled(carried, total)
+        return total / done if name == "mse" else total
 
     def _exact(self, x: Number) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
@@ -168,31 +219,13 @@ class ChunkedLoop:
         scale = self.shift * _SCALED.get(name, 0)
         return value / (1 << scale) if scale else value
 
-    def _finals(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
-        """p, q and the observables after the steps done, as the exact rationals that they are."""
-        result = self._observed(raw)
-        if "lambda_plain" in result:
-            result["lambda_plain"] -= 1
-        return result
-
-    def _observed(self, raw: dict[str, Fraction]) -> dict[str, Fraction]:
-        """The same of what is carried, or of its radii; Π det J as it is."""
-        total = {n: x + raw[rest] if (rest := f"{n}_rest") in raw else x for n, x in raw.items()}
-        result = {"p": total["p"], "q": total["q"]}
-        for name in self.run.observables & set(_ACCUMULATORS):
-            carried = _ACCUMULATORS[name]
-            result[name] = self._unscaled(carried, total[carried])
-        if "mse" in result:
-            result["mse"] /= self.done
-        return result
-
     def radii(self) -> dict[str, Fraction]:
         """How far the last values may be from the true ones, where numbers are enclosures."""
         radius = self.arithmetic.radius
         if radius is None or self.done < self.run.steps:
             return {}
-        names = self.kernel.state_names
-        return self._observed({n: radius(x) for n, x in zip(names, self.state, strict=True)})
+        state, done = self.state, self.done
+        return {n: self._observed(n, state, done, radius) for n in self._observables}
 
     def _point(self, first: int, seen: Mapping[str, Fraction]) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:
@@ -208,7 +241,14 @@ class ChunkedLoop:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
         # A ball's radius is not kept; such runs are short.
         if self.arithmetic.radius is None and self.reached.done:
-            self.run.keeper.save(self._label, _kept().dump_python(self.reached, mode="json"))
+            self.run.keeper.save(self._label, _kept().dump_python(self._whole(), mode="json"))
+
+    def _whole(self) -> Reached:
+        """What is reached, with all its numbers made."""
+        own = self.reached
+        state = tuple(self._exact(x) for x in own.state)
+        trail, tangents = tuple(map(dict, own.trail)), tuple(map(dict, own.tangents))
+        return replace(own, state=state, trail=trail, tangents=tangents)
 
     def _restored(self, kept: Mapping[str, Any]) -> Reached:
         found = _kept().validate_python(kept)

@@ -28,7 +28,7 @@ class Outcome(Reached):
     reason: str = ""
 
     @property
-    def values(self) -> dict[str, Fraction]:
+    def values(self) -> Mapping[str, Fraction]:
         """What is carried, after the last step that was done."""
         return self.trail[-1]
 

@@ -14,6 +14,7 @@ their size no value is given. (`verify separate` has rigorous bounds at full len
 the price.)
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -111,7 +112,7 @@ def _compensated(run: KernelRun, first: Outcome) -> Bounds:
     return Bounds(found, method)
 
 
-def _floored(true: dict[str, Fraction], steps: int) -> Bounded:
+def _floored(true: Mapping[str, Fraction], steps: int) -> Bounded:
     return {n: (x, _floor(x, steps)) for n, x in true.items()}
 
 

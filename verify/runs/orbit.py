@@ -97,7 +97,7 @@ def _states(
     every = -(-steps // points)
     at = (0, *(min(k * every, steps) for k in range(1, len(notes) + 1)))
     nothing = {"p": Fraction(0), "q": Fraction(0), "lambda": Fraction(0)}
-    return _States(at, (nothing | first, *notes), (nothing, *radii))
+    return _States(at, ({**nothing, **first}, *notes), (nothing, *radii))
 
 
 Found = tuple[Arithmetic, int, tuple[Note, ...], tuple[Note, ...]]

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from verify.arithmetic import step_cost
+from verify.arithmetic import in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import Keeper
 from verify.execution.task import InitialValueTask
@@ -38,6 +38,14 @@ class RunTask(InitialValueTask):
         if self.steps <= DIRECT_STEPS:
             return _RUN_COST + self.steps * step_cost(mpfr.NAME)
         return _LONG_RUN_COST + self.steps * step_cost(float64.NAME)
+
+    @property
+    def ensemble(self) -> str | None:
+        """Runs of one kernel, where its number system steps several together."""
+        if not in_lanes(self.arithmetic):
+            return None
+        series = "with" if self.points else "without"
+        return f"{self.kind} {self.scheme} {self.hamiltonian} {self.arithmetic} {series} series"
 
     def proved(self) -> RunResult | None:
         """What a proof gives of the run without a step; None where it is not all that is asked."""

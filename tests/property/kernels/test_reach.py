@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.fixed_checks import FRACTION_OF
 from tests.helpers.sampled import formulas as strategies
+from verify.arithmetic.compiled import engine
 from verify.arithmetic.systems import fixed, mpfr
-from verify.arithmetic.wide import engine
-from verify.arithmetic.wide.translate import Translator
+from verify.arithmetic.wide.one_orbit import OneOrbit
 from verify.code_cache import OFF, VARIABLE
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -274,7 +274,7 @@ def test_a_function_without_a_value_that_does_not_say_so_is_caught(
     anew(monkeypatch)
     monkeypatch.setattr(engine, "_compiled", engine._compiled.__wrapped__)
     monkeypatch.setenv(VARIABLE, OFF)
-    monkeypatch.setattr(Translator, "_require", lambda self, condition: None)
+    monkeypatch.setattr(OneOrbit, "_require", lambda self, condition: None)
     assert wrong_kernel_runs()
 
 

@@ -47,8 +47,7 @@ def states(kernel_run: KernelRun, arithmetic: Arithmetic) -> Iterator[dict[str, 
     walk = ChunkedLoop(kernel_run, kernel, arithmetic, tuple(limits), shift)
     for step in range(kernel_run.steps + 1):
         if step:
-            after = walk._advance(1)
-            assert after is not None
+            (after,) = walk._advance(1)
             walk.state, walk.done = after, step
             walk._note()
         yield {n: walk._exact(x) for n, x in zip(kernel.state_names, walk.state, strict=True)}

@@ -109,7 +109,7 @@ def test_a_run_that_needs_more_digits_than_it_began_with_does_so_after_an_interr
 
 
 @every
-@pytest.mark.parametrize("method", ["_note", "_finals", "_point"])
+@pytest.mark.parametrize("method", ["_note", "_extremes", "_point"])
 def test_an_interruption_amid_a_note_loses_the_chunk_and_nothing_else(
     name: str, method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -7,12 +7,13 @@ the orbit leaves them, or a function has no value.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from verify import lockstep
 from verify.arithmetic.number_system import Arithmetic, NumberSystem
 
 if TYPE_CHECKING:
@@ -35,12 +36,12 @@ def at_bits(bits: int) -> Arithmetic:
     width = bits + INTEGER_BITS
 
     def number(value: Fraction) -> Any:
-        from verify.arithmetic.wide.engine import Fixed
+        from verify.arithmetic.compiled.engine import Fixed
 
         return Fixed(round(value * 2**bits), bits)
 
     def compiled_source(source: str, name: str, names: Mapping[str, Any]) -> Callable[..., Any]:
-        from verify.arithmetic.wide.engine import compiled
+        from verify.arithmetic.compiled.engine import compiled
 
         return compiled(source, width, bits, names)
 
@@ -63,6 +64,7 @@ def at_bits(bits: int) -> Arithmetic:
         chunk=1 << 19,
         absolute=True,
         rounding=rounding,
+        walk=_walk,
     )
 
 
@@ -74,6 +76,7 @@ NUMBER_SYSTEM = NumberSystem(
     compiles=True,
     most_digits=1000,  # compilation takes ever longer, too
     automatic=True,
+    in_lanes=True,
 )
 
 
@@ -95,6 +98,16 @@ def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
         # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
         "inverse": lambda y: arb("0.51") * (1 + y), "root": lambda _: arb(2**11 + 8),
     }  # fmt: skip
+
+
+def _walk(kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any]) -> Any:
+    """In one call, and in lanes where others walk in the same kernel."""
+    from verify.arithmetic.compiled.walking import Walk
+
+    try:
+        return lockstep.meet(kernel, Walk(every, stops, fixed, state)).result
+    except OverflowError:  # a number is outside the format from the start
+        return []
 
 
 def _exact(x: Any) -> Fraction:

@@ -64,20 +64,26 @@ class Chain:
 
         truncation + input + trajectory + determinant + product = lambda_working, exactly.
         """
-        before, after = _ENDS[name]
-        last = self.links[after]
-        if before is None:
+        first, last = self._between(name)
+        if first is None:
             return last.trail, last.bound
-        first = self.links[before]
         if first is last:
-            return tuple(Fraction(0) for _ in self.marks), Fraction(0)
+            return (Fraction(0),) * len(self.marks), Fraction(0)
         differences = tuple(b - a for a, b in zip(first.trail, last.trail, strict=True))
         return differences, first.bound + last.bound
 
     def final(self, name: str) -> tuple[Fraction, Fraction]:
         """A quantity after the last step, and the bound of its error."""
-        trail, bound = self.trail(name)
-        return trail[-1], bound
+        first, last = self._between(name)
+        if first is None:
+            return last.trail[-1], last.bound
+        if first is last:
+            return Fraction(0), Fraction(0)
+        return last.trail[-1] - first.trail[-1], first.bound + last.bound
+
+    def _between(self, name: str) -> tuple[Link | None, Link]:
+        before, after = _ENDS[name]
+        return None if before is None else self.links[before], self.links[after]
 
     def lacking(self, digits: int) -> list[int]:
         """How many digits each link lacks for those wanted of the parts at its ends.

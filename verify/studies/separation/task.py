@@ -29,6 +29,11 @@ class SeparationTask(InitialValueTask):
         checkpoints = min(self.steps, POINTS)
         return _CHECKPOINT_COST * checkpoints + _RUNS * self.steps * step_cost(AUTO)
 
+    @property
+    def ensemble(self) -> str | None:
+        """Separations of one scheme's map, whatever the step size and the initial value."""
+        return f"{self.kind} {self.scheme} {self.hamiltonian}"
+
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
         return separate(self.exact_hamiltonian(), **self.asked(), keeper=keeper)

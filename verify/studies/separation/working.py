@@ -17,9 +17,10 @@ is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this i
 
 import math
 from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import takewhile
 from typing import Any, Literal
 
 import flint
@@ -38,7 +39,7 @@ from verify.studies.separation.kernel import MixedKernel, mixed_kernel
 
 Kind = Literal["enclosed", "estimated"]
 Advance = Callable[[int], None]  # called with the number of steps just done
-State = dict[str, Any]  # a float or a wide number; its name begins with f or with w
+State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
 POINTS = 2048  # checkpoints of a run
 _MORE_DIGITS = 15
 _WIDE = ("trajectory", "determinant", "closed")
@@ -142,30 +143,41 @@ class WorkingRun:
         fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
         label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
         found = self._kept(label, arithmetic)
+        stepper = _Stepper(kernel, arithmetic, fixed)
         state = found[-1] if found else self._first_state(kernel, arithmetic)
         done = self.marks[len(found) - 1] if found else 0
-        for mark in self.marks[len(found) :]:
-            while done < mark:
-                count = min(arithmetic.chunk, mark - done)
-                after = _after(kernel, arithmetic, fixed, state, count)
-                if after is None and arithmetic.absolute:
-                    raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
-                if after is None:
-                    done += _last_good(kernel, arithmetic, fixed, state, count)
-                    raise Stopped("left range", done + 1, "float64 leaves its range")
-                state = after
-                done += count
-                advance(count)
-            found.append(state)
-            if self.run.keeper.due(label):
-                texts = [
-                    {n: fraction_text(_exact(arithmetic, x)) for n, x in s.items()} for s in found
-                ]
-                self.run.keeper.save(label, {"found": texts})
+        while done < self.run.steps:
+            every, stops = self._ahead(done, len(found), arithmetic.chunk)
+            states = stepper.states(state, every, stops)
+            for state in states:
+                done += every
+                advance(every)
+                if done == self.marks[len(found)]:
+                    found.append(state)
+                self._keep(label, found, arithmetic)
+            if len(states) < stops and arithmetic.absolute:
+                raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
+            if len(states) < stops:
+                done += stepper.last_good(state, every)
+                raise Stopped("left range", done + 1, "float64 leaves its range")
         return found
 
+    def _keep(self, label: str, found: Sequence[State], arithmetic: Arithmetic) -> None:
+        """Writes the checkpoints so far, where that is due."""
+        if self.run.keeper.due(label):
+            states = [{n: _exact(arithmetic, x) for n, x in s.items()} for s in found]
+            texts = [{n: fraction_text(x) for n, x in s.items()} for s in states]
+            self.run.keeper.save(label, {"found": texts})
+
+    def _ahead(self, done: int, at: int, chunk: int) -> tuple[int, int]:
+        """So many steps to the next stop and so many stops: marks, or on the way to the next."""
+        left, section = self.marks[at] - done, self.marks[0]
+        if left == section <= chunk:
+            return section, min(chunk, self.run.steps - done) // section
+        return min(chunk, left), 1
+
     def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
-        state: State = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
+        state: dict[str, Any] = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
         for name in kernel.state_names:
             if name not in kernel.start:  # p, q and the region that they visit
                 state[name] = state[name[:3]]
@@ -253,32 +265,46 @@ def rounded_inputs(run: KernelRun) -> dict[str, float]:
     return found
 
 
-def _after(
-    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number], state: State, count: int
-) -> State | None:
-    """The state after `count` steps, or None where float64 leaves its range on the way."""
-    try:
-        with arithmetic.context():
-            carried = (state[n] for n in kernel.state_names)
-            done, *after = kernel.function(count, *fixed, *carried)
-    except (ArithmeticError, ValueError):
-        return None
-    found = dict(zip(kernel.state_names, after, strict=True))
-    # The sums of logarithms may be undefined while the orbit and the plain way go on.
-    vital = (x for n, x in found.items() if n not in ("f_sum", "f_rest"))
-    finite = all(math.isfinite(x) if isinstance(x, float) else arithmetic.finite(x) for x in vital)
-    return found if finite and done == count else None
+class _Carried(Mapping[str, Any]):
+    """A kernel's state by its names; a number is made where it is looked at."""
+
+    def __init__(self, at: Mapping[str, int], state: Sequence[Number]) -> None:
+        self._at, self.numbers = at, state
+
+    def __getitem__(self, name: str) -> Any:
+        return self.numbers[self._at[name]]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._at)
+
+    def __len__(self) -> int:
+        return len(self._at)
 
 
-def _last_good(
-    kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number], state: State, count: int
-) -> int:
-    """The greatest number of steps below `count` that stays in range, by bisection."""
+class _Stepper:
+    """A mixed kernel with all that stays the same from step to step."""
 
-    def leaves(steps: int) -> bool:
-        return _after(kernel, arithmetic, fixed, state, steps) is None
+    def __init__(
+        self, kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number]
+    ) -> None:
+        self.kernel, self.arithmetic, self.fixed = kernel, arithmetic, fixed
+        self._at = {name: k for k, name in enumerate(kernel.state_names)}
+        # The sums of logarithms may be undefined while the orbit and the plain way go on.
+        self._vital = [n for n in self._at if n[0] == "f" and n not in ("f_sum", "f_rest")]
 
-    return bisect_left(range(1, count), True, key=leaves)
+    def states(self, state: State, every: int, stops: int) -> list[State]:
+        """Those at the next stops; fewer where float64 leaves its range on the way."""
+        begun = state.numbers if isinstance(state, _Carried) else [state[n] for n in self._at]
+        kernel = self.kernel.function
+        found = self.arithmetic.states(kernel, every, stops, self.fixed, begun)
+        return list(takewhile(self._finite, (_Carried(self._at, x) for x in found)))
+
+    def _finite(self, state: State) -> bool:
+        return all(math.isfinite(state[name]) for name in self._vital)
+
+    def last_good(self, state: State, count: int) -> int:
+        """The greatest number of steps below `count` that stays in range, by bisection."""
+        return bisect_left(range(1, count), True, key=lambda n: not self.states(state, n, 1))
 
 
 def _accumulated(

@@ -14,8 +14,10 @@ import pytest
 
 from tests.helpers import fixed_checks
 from tests.helpers.fixed_checks import FRACTION_OF, HARD, Format, Near
+from verify.arithmetic.compiled import engine
+from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide import engine, functions, limbs, newton, products
+from verify.arithmetic.wide import functions, limbs, newton, products
 from verify.arithmetic.wide.functions import Functions
 from verify.arithmetic.wide.limbs import constant, limb, resized, shifted_up
 
@@ -27,9 +29,7 @@ def fresh() -> Format:
 
     def compiled(source: str, width: int, fraction: int, names: dict[str, Any]) -> Any:
         found = tuple(sorted(names.items(), key=itemgetter(0)))
-        return engine.callable_of(
-            engine.translated(source, width, fraction, found), width, fraction
-        )
+        return engine.NativeFunction(Source(source, width, fraction, found), anew=True)
 
     return Format(WIDTH, compiled)
 

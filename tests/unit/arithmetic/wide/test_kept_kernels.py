@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from verify.arithmetic.compiled import engine, native
+from verify.arithmetic.compiled.engine import Fixed
+from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.systems import fixed
-from verify.arithmetic.wide import engine, native
-from verify.arithmetic.wide.engine import Fixed
 from verify.arithmetic.wide.translate import Translator
 from verify.code_cache import OFF, VARIABLE
 
@@ -52,8 +53,8 @@ def call(source: str = SOURCE, fraction: int = BITS, **names: object) -> object:
 
 
 def expected() -> object:
-    translation = engine.translated(SOURCE, WIDTH, BITS, tuple(sorted(NAMES.items())))
-    return engine.callable_of(translation, WIDTH, BITS)(*GIVEN)
+    source = Source(SOURCE, WIDTH, BITS, tuple(sorted(NAMES.items())))
+    return engine.NativeFunction(source, anew=True)(*GIVEN)
 
 
 def test_the_second_process_compiles_nothing_and_gets_the_same(

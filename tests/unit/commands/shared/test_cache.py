@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from verify.arithmetic.wide import engine
+from verify.arithmetic.compiled import engine
 from verify.code_cache import VARIABLE
 from verify.commands.main import cli
 from verify.errors import InputError

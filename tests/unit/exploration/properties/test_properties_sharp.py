@@ -110,14 +110,21 @@ def moved(one: str, other: str) -> Plant:
     """10^−14 taken from one part of Λ and given to another: they add up as before."""
 
     def planted(sample: Sample, patch: Patch) -> Sample:
-        true = Chain.trail
+        def by(name: str) -> Fraction:
+            return Fraction((name == one) - (name == other), 10**14)
 
-        def wrong(self: Chain, name: str) -> Any:
-            trail, bound = true(self, name)
-            by = Fraction((name == one) - (name == other), 10**14)
-            return tuple(x + by for x in trail), bound
+        trail, final = Chain.trail, Chain.final
 
-        patch.setattr(Chain, "trail", wrong)
+        def wrong_trail(self: Chain, name: str) -> Any:
+            found, bound = trail(self, name)
+            return tuple(x + by(name) for x in found), bound
+
+        def wrong_final(self: Chain, name: str) -> Any:
+            found, bound = final(self, name)
+            return found + by(name), bound
+
+        patch.setattr(Chain, "trail", wrong_trail)
+        patch.setattr(Chain, "final", wrong_final)
         return sample
 
     return planted

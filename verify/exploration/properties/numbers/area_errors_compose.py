@@ -1,5 +1,6 @@
 """Λ composes: 1 + Λ over N steps is the product of 1 + Λ over the first M and over the others."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
@@ -24,7 +25,7 @@ def holds(sample: Sample) -> None:
         raise Violation(f"Λ over {sample.steps} steps is {found}, and composed {wanted}")
 
 
-def _run(sample: Sample, start: dict[str, Fraction], steps: int) -> dict[str, Fraction]:
+def _run(sample: Sample, start: dict[str, Fraction], steps: int) -> Mapping[str, Fraction]:
     """p, q and Λ after the steps; Silent where they leave the range in which digits are kept."""
     found = sample.run("mpfr", _DIGITS, "lambda", start=start, steps=steps)
     only_if(found.done == steps and max(map(abs, found.values.values())) <= 10**6)

@@ -4,6 +4,7 @@ Where the step solves equations the entries are multiplied along a run with 80 d
 do to solve them: what 160 digits find elsewhere, or not at all, is not held against the scheme.
 """
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 from verify.arithmetic.arb import rational_ball
@@ -38,11 +39,11 @@ def _by_a_run(sample: Sample) -> None:
     raise Violation(f"Π det J − 1 is {decimal(change, 6)} after {_STEPS} steps")
 
 
-def _run(sample: Sample, digits: int) -> dict[str, Fraction]:
+def _run(sample: Sample, digits: int) -> Mapping[str, Fraction]:
     found = sample.run("mpfr", digits, "lambda_plain", steps=_STEPS)
     only_if(found.done == _STEPS)
     return found.values
 
 
-def _size(found: dict[str, Fraction]) -> Fraction:
+def _size(found: Mapping[str, Fraction]) -> Fraction:
     return 1 + abs(found["p"]) + abs(found["q"])

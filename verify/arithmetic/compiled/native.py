@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import llvmlite
 from llvmlite import binding as llvm
@@ -15,11 +15,16 @@ from llvmlite import binding as llvm
 if TYPE_CHECKING:
     from llvmlite import ir
 
-Native = Callable[[bytes, ctypes.Array[ctypes.c_char]], None]
+Native = Callable[[Any, Any], None]  # of the addresses of arguments and results
 _LOCK = threading.Lock()  # LLVM's set-up is not made for threads
 _ENGINES: list[llvm.ExecutionEngine] = []  # what runs must not be freed
 # Read as this is imported, since a process that goes on while its files change has the old ones.
-_COMPILER = sha256(b"\n".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py"))))
+_OURS = [
+    path
+    for room in ("compiled", "lanes", "wide")
+    for path in sorted(Path(__file__).parents[1].joinpath(room).glob("*.py"))
+]
+_COMPILER = sha256(b"\n".join(path.read_bytes() for path in _OURS))
 
 
 @cache

@@ -1,0 +1,108 @@
+"""Kernels in fixed point as native functions: one orbit at a time, or several in lanes."""
+
+import ctypes
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, lru_cache, partial
+from operator import itemgetter
+from typing import Any
+
+import numpy as np
+
+from verify.arithmetic.compiled import native, paths
+from verify.arithmetic.compiled.translation import Fixed as Fixed
+from verify.arithmetic.compiled.translation import Source, Word
+from verify.arithmetic.compiled.walking import Orbit, Words, step_together
+from verify.lockstep import Pending
+
+Names = tuple[tuple[str, Any], ...]
+_LEAST_IN_LANES = 3  # fewer take longer together than one after the other
+_WIDEST_IN_LANES = 512  # bits; beyond that LLVM takes seconds
+
+
+def compiled(source: str, width: int, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
+    """The function that the source defines (see `verify.arithmetic.wide.translate`).
+
+    It is compiled once, and linked when it is first called, since not every kernel that is made is
+    run. It takes and gives `Fixed`, int and float. Raises OverflowError where an argument is
+    outside the format, and ValueError where a function had no value outside a loop.
+    """
+    return _compiled(source, width, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
+
+
+@lru_cache(maxsize=256)
+def _compiled(source: str, width: int, fraction: int, names: Names) -> "NativeFunction":
+    return NativeFunction(Source(source, width, fraction, names))
+
+
+class NativeFunction:
+    """A function of one orbit, and of several at once, with the same bits.
+
+    Where it is a kernel it is a work too (see `verify.lockstep`), of which a `Walk` is asked: its
+    first argument is a number of steps, its results are the steps done and what its last arguments
+    have become.
+    """
+
+    def __init__(self, source: Source, *, anew: bool = False) -> None:
+        """`anew`: not from what is kept on disk."""
+        self.source = source
+        self.layout, self._one = source.compiled(anew=anew)
+
+    def __call__(self, *arguments: Word) -> object:
+        return self.layout.unpacked(self._run_one(self.layout.packed(arguments)))
+
+    def _run_one(self, packed: bytes) -> bytes:
+        result = ctypes.create_string_buffer(sum(self.layout.result_sizes) + 8)
+        self._one()(packed, result)
+        return result.raw
+
+    # -- several ------------------------------------------------------------------------------
+
+    @cached_property
+    def lanes(self) -> "Callable[[Words], Words] | None":
+        """As `one`, of so many orbits as there are lanes; None where one by one is better."""
+        path = paths.chosen()
+        if path is None or self.source.width > _WIDEST_IN_LANES:
+            return None
+        target = f"lanes, {path.name}"
+        _, linked = replace(self.source, target=target, make=path.target).compiled()
+        return partial(_called, linked(), sum(self.layout.result_sizes) // 8 + 1)
+
+    @cached_property
+    def one(self) -> "Callable[[Words], Words]":
+        """The results' words of the arguments' words, which are rows with an orbit a column."""
+        return partial(_called, self._one(), sum(self.layout.result_sizes) // 8 + 1)
+
+    def advance(self, pending: Sequence[Pending]) -> None:
+        """Walks that several orbits ask for, until one of them is at its end."""
+        for each in pending:
+            if each.state is None:
+                try:
+                    each.state = Orbit.begun(self.layout, each.asked)
+                except OverflowError as error:
+                    each.end(None, error)
+                    return
+        chosen = sorted(pending, key=lambda each: -each.state.steps_left)[: paths.LANES]
+        lanes = self.lanes if len(chosen) >= _LEAST_IN_LANES else None
+        if lanes is None:
+            chosen = chosen[:1]
+        kernel, orbits = lanes or self.one, [each.state for each in chosen]
+        begun = time.perf_counter()  # it is compiled now
+        step_together(orbits, kernel, paths.LANES if lanes else 1, self.in_parts)
+        share = (time.perf_counter() - begun) / len(chosen)
+        for each in chosen:
+            each.seconds += share
+            if each.state.ended:
+                each.end(each.state.states)
+
+    @cached_property
+    def in_parts(self) -> bool:
+        """Whether m steps and then n are m + n, which a first step of its own makes untrue."""
+        return "k == 0" not in self.source.text
+
+
+def _called(linked: native.Native, size: int, given: Words) -> Words:
+    found = np.empty((size, given.shape[1]), dtype=np.uint64)
+    linked(given.ctypes.data_as(ctypes.c_char_p), found.ctypes.data_as(ctypes.c_char_p))
+    return found

@@ -1,0 +1,182 @@
+"""Numbers that kernels take and give, and how they lie in memory; what a source became."""
+
+import json
+import struct
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import accumulate
+from typing import Any
+
+from verify import code_cache
+from verify.arithmetic.compiled import native
+from verify.arithmetic.wide.translate import Target, Translator
+
+
+class Fixed:
+    """raw / 2^fraction, a number that kernels take and give."""
+
+    __slots__ = ("fraction", "raw")
+
+    def __init__(self, raw: int, fraction: int) -> None:
+        self.raw, self.fraction = raw, fraction
+
+    def __repr__(self) -> str:
+        return f"Fixed({self.raw}, {self.fraction})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Fixed) and (self.raw, self.fraction) == (other.raw, other.fraction)
+
+    def __hash__(self) -> int:
+        return hash((self.raw, self.fraction))
+
+    def __neg__(self) -> "Fixed":
+        return Fixed(-self.raw, self.fraction)
+
+    def __lt__(self, other: "Fixed") -> bool:
+        return self.raw < other.raw
+
+    def __gt__(self, other: "Fixed") -> bool:
+        return self.raw > other.raw
+
+
+_DOUBLE = struct.Struct("<d")
+
+Word = Fixed | float | int  # by the kind of an argument, or of a result
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How the arguments and results of a function lie in memory: 64-bit words, one after another,
+    and behind the results one that says whether all functions had a value."""
+
+    width: int
+    fraction: int
+    arguments: tuple[str, ...]
+    results: tuple[str, ...]
+    returns_tuple: bool
+
+    def bytes_of(self, kind: str) -> int:
+        """How many a number of that kind takes."""
+        return 8 * {"wide": self.width // 64, "sum": self.width // 64 + 1}.get(kind, 1)
+
+    @cached_property
+    def argument_sizes(self) -> tuple[int, ...]:
+        return tuple(map(self.bytes_of, self.arguments))
+
+    @cached_property
+    def result_sizes(self) -> tuple[int, ...]:
+        return tuple(map(self.bytes_of, self.results))
+
+    @cached_property
+    def result_at(self) -> tuple[int, ...]:
+        """Where each result begins, and where the last one ends."""
+        return (0, *accumulate(self.result_sizes))
+
+    def packed(self, arguments: Sequence[Word]) -> bytes:
+        """The first arguments, or all; OverflowError where one is outside the format."""
+        return b"".join(map(_packed, arguments, self.arguments, self.argument_sizes))
+
+    def packed_state(self, state: Sequence[Word]) -> bytes:
+        """What a kernel carries, its last arguments."""
+        count = len(state)
+        kinds, sizes = self.arguments[-count:], self.argument_sizes[-count:]
+        return b"".join(map(_packed, state, kinds, sizes))
+
+    def unpacked(self, raw: bytes) -> object:
+        """The results; ValueError where a function had no value outside a loop."""
+        if not raw[self.result_at[-1]]:
+            raise ValueError("a function has no value there")
+        values = tuple(self.result(raw, k) for k in range(len(self.results)))
+        return values if self.returns_tuple else values[0]
+
+    def result(self, raw: bytes, index: int) -> Word:
+        """One of the results."""
+        kind, at = self.results[index], self.result_at
+        if kind == "float":
+            return float(_DOUBLE.unpack_from(raw, at[index])[0])
+        number = int.from_bytes(raw[at[index] : at[index + 1]], "little", signed=True)
+        return number if kind == "int" else Fixed(number, self.fraction)
+
+
+def _packed(value: Any, kind: str, size: int) -> bytes:
+    if kind == "float":
+        return _DOUBLE.pack(value)
+    raw = value if kind == "int" else value.raw
+    return int(raw).to_bytes(size, "little", signed=True)  # OverflowError beyond the format
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A function's layout and its machine code.
+
+    `code` is called once, and only for a function that is run: most of the time is LLVM's.
+    """
+
+    layout: Layout
+    code: Callable[[], bytes]
+
+    def written(self) -> bytes:
+        """As it is kept: a line of JSON, then the object file."""
+        own = self.layout
+        kinds = [own.width, own.fraction, own.arguments, own.results, own.returns_tuple]
+        return json.dumps(kinds).encode() + b"\n" + self.code()
+
+    @classmethod
+    def read(cls, raw: bytes) -> "Translation":
+        """What `written` wrote."""
+        head, _, code = raw.partition(b"\n")
+        width, fraction, arguments, results, returns_tuple = json.loads(head)
+        layout = Layout(width, fraction, tuple(arguments), tuple(results), returns_tuple)
+        return cls(layout, lambda: code)
+
+
+@dataclass(frozen=True)
+class Source:
+    """What is compiled: a function's text, its format, the values of the names in it, and for what
+    it is compiled."""
+
+    text: str
+    width: int
+    fraction: int
+    names: tuple[tuple[str, Any], ...]
+    target: str = "one orbit"
+    make: Callable[[int, int], Target] | None = None  # its target, of width and fraction
+
+    @property
+    def key(self) -> str:
+        """The name under which it is kept."""
+        form = f"{self.width} {self.fraction} {self.target}"
+        return code_cache.key_of(native.versions(), self.text, form, repr(self.names))
+
+    def translation(self) -> Translation:
+        """Made now, from nothing that is kept."""
+        if self.make is None:
+            from verify.arithmetic.wide.one_orbit import OneOrbit
+
+            target: Target = OneOrbit(self.width, self.fraction)
+        else:
+            target = self.make(self.width, self.fraction)
+        translator = Translator(self.text, dict(self.names), target)
+        module = translator.translate()
+        kinds = tuple(kind for _, kind in translator.arguments)
+        results = tuple(translator.results)
+        layout = Layout(self.width, self.fraction, kinds, results, translator.returns_tuple)
+        return Translation(layout, cache(lambda: native.machine_code(module)))
+
+    def compiled(self, *, anew: bool = False) -> tuple[Layout, Callable[[], native.Native]]:
+        """Its layout, and what links it: it is loaded, or compiled and kept, for the first call.
+
+        `anew`: neither loaded nor kept.
+        """
+        known = None if anew else code_cache.load(self.key)
+        translation = self.translation() if known is None else Translation.read(known)
+
+        @cache
+        def function() -> native.Native:
+            made = native.linked(translation.code())
+            if known is None and not anew:
+                code_cache.keep(self.key, translation.written())
+            return made
+
+        return translation.layout, function

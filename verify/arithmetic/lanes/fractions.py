@@ -1,0 +1,94 @@
+"""Fractions in lanes: whole multiples of 2^−52n below 1, in n limbs or fewer.
+
+One of m limbs has n − m leading limbs that are zero, and products of it are shorter. All of a
+fraction's limbs are in [0, 2^52) where it is multiplied.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+
+from llvmlite import ir
+
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.vectors import DIGIT, MultiplyAdd, splat
+from verify.arithmetic.wide.limbs import Value
+
+_NEGLIGIBLE = 16  # units of the last place
+
+
+def constant(value: int, count: int) -> list[Value]:
+    """A number of units, which may have a sign, in so many limbs."""
+    low = [splat((value >> DIGIT * i) % (1 << DIGIT)) for i in range(count - 1)]
+    return [*low, splat(value >> DIGIT * (count - 1))]
+
+
+def settled(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
+    """The same number with its carries moved; the highest limb has the sign."""
+    found: list[Value] = []
+    for limb in limbs:
+        found.append(b.add(limb, vectors.down(b, found[-1], DIGIT)) if found else limb)
+    return [*(vectors.masked(b, limb) for limb in found[:-1]), found[-1]]
+
+
+def added(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
+    """x + y limb by limb, x the longer one."""
+    return [b.add(u, v) for u, v in zip(x, y, strict=False)] + list(x[len(y) :])
+
+
+def taken(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
+    """x − y limb by limb, x the longer one."""
+    return [b.sub(u, v) for u, v in zip(x, y, strict=False)] + list(x[len(y) :])
+
+
+def negated(b: ir.IRBuilder, where: Value, x: Sequence[Value]) -> list[Value]:
+    """−x where the condition holds, else x."""
+    return [b.select(where, b.sub(splat(0), limb), limb) for limb in x]
+
+
+class Fractions:
+    """Products and series of fractions of `count` limbs."""
+
+    def __init__(self, multiply_add: MultiplyAdd, count: int) -> None:
+        self.multiply_add, self.count = multiply_add, count
+
+    def product(self, b: ir.IRBuilder, t: Sequence[Value], x: Sequence[Value]) -> list[Value]:
+        """t x in as many limbs as x, t of `count` limbs; carries have not moved.
+
+        Too small by less than 2 m units for m limbs of x: of the column below the lowest that is
+        kept the high halves alone are added.
+        """
+        columns = [splat(0)] * len(x)
+        for i, limb in enumerate(x):
+            for j in range(self.count - 1 - i, self.count):
+                c = i + j - self.count
+                if c >= 0:
+                    columns[c] = self.multiply_add.low(b, columns[c], t[j], limb)
+                columns[c + 1] = self.multiply_add.high(b, columns[c + 1], t[j], limb)
+        return columns
+
+    def series(
+        self, b: ir.IRBuilder, t: Sequence[Value], coefficients: Sequence[Fraction], shift: int
+    ) -> list[Value]:
+        """c₀ − c₁ τ + c₂ τ² − …, where t = τ·2^shift; the c are positive and fall fast.
+
+        Terms below 16 units are left out; what the others lose is below 2 m + 2 units each, and is
+        multiplied by t < 1 further on.
+        """
+        total: list[Value] = []
+        for j in reversed(range(len(coefficients))):
+            scaled = round(coefficients[j] * Fraction(2) ** (DIGIT * self.count - j * shift))
+            scaled = min(scaled, 2 ** (DIGIT * self.count) - 1)
+            if scaled < _NEGLIGIBLE:
+                continue
+            value = constant(scaled, -(-scaled.bit_length() // DIGIT))
+            if total:
+                value = taken(b, value, self.product(b, t, settled(b, total)))
+            total = value
+        return settled(b, total)
+
+    def shifted(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
+        """x / 2^by rounded down, 0 < by < 52; all limbs of x but the highest are settled."""
+        factor = splat(1 << (DIGIT - by))
+        low = [self.multiply_add.low(b, vectors.down(b, u, by), v, factor) for u, v in pairwise(x)]
+        return [*low, vectors.down(b, x[-1], by)]

@@ -1,0 +1,150 @@
+"""Functions of numbers in lanes, with the bits of those of one orbit.
+
+Where a function is written in lanes it says in which of them it is unsure of its last bit. There,
+and where it is not written in lanes, the function of one orbit is called, lane by lane.
+"""
+
+from collections.abc import Callable, Sequence
+
+from llvmlite import ir
+
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.circle import Circle
+from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, LANES, WORDS, splat
+from verify.arithmetic.wide import limbs
+from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+from verify.arithmetic.wide.newton import MoreFunctions
+from verify.arithmetic.wide.translate import FLOAT_FUNCTIONS, LIBM_FUNCTIONS
+
+_DOUBLE = ir.DoubleType()
+
+
+class LaneFunctions:
+    """Defines functions of one width in a module, each when it is first asked for."""
+
+    def __init__(self, module: ir.Module, width: int, numbers: Numbers) -> None:
+        self.module, self.width, self.numbers = module, width, numbers
+        self.one = MoreFunctions(module, width)
+        self._made: dict[str, ir.Function] = {}
+        # What is written in lanes: where it is unsure, and its values.
+        self._written: dict[str, Callable[[ir.IRBuilder, Number], tuple[Value, list[Number]]]] = {}
+        circle = Circle(module, width, numbers)
+        if circle.spare < DIGIT:
+            self._written = {
+                "cos_sin": circle.cos_sin,
+                "cos": lambda b, x: _part(circle.cos_sin(b, x), 0),
+                "sin": lambda b, x: _part(circle.cos_sin(b, x), 1),
+            }
+
+    def call(
+        self, b: ir.IRBuilder, name: str, x: Number, allocations: ir.IRBuilder
+    ) -> tuple[Value, Sequence[Number]]:
+        """Where the function has a value, and its values; memory is taken by `allocations`."""
+        if name not in self._written:
+            everywhere = ir.Constant(CONDITIONS, [1] * LANES)
+            return self._one_by_one(b, name, x, everywhere, allocations)
+        unsure, values = self._written[name](b, x)
+        places = [[allocations.alloca(WORDS) for _ in value.limbs] for value in values]
+        for value, own in zip(values, places, strict=True):
+            for limb, place in zip(self.numbers.settle(b, value), own, strict=True):
+                b.store(limb, place)
+        cold, after = b.append_basic_block("unsure"), b.append_basic_block("sure")
+        b.cbranch(vectors.any_of(b, unsure), cold, after)
+        b.position_at_end(cold)
+        _, exact = self._one_by_one(b, name, x, unsure, allocations)
+        for value, own in zip(exact, places, strict=True):
+            for limb, place in zip(self.numbers.settle(b, value), own, strict=True):
+                b.store(b.select(unsure, limb, b.load(place)), place)
+        b.branch(after)
+        b.position_at_end(after)
+        found = [self.numbers.known([b.load(p) for p in own], self.width) for own in places]
+        return ir.Constant(CONDITIONS, [1] * LANES), found
+
+    def of_doubles(self, b: ir.IRBuilder, name: str, x: Value) -> Value:
+        """A function of float64, lane by lane: the same bits as for one orbit."""
+        plain = name.removeprefix("f_")
+        if plain == "sqrt":
+            return b.call(vectors.intrinsic(self.module, plain), [x])
+        if plain in FLOAT_FUNCTIONS:
+            function = self.module.declare_intrinsic(f"llvm.{plain}", [_DOUBLE])
+        elif plain in LIBM_FUNCTIONS:
+            if plain not in self.module.globals:
+                ir.Function(self.module, ir.FunctionType(_DOUBLE, [_DOUBLE]), plain)
+            function = self.module.globals[plain]
+        else:
+            raise NotImplementedError(name)
+        total = ir.Constant(DOUBLES, ir.Undefined)
+        for lane in range(LANES):
+            value = b.call(function, [b.extract_element(x, constant(lane, 64))])
+            total = b.insert_element(total, value, constant(lane, 64))
+        return total
+
+    # -- lane by lane -------------------------------------------------------------------------
+
+    def _one_by_one(
+        self, b: ir.IRBuilder, name: str, x: Number, where: Value, allocations: ir.IRBuilder
+    ) -> tuple[Value, list[Number]]:
+        """By the function of one orbit, in the lanes where the condition holds."""
+        count = self.width // 64
+        function, results = self._loop_of(name)
+        room = allocations.alloca(WORDS, size=count)
+        found = allocations.alloca(WORDS, size=results * count + 1)
+        for i in range(count):
+            b.store(self.numbers.word(b, x, i), b.gep(room, [constant(i, 64)]))
+        pointer, which = I64.as_pointer(), b.bitcast(where, ir.IntType(LANES))
+        b.call(function, [b.bitcast(room, pointer), b.bitcast(found, pointer), which])
+        words = [b.load(b.gep(found, [constant(i, 64)])) for i in range(results * count + 1)]
+        values = [
+            self.numbers.from_words(b, words[i * count : (i + 1) * count]) for i in range(results)
+        ]
+        return b.icmp_unsigned("!=", words[-1], splat(0)), values
+
+    def _loop_of(self, name: str) -> tuple[ir.Function, int]:
+        """The function that goes through lanes in memory, and how many values it writes."""
+        one = self.one.get(name)
+        results = len(one.function_type.return_type.elements) - 1
+        if name in self._made:
+            return self._made[name], results
+        pointer, which = I64.as_pointer(), ir.IntType(LANES)
+        kind = ir.FunctionType(ir.VoidType(), [pointer, pointer, which])
+        function = self._made[name] = ir.Function(self.module, kind, f"lanes_{name}")
+        function.linkage = "internal"
+        function.attributes.add("noinline")
+        names = ("entry", "lane", "asked", "next", "done")
+        entry, head, asked, following, done = map(function.append_basic_block, names)
+        b = ir.IRBuilder(entry)
+        b.branch(head)
+        b.position_at_end(head)
+        lane = b.phi(I64)
+        lane.add_incoming(constant(0, 64), entry)
+        bit = b.lshr(function.args[2], b.trunc(lane, which))
+        b.cbranch(b.trunc(bit, ir.IntType(1)), asked, following)
+        b.position_at_end(asked)
+        packed = b.call(one, [self._gathered(b, b.gep(function.args[0], [lane]))])
+        target, at = b.gep(function.args[1], [lane]), 0
+        for i in range(results):
+            at = self._scattered(b, target, at, b.extract_value(packed, i))
+        self._scattered(b, target, at, resized(b, b.extract_value(packed, results), 64))
+        b.branch(following)
+        b.position_at_end(following)
+        after = b.add(lane, constant(1, 64))
+        lane.add_incoming(after, following)
+        b.cbranch(b.icmp_unsigned("<", after, constant(LANES, 64)), head, done)
+        b.position_at_end(done)
+        b.ret_void()
+        return function, results
+
+    def _gathered(self, b: ir.IRBuilder, pointer: Value) -> Value:
+        places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(self.width // 64))
+        return limbs.joined(b, [b.load(place) for place in places])
+
+    def _scattered(self, b: ir.IRBuilder, pointer: Value, at: int, value: Value) -> int:
+        count: int = value.type.width // 64
+        for i in range(count):
+            b.store(limbs.limb(b, value, i), b.gep(pointer, [constant(LANES * (at + i), 64)]))
+        return at + count
+
+
+def _part(both: tuple[Value, list[Number]], index: int) -> tuple[Value, list[Number]]:
+    return both[0], [both[1][index]]

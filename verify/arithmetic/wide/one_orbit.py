@@ -1,0 +1,209 @@
+"""One orbit's numbers as LLVM IR: integers of any width, and variables in registers."""
+
+import ast
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from llvmlite import ir
+
+from verify.arithmetic.wide import limbs, memory
+from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
+from verify.arithmetic.wide.translate import FLOAT_FUNCTIONS, LIBM_FUNCTIONS
+
+BOOL = ir.IntType(1)
+
+
+class OneOrbit:
+    """See `verify.arithmetic.wide.translate.Target`; a value is LLVM's, its type tells its kind."""
+
+    def __init__(self, width: int, fraction: int) -> None:
+        self.fraction, self.module = fraction, ir.Module()
+        self.functions = MoreFunctions(self.module, width)
+        self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + 64),
+                      "float": DOUBLE, "int": I64}  # fmt: skip
+        self._kinds = {str(kind_type): kind for kind, kind_type in self.types.items()}
+        self._variables: dict[str, Value] = {}
+
+    # -- the function -------------------------------------------------------------------------
+
+    def begin(self, arguments: Sequence[tuple[str, str]], products: int) -> None:
+        self.calls_products = self.functions.products.too_many(products)
+        pointer = I64.as_pointer()
+        main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "main")
+        self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
+        self.b = ir.IRBuilder(main.append_basic_block("body"))
+        self.assign("valid", ir.Constant(BOOL, 1))
+        offset = 0
+        for name, kind in arguments:
+            value, offset = memory.read(self.b, main.args[0], offset, self.types[kind])
+            self.assign(name, value)
+
+    def end(self) -> None:
+        if not self.b.block.is_terminated:
+            self.b.ret_void()
+        entry = self.allocations.block
+        self.allocations.branch(entry.parent.blocks[1])
+
+    def give(self, values: Sequence[Value]) -> None:
+        offset = 0
+        for v in (*values, resized(self.b, self.load("valid"), 64)):
+            offset = memory.write(self.b, self.b.function.args[1], offset, v)
+        self.b.ret_void()
+
+    def when(self, condition: Value, body: Callable[[], None]) -> None:
+        inside = self.b.append_basic_block("then")
+        after = self.b.append_basic_block("after")
+        self.b.cbranch(condition, inside, after)
+        self.b.position_at_end(inside)
+        body()
+        if not self.b.block.is_terminated:
+            self.b.branch(after)
+        self.b.position_at_end(after)
+
+    def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
+        self.assign(name, constant(0, 64))
+        head, inside, after = (self.b.append_basic_block(n) for n in ("head", "loop", "done"))
+        self.b.branch(head)
+        self.b.position_at_end(head)
+        at = self.load(name)
+        self.b.cbranch(self.b.icmp_signed("<", at, limit), inside, after)
+        self.b.position_at_end(inside)
+        body()
+        self.assign(name, self.b.add(at, constant(1, 64)))
+        self.b.branch(head)
+        self.b.position_at_end(after)
+
+    def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
+        return statements
+
+    # -- variables and numbers ----------------------------------------------------------------
+
+    def has(self, name: str) -> bool:
+        return name in self._variables
+
+    def load(self, name: str) -> Value:
+        return self.b.load(self._variables[name])
+
+    def assign(self, name: str, value: Value) -> None:
+        if name not in self._variables:
+            self._variables[name] = self.allocations.alloca(value.type, name=name)
+        target = self._variables[name].allocated_type
+        if value.type != target:
+            value = self.converted(value, self._kinds[str(target)])
+        self.b.store(value, self._variables[name])
+
+    def integer(self, value: int) -> Value:
+        return constant(value, 64)
+
+    def constant(self, value: Any) -> Value:
+        if isinstance(value, float):
+            return ir.Constant(DOUBLE, value)
+        return constant(value.raw, self.types["wide"].width)
+
+    def kind(self, value: Value) -> str:
+        return self._kinds[str(value.type)]
+
+    def converted(self, value: Value, kind: str) -> Value:
+        target = self.types[kind]
+        if value.type == I64 and kind == "float":
+            return self.b.sitofp(value, DOUBLE)
+        if value.type == I64:
+            number = resized(self.b, value, target.width, signed=True)
+            return limbs.shifted_up(self.b, number, self.fraction)
+        if value.type == self.types["wide"] and kind == "sum":
+            return resized(self.b, value, target.width, signed=True)
+        raise TypeError(f"{value.type} is no {target}; use wide(x) or approx(x)")
+
+    # -- operations ---------------------------------------------------------------------------
+
+    def negative(self, x: Value) -> Value:
+        return self.b.fneg(x) if x.type == DOUBLE else self.b.neg(x)
+
+    def sum(self, sign: str, x: Value, y: Value) -> Value:
+        b = self.b
+        floating = x.type == DOUBLE
+        if sign == "+":
+            return b.fadd(x, y) if floating else b.add(x, y)
+        return b.fsub(x, y) if floating else b.sub(x, y)
+
+    def product(self, x: Value, y: Value) -> Value:
+        if x.type == DOUBLE:
+            return self.b.fmul(x, y)
+        return self.functions.products.product(self.b, x, y, called=self.calls_products)
+
+    def quotient(self, x: Value, y: Value) -> Value:
+        return self.b.fdiv(x, y)
+
+    def opposite(self, condition: Value) -> Value:
+        return self.b.not_(condition)
+
+    def both(self, x: Value, y: Value) -> Value:
+        return self.b.and_(x, y)
+
+    def either(self, x: Value, y: Value) -> Value:
+        return self.b.or_(x, y)
+
+    def compare(self, order: str, x: Value, y: Value) -> Value:
+        compare = self.b.fcmp_ordered if x.type == DOUBLE else self.b.icmp_signed
+        return compare(order, x, y)
+
+    def inside(self, x: Value, limit: Value) -> Value:
+        """|x| < limit, by the highest limbs alone: where it says so it is so; limit > 0."""
+        b, last = self.b, x.type.width // 64 - 1
+        x, limit = limbs.limb(b, x, last), limbs.limb(b, limit, last)
+        # −limit < x < limit for integers is 0 < x + limit < 2·limit.
+        moved = b.sub(b.add(x, limit), constant(1, 64))
+        return b.icmp_unsigned("<", moved, b.sub(b.add(limit, limit), constant(1, 64)))
+
+    # -- functions ----------------------------------------------------------------------------
+
+    def function(self, name: str, values: Sequence[Value]) -> list[Value]:
+        b, x = self.b, values[0]
+        if name == "abs":
+            if x.type == DOUBLE:
+                return [self._absolute(x)]
+            negative = b.icmp_signed("<", x, constant(0, x.type.width))
+            return [b.select(negative, b.neg(x), x)]
+        if name == "approx":
+            return [to_double(b, x, self.fraction)]
+        if name == "shifted":
+            return [self._shifted(x, values[1])]
+        if name == "wide":
+            width = self.types["wide"].width
+            top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
+            self._require(b.fcmp_ordered("<", self._absolute(x), top))
+            return [from_double(b, x, width, self.fraction)]
+        if x.type == DOUBLE:
+            return [self._float_function(name, x)]
+        packed = b.call(self.functions.get(name), [x])
+        count = len(packed.type.elements) - 1
+        self._require(b.extract_value(packed, count))
+        return [b.extract_value(packed, i) for i in range(count)]
+
+    def _require(self, condition: Value) -> None:
+        """`valid` only where this is true."""
+        self.assign("valid", self.b.and_(self.load("valid"), condition))
+
+    def _absolute(self, x: Value) -> Value:
+        return self.b.call(self.module.declare_intrinsic("llvm.fabs", [DOUBLE]), [x])
+
+    def _shifted(self, x: Value, by: Value) -> Value:
+        """x / 2^by rounded down, 0 ≤ by < 64: limb by limb, which LLVM does not see by itself."""
+        b, count = self.b, x.type.width // 64
+        kind = ir.FunctionType(I64, [I64] * 3)
+        funnel = self.module.declare_intrinsic("llvm.fshr", [I64], kind)
+        words = [limbs.limb(b, x, i) for i in range(count)]
+        above = [*words[1:], b.ashr(words[-1], constant(63, 64))]
+        moved = [b.call(funnel, [high, low, by]) for high, low in zip(above, words, strict=True)]
+        return limbs.joined(b, moved)
+
+    def _float_function(self, name: str, x: Value) -> Value:
+        plain = name.removeprefix("f_")
+        if plain in FLOAT_FUNCTIONS:
+            return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
+        if plain not in LIBM_FUNCTIONS:
+            raise NotImplementedError(name)
+        if plain not in self.module.globals:
+            ir.Function(self.module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
+        return self.b.call(self.module.globals[plain], [x])

@@ -1,0 +1,45 @@
+"""Tasks whose runs are stepped together: which they are, and how they are computed.
+
+Tasks that name the same `ensemble` take the same steps from other initial values, or with other
+step sizes and parameters. They go to a worker in groups, longest first, and are computed in
+lockstep: where their runs meet in a kernel, the lanes of the vector unit have one run each. The
+results are what each task gives by itself.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from itertools import islice
+
+from verify import lockstep
+from verify.execution.task import Task
+from verify.scenes.frozen import Frozen
+
+MOST_AT_ONCE = 16  # under way: two sets of lanes, so that one is full where a run in it has ended
+_MOST_IN_GROUP = 64  # so that results come in, and every worker has some
+
+Group = dict[str, Task]
+
+
+def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
+    """The tasks by what is computed together, what costs most first."""
+    by_ensemble: dict[str, Group] = {}
+    for name in sorted(tasks, key=lambda name: -tasks[name].cost):
+        by_ensemble.setdefault(tasks[name].ensemble or name, {})[name] = tasks[name]
+    found: list[Group] = []
+    for group in by_ensemble.values():
+        share = -(-len(group) // max(workers, 1))
+        size = min(max(share, MOST_AT_ONCE), _MOST_IN_GROUP)
+        names = iter(group)
+        while part := {name: group[name] for name in islice(names, size)}:
+            found.append(part)
+    return sorted(found, key=lambda part: -sum(task.cost for task in part.values()))
+
+
+def in_lockstep(
+    group: Group, compute: Callable[[str, Task], Frozen]
+) -> Iterator[tuple[str, Frozen]]:
+    """The result of each task as it is there. What a task raises is raised here."""
+    names = list(group)
+    calls = (partial(compute, name, task) for name, task in group.items())
+    for number, future in lockstep.together(calls, MOST_AT_ONCE):
+        yield names[number], future.result()
