@@ -1,18 +1,22 @@
 """One step map iterated on many points at once, in any number system.
 
-In float64 the kernel's loop gets an inner one over some points, which a compiler turns into vector
-instructions, and threads share the points. Other number systems take point after point.
+In float64 and in fixed point points are stepped in lanes, and threads share them. Where a float64
+kernel solves equations its loop gets an inner one over some points instead, which a compiler may
+turn into vector instructions. Other number systems take point after point.
 """
 
+import contextlib
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 
+from verify import lockstep
+from verify.arithmetic.compiled.doubles import POINTS, on_points
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
@@ -23,6 +27,7 @@ from verify.kernels.stepping import KernelRun
 
 _LANES = 64  # points whose states stay in the nearest cache
 _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
+_WIDE_SHARE = 32  # the same in fixed point
 # Sequences of numbers, arrays or lists, by name: "p", "q" and what else is carried.
 Values = Mapping[str, Any]
 
@@ -72,42 +77,54 @@ class PointMap:
         return [self.arithmetic.number(x) for x in given]
 
     def _in_lanes(self, p: np.ndarray, q: np.ndarray) -> list[np.ndarray]:
-        run = _compiled(self.kernel)
-        inputs = self._inputs()
-        rest = [np.full(len(p), float(x)) for x in self.kernel.start]
-        carried = [p.copy(), q.copy(), *rest]
+        run, share = _stepper(self.kernel)
+        inputs = np.array(self._inputs(), dtype=np.float64)
+        spare = -len(p) % share  # a point more than once, where a call takes so many
+        rest = [np.full(len(p) + spare, float(x)) for x in self.kernel.start]
+        carried = np.array([*(np.pad(z, (0, spare), "edge") for z in (p, q)), *rest])
 
         def advance(first: int) -> None:
-            run(self.steps, *inputs, *(x[first : first + _SHARE] for x in carried))
+            run(self.steps, inputs, carried[:, first : first + share])
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:
-            list(threads.map(advance, range(0, len(p), _SHARE)))
+            list(threads.map(advance, range(0, len(p), share)))
+        carried = carried[:, : len(p)]
         lost = np.flatnonzero(~np.all(np.isfinite(carried), axis=0))
         if lost.size:
             raise _points_out_of_range(p[lost[0]], q[lost[0]], self.arithmetic.name)
-        return carried
+        return list(carried)
 
     def _one_by_one(self, p: Sequence[Number], q: Sequence[Number]) -> list[list[Number]]:
+        made = self.arithmetic
         inputs = self._inputs(self._limits(p, q))
-        rest = [self.arithmetic.number(Fraction(x)) for x in self.kernel.start]
-
-        def advance(z: tuple[Number, Number]) -> tuple[Number, ...]:
-            try:
-                done, *after = self.kernel.function(self.steps, *inputs, *z, *rest)
-            except (ArithmeticError, ValueError):
-                done = -1
-            if done < self.steps or not all(map(self.arithmetic.finite, after)):
-                at = [float(self.arithmetic.exact(x)) for x in z]
-                raise _points_out_of_range(at[0], at[1], self.arithmetic.name)
-            return tuple(after)
-
-        with self.arithmetic.context():
-            if not self.arithmetic.absolute:
-                found = list(map(advance, zip(p, q, strict=True)))
-            else:  # native code, which runs beside Python
-                with ThreadPoolExecutor(os.cpu_count()) as threads:
-                    found = list(threads.map(advance, zip(p, q, strict=True)))
+        rest = [made.number(Fraction(x)) for x in self.kernel.start]
+        points = [(*z, *rest) for z in zip(p, q, strict=True)]
+        found: list[Sequence[Number]] = []
+        for z, states in zip(points, self._last_states(inputs, points), strict=True):
+            if not states:
+                at_p, at_q = (float(made.exact(x)) for x in z[:2])
+                raise _points_out_of_range(at_p, at_q, made.name)
+            found += states
         return [list(column) for column in zip(*found, strict=True)]
+
+    def _last_states(
+        self, inputs: Sequence[Number], points: Sequence[Sequence[Number]]
+    ) -> Iterator[list[Sequence[Number]]]:
+        """Of each point its last state, or none where it left the range."""
+        kernel, states = self.kernel.function, self.arithmetic.states
+        calls = [partial(states, kernel, self.steps, 1, inputs, z) for z in points]
+        if self.arithmetic.walk is None:
+            yield from (call() for call in calls)
+            return
+
+        def advance(first: int) -> list[list[Sequence[Number]]]:
+            share = calls[first : first + _WIDE_SHARE]
+            ended = dict(lockstep.together(iter(share), len(share)))
+            return [ended[k].result() for k in range(len(share))]
+
+        with ThreadPoolExecutor(os.cpu_count()) as threads:  # native code runs beside Python
+            for part in threads.map(advance, range(0, len(calls), _WIDE_SHARE)):
+                yield from part
 
     def _limits(self, p: Sequence[Number], q: Sequence[Number]) -> tuple[Fraction, ...]:
         """Those of a fixed-point kernel, for all points together."""
@@ -130,8 +147,16 @@ def _points_out_of_range(p: float, q: float, name: str) -> LeftRangeError:
 
 
 @lru_cache(maxsize=64)
+def _stepper(kernel: Kernel) -> tuple[Callable[[int, np.ndarray, np.ndarray], None], int]:
+    """`run(steps, inputs, rows)`, in place, and how many columns it takes at a time."""
+    with contextlib.suppress(NotImplementedError):
+        return on_points(kernel.source, kernel.names, len(kernel.state_names)), POINTS
+    many = _compiled(kernel)
+    return lambda steps, inputs, rows: many(steps, *inputs, *rows), _SHARE
+
+
 def _compiled(kernel: Kernel) -> Callable[..., None]:
-    """`many(steps, h, …, p, q, …)`: the kernel's loop on arrays, in place."""
+    """`many(steps, h, …, p, q, …)`: the kernel's loop on arrays, in place, compiled by numba."""
     head, _, loop = kernel.source.partition(f"{LOOP}\n")
     signature, _, before = head.partition("\n")
     body = loop.rpartition("    return ")[0].splitlines()

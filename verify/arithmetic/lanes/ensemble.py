@@ -28,14 +28,19 @@ class Ensemble:
 
     A wide number is a `Number`; a double or an integer is a vector, but for the steps and their
     counter, which are one for all lanes; a condition is a vector too, or one for all.
+
+    `sets`: so many sets of lanes take turns in each pass of the loop, so that what one waits for
+    another has time for. What a loop does not change is then the same for all of them.
     """
 
-    def __init__(self, width: int, fraction: int, *, native: bool) -> None:
-        self.module = ir.Module()
+    def __init__(self, width: int, fraction: int, *, native: bool, sets: int = 1) -> None:
+        self.module, self.sets = ir.Module(), sets
         self.widths = {"wide": width, "sum": width + 64}
         self.numbers = Numbers(self.module, fraction, native=native)
         self.functions = LaneFunctions(self.module, width, self.numbers)
         self._known: dict[str, Any] = {}
+        self._arguments: dict[str, tuple[int, int, str]] = {}  # where each lies, and its kind
+        self._of_sets: list[dict[str, Any]] = []  # after the loop, the variables of each set
         self._kept: dict[str, list[Value]] = {}  # what goes from pass to pass, in memory
         self._where: Value | None = None  # the lanes for which an `if` holds
 
@@ -50,45 +55,52 @@ class Ensemble:
         at = 0
         for name, kind in arguments:
             size = self.widths[kind] // 64 if kind in self.widths else 1
-            words = [self._read(main.args[0], at + i) for i in range(size)]
+            self._arguments[name] = at, size, kind
+            self._known[name] = self._argument(name, 0)
             at += size
-            self._known[name] = self._of_words(words, kind)
         first = arguments[0][0] if arguments and arguments[0][1] == "int" else None
         if first:  # the steps, one number for all
             self._known[first] = self.b.extract_element(self._known[first], constant(0, 64))
+
+    def _argument(self, name: str, own: int) -> Any:
+        """An argument of one set of lanes."""
+        at, size, kind = self._arguments[name]
+        given = self.b.function.args[0]
+        words = [self.b.load(self._place(given, at + i, own), align=_ALIGNED) for i in range(size)]
+        return self._of_words(words, kind)
 
     def _of_words(self, words: list[Value], kind: str) -> Any:
         if kind in self.widths:
             return self.numbers.from_words(self.b, words)
         return self.b.bitcast(words[0], DOUBLES) if kind == "float" else words[0]
 
-    def _place(self, pointer: Value, at: int) -> Value:
-        place = self.b.gep(pointer, [constant(at * LANES, 64)])
+    def _place(self, pointer: Value, at: int, own: int = 0) -> Value:
+        """Where a word of one set of lanes lies."""
+        place = self.b.gep(pointer, [constant((at * self.sets + own) * LANES, 64)])
         return self.b.bitcast(place, WORDS.as_pointer())
-
-    def _read(self, pointer: Value, at: int) -> Value:
-        return self.b.load(self._place(pointer, at), align=_ALIGNED)
 
     def end(self) -> None:
         self.allocations.branch(self.allocations.block.parent.blocks[1])
         if not self.b.block.is_terminated:
             self.b.ret_void()
 
-    def give(self, values: Sequence[Any]) -> None:
+    def give(self, values: Callable[[], Sequence[Any]]) -> None:
         if self._where is not None:
-            self._retire(values[0])
+            self._retire(values()[0])
             return
-        at = 0
-        steps = self._kept.get("done")
-        for index, value in enumerate(values):
-            if index == 0 and steps is not None:
-                value = self.b.load(steps[0])
-            for word in self._words(value):
-                self.b.store(word, self._place(self.b.function.args[1], at), align=_ALIGNED)
-                at += 1
-        valid = self.b.zext(self._lanes(self.load("valid")), WORDS)
-        self.b.store(valid, self._place(self.b.function.args[1], at), align=_ALIGNED)
+        for own, known in enumerate(self._of_sets or [self._known]):
+            self._known = known
+            self._write(values(), own)
         self.b.ret_void()
+
+    def _write(self, values: Sequence[Any], own: int) -> None:
+        """The results of one set of lanes."""
+        if "done" in self._kept:
+            values = [self.b.load(self._kept["done"][0]), *values[1:]]
+        words = [word for value in values for word in self._words(value)]
+        words.append(self.b.zext(self._lanes(self.load("valid")), WORDS))
+        for at, word in enumerate(words):
+            self.b.store(word, self._place(self.b.function.args[1], at, own), align=_ALIGNED)
 
     def _words(self, value: Any) -> list[Value]:
         if isinstance(value, Number):
@@ -121,32 +133,38 @@ class Ensemble:
     def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
         b = self.b
         carried = [n for n in self._known if n in changed or n == "valid"]
-        for n in carried:
-            parts = self._parts(self._known[n])
-            self._kept[n] = [self.allocations.alloca(part.type) for part in parts]
+        before = dict(self._known)
+        for own in range(self.sets):
+            for n in carried:
+                first = own and n in self._arguments
+                self._known[n] = self._argument(n, own) if first else before[n]
+                parts = self._parts(self._known[n])
+                self._kept[f"{n} {own}"] = [self.allocations.alloca(p.type) for p in parts]
+            self._keep(carried, own)
         self._kept["done"] = [self.allocations.alloca(WORDS)]
         self._kept["going"] = [self.allocations.alloca(CONDITIONS)]
         b.store(vectors.same(b, limit, WORDS), self._kept["done"][0])
         b.store(ir.Constant(CONDITIONS, [1] * LANES), self._kept["going"][0])
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
-        self._keep(carried)
         head, inside, self._finish = (b.append_basic_block(n) for n in ("head", "loop", "done"))
         b.branch(head)
         b.position_at_end(head)
         at = b.load(counter)
         b.cbranch(b.icmp_signed("<", at, limit), inside, self._finish)
         b.position_at_end(inside)
-        before = dict(self._known)
-        self._known[name] = at
-        self._fetch(carried)
-        body()
-        self._keep(carried)
+        for own in range(self.sets):
+            self._known = before | {name: at}
+            self._fetch(carried, own)
+            body()
+            self._keep(carried, own)
         b.store(b.add(at, constant(1, 64)), counter)
         b.branch(head)
         b.position_at_end(self._finish)
-        self._known = before
-        self._fetch(carried)
+        for own in range(self.sets):
+            self._known = dict(before)
+            self._fetch(carried, own)
+            self._of_sets.append(self._known)
 
     def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return reordered(statements)
@@ -154,14 +172,15 @@ class Ensemble:
     def _parts(self, value: Any) -> list[Value]:
         return self.numbers.settle(self.b, value) if isinstance(value, Number) else [value]
 
-    def _keep(self, names: Sequence[str]) -> None:
+    def _keep(self, names: Sequence[str], own: int) -> None:
         for name in names:
-            for part, place in zip(self._parts(self._known[name]), self._kept[name], strict=True):
+            places = self._kept[f"{name} {own}"]
+            for part, place in zip(self._parts(self._known[name]), places, strict=True):
                 self.b.store(part, place)
 
-    def _fetch(self, names: Sequence[str]) -> None:
+    def _fetch(self, names: Sequence[str], own: int) -> None:
         for name in names:
-            parts = [self.b.load(place) for place in self._kept[name]]
+            parts = [self.b.load(place) for place in self._kept[f"{name} {own}"]]
             value = self._known[name]
             number = isinstance(value, Number)
             self._known[name] = self.numbers.known(parts, value.width) if number else parts[0]

@@ -45,9 +45,9 @@ class OneOrbit:
         entry = self.allocations.block
         self.allocations.branch(entry.parent.blocks[1])
 
-    def give(self, values: Sequence[Value]) -> None:
+    def give(self, values: Callable[[], Sequence[Value]]) -> None:
         offset = 0
-        for v in (*values, resized(self.b, self.load("valid"), 64)):
+        for v in (*values(), resized(self.b, self.load("valid"), 64)):
             offset = memory.write(self.b, self.b.function.args[1], offset, v)
         self.b.ret_void()
 

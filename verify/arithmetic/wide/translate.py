@@ -28,7 +28,7 @@ Value: TypeAlias = Any  # a target's own
 KINDS = ("int", "float", "wide", "sum")  # of two numbers the first becomes what the second is
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 FLOAT_FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt")
-LIBM_FUNCTIONS = ("log1p", "sinh", "cosh")  # by the C library that this process has
+LIBM_FUNCTIONS = ("log1p", "sinh", "cosh", "atan")  # by the C library that this process has
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 _SUMS = {ast.Add: "+", ast.Sub: "-"}
 
@@ -93,8 +93,8 @@ class Target(Protocol):
     def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         """A loop's statements in the order in which they are best written."""
 
-    def give(self, values: Sequence[Value]) -> None:
-        """Returns them, and whether they are valid."""
+    def give(self, values: Callable[[], Sequence[Value]]) -> None:
+        """Returns what they are, and whether they are valid; called for each of several sets."""
 
 
 class Translator:
@@ -124,6 +124,8 @@ class Translator:
                 ast.Assign: self._assignment, ast.If: self._if, ast.For: self._for,
                 ast.Return: self._return,
             }  # fmt: skip
+            if type(statement) not in known:
+                raise NotImplementedError(ast.dump(statement))
             known[type(statement)](statement)
 
     def _assignment(self, statement: Ours) -> None:
@@ -152,11 +154,17 @@ class Translator:
 
     def _return(self, statement: Ours) -> None:
         value = statement.value
-        values = [self._expression(e) for e in value.elts] if isinstance(value, ast.Tuple) else (
-            self._call(value) if isinstance(value, ast.Call) else [self._expression(value)]
-        )  # fmt: skip
-        self.returns_tuple = len(values) > 1 or isinstance(value, ast.Tuple)
-        self.results = [self.target.kind(v) for v in values]
+
+        def values() -> list[Value]:
+            if isinstance(value, ast.Tuple):
+                found = [self._expression(e) for e in value.elts]
+            else:
+                call = isinstance(value, ast.Call)
+                found = self._call(value) if call else [self._expression(value)]
+            self.returns_tuple = len(found) > 1 or isinstance(value, ast.Tuple)
+            self.results = [self.target.kind(v) for v in found]
+            return found
+
         self.target.give(values)
 
     # -- expressions --------------------------------------------------------------------------

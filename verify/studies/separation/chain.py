@@ -8,12 +8,12 @@ and the part between them is exactly 0.
 """
 
 import copy
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify import lockstep
 from verify.arithmetic import AUTO
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import NumberSystem, UnsupportedError
@@ -143,7 +143,7 @@ def separated_chains(
     """
     kernel_run = KernelRun(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
     step_map = step_map_of(hamiltonian, scheme)
-    begun = time.perf_counter()
+    begun = lockstep.clock()
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits + _CANCELLED)
     links = _Links(kernel_run, step_map, arithmetic, digits + _CANCELLED, advance)
@@ -154,7 +154,7 @@ def separated_chains(
         lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
         if not links.refine([max(each) for each in zip(*lacking, strict=True)]):
             break
-    return Chains(plain, closed, arithmetic, time.perf_counter() - begun)
+    return Chains(plain, closed, arithmetic, lockstep.clock() - begun)
 
 
 class _Links:

@@ -1,0 +1,62 @@
+"""float64 kernels on many points at once: sets of lanes that take turns, compiled by LLVM.
+
+The source is a float64 kernel's own, in the language of `verify.arithmetic.wide.translate`; each
+operation is rounded as there, and functions are the C library's, lane by lane. So a point has the
+bits that it has by itself.
+"""
+
+import ctypes
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from verify.arithmetic.compiled.paths import LANES
+from verify.arithmetic.compiled.translation import Source
+from verify.arithmetic.wide.translate import Target
+
+SETS = 4
+POINTS = SETS * LANES  # a call's
+_WIDTH, _FRACTION = 128, 112  # of wide numbers, of which there are none
+Points = npt.NDArray[np.float64]
+
+
+def _target(width: int, fraction: int) -> Target:
+    from verify.arithmetic.lanes.ensemble import Ensemble
+
+    return Ensemble(width, fraction, native=False, sets=SETS)
+
+
+def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[..., None]:
+    """`run(steps, inputs, points)`: the kernel's steps on an array, in place.
+
+    `carried`: its last arguments, so many, are the rows of `points`, (carried, POINTS); `inputs`
+    are those between the steps and them. Raises NotImplementedError where the source has what is
+    not in the language.
+    """
+    constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
+    own = Source(_annotated(source), _WIDTH, _FRACTION, constants, f"{SETS} sets", _target)
+    layout, linked = own.compiled()
+    function = linked()
+    rows = len(layout.arguments)
+
+    def run(steps: int, inputs: Points, points: Points) -> None:
+        given = np.empty((rows, POINTS))
+        given.view(np.int64)[0] = steps
+        given[1 : rows - carried] = np.reshape(inputs, (-1, 1))
+        given[rows - carried :] = points
+        found = np.empty((carried + 2, POINTS))
+        function(*(x.ctypes.data_as(ctypes.c_char_p) for x in (given, found)))
+        points[:] = found[1:-1]
+
+    return run
+
+
+def _annotated(source: str) -> str:
+    """All numbers are float64, but for the steps."""
+    head, parenthesis, rest = source.partition("(")
+    arguments, end, body = rest.partition("):")
+    first, *others = (each.partition(":")[0].strip() for each in arguments.split(","))
+    named = ", ".join([f"{first}: 'int'", *(f"{name}: 'float'" for name in others)])
+    return f"{head}{parenthesis}{named}{end}{body}"
