@@ -204,6 +204,8 @@ class Ensemble:
     def _chosen(self, where: Value, value: Any, other: Any) -> Any:
         if isinstance(value, Number):
             return self.numbers.choose(self.b, where, value, other)
+        if value.type == I64 or other.type == I64:
+            value, other = (self._words(v)[0] for v in (value, other))
         return self.b.select(where, value, other)
 
     def integer(self, value: int) -> Value:
@@ -273,13 +275,19 @@ class Ensemble:
         if not isinstance(x, Number):
             compare = b.fcmp_ordered if x.type == DOUBLES else b.icmp_signed
             return compare(order, x, y)
-        if order in ("<", ">="):
-            found = self.numbers.less(b, x, y)
-        elif order in (">", "<="):
-            found = self.numbers.less(b, y, x)
-        else:
-            raise NotImplementedError(order)
-        return b.not_(found) if order.endswith("=") else found
+        numbers = self.numbers
+        match order:
+            case "<":
+                return numbers.less(b, x, y)
+            case ">":
+                return numbers.less(b, y, x)
+            case ">=":
+                return b.not_(numbers.less(b, x, y))
+            case "<=":
+                return b.not_(numbers.less(b, y, x))
+            case "==":
+                return numbers.equal(b, x, y)
+        return b.not_(numbers.equal(b, x, y))
 
     def inside(self, x: Number, limit: Number) -> Value:
         return self.numbers.inside(self.b, x, limit)

@@ -12,6 +12,7 @@ and Y x away n limbs higher.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 from itertools import pairwise
 
 from llvmlite import ir
@@ -123,6 +124,11 @@ class Numbers:
     def less(self, b: ir.IRBuilder, x: Number, y: Number) -> Value:
         """Where x < y."""
         return self.negative(b, self.sub(b, x, y))
+
+    def equal(self, b: ir.IRBuilder, x: Number, y: Number) -> Value:
+        """Where x = y."""
+        rest = self.settle(b, self.sub(b, x, y))
+        return b.icmp_unsigned("==", reduce(b.or_, rest), splat(0))
 
     # -- products -----------------------------------------------------------------------------
 

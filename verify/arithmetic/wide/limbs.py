@@ -5,7 +5,7 @@ every partial product twice over (once for the sign), so products are written he
 
 A product xᵢ yⱼ of limbs stands in column i + j. Where the low columns are not kept, the lowest kept
 column still needs the carry from below: of the column beneath it only the high halves are added.
-What is left out is less than `count` units of the lowest kept column, where `count` is the number
+What is left out is less than 2·`count` units of the lowest kept column, where `count` is the number
 of limbs; each routine says what that means for its result.
 """
 
@@ -133,20 +133,33 @@ def _square_columns(b: ir.IRBuilder, x: Value, lowest: int, *, start: int, signe
     return b.add(own, shifted_up(b, mixed, 1))
 
 
-def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> Value:
-    """x y / 2^fraction, rounded: signed, `fraction` in the second highest limb's column or above.
+def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> tuple[Value, Value | None]:
+    """x y / 2^fraction rounded to the nearest, halves upwards, and where that is not sure.
 
-    Within ½ + 2^−40 units of the last place, for 16 integer bits and up to 64 limbs.
+    Signed, `fraction` in the second highest limb's column or above. The columns below it are left
+    out, which is less than 2·count units of the lowest that is kept: it matters where these units
+    carry into the result, as in one of 2^44 products. None: nothing is left out.
     """
     width = x.type.width
-    lowest = fraction // 64
+    count, lowest = width // 64, fraction // 64
     drop = fraction - 64 * lowest
     half = 1 << (drop - 1)
     if x is y:
         total = _square_columns(b, x, lowest, start=half, signed=True)
     else:
         total = _columns(b, x, y, lowest, signed=True, start=half)
-    return resized(b, shifted_down(b, total, drop), width)
+    found = resized(b, shifted_down(b, total, drop), width)
+    if count < 3:  # of the column below, a single product's low half is left out
+        return found, None
+    dropped = b.and_(limb(b, total, 0), constant((1 << drop) - 1, 64))
+    return found, b.icmp_unsigned(">=", dropped, constant((1 << drop) - 2 * count, 64))
+
+
+def whole_product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> Value:
+    """The same, from all columns."""
+    total = _columns(b, x, y, 1, signed=True)
+    total = b.add(total, constant(1 << (fraction - 65), total.type.width))
+    return resized(b, shifted_down(b, total, fraction - 64), x.type.width)
 
 
 def high_product(b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:

@@ -1,5 +1,7 @@
 """Products in a module: written out where they stand, or functions that are called.
 
+They are rounded to the nearest, so that other ways to form them, in lanes, give the same bits.
+
 Written out they run fastest. But LLVM's time grows like the square of a function's length, and
 where products are long or many a call costs little beside: it makes a long kernel a tenth slower,
 or a third at most, and compiles it many times sooner.
@@ -30,12 +32,39 @@ class Products:
         return count * ((self.width // 64) ** 2 + 4) > _MOST_IN_KERNEL
 
     def product(self, b: ir.IRBuilder, x: Value, y: Value, *, called: bool | None = None) -> Value:
-        def written(b: ir.IRBuilder, x: Value, y: Value) -> Value:
-            return limbs.product(b, x, y, self.fraction)
-
+        """x y / 2^fraction, rounded to the nearest."""
         if called is None:
             called = self._long(x)
-        return self._call(b, "product", written, x, y) if called else written(b, x, y)
+        return self._call(b, "product", self._product, x, y) if called else self._product(b, x, y)
+
+    def _product(self, b: ir.IRBuilder, x: Value, y: Value) -> Value:
+        near, unsure = limbs.product(b, x, y, self.fraction)
+        if unsure is None:
+            return near
+        before, cold = b.block, b.append_basic_block("unsure")
+        after = b.append_basic_block("sure")
+        b.cbranch(unsure, cold, after).set_weights([1, 1 << 20])
+        b.position_at_end(cold)
+        whole = b.call(self._whole(), [x, y])
+        b.branch(after)
+        b.position_at_end(after)
+        found = b.phi(x.type)
+        found.add_incoming(near, before)
+        found.add_incoming(whole, cold)
+        return found
+
+    def _whole(self) -> ir.Function:
+        """The product from all columns, a function apart, since it is hardly ever called."""
+        name, kind = f"fixed_whole_product_{self.width}", ir.IntType(self.width)
+        if name not in self._made:
+            function = ir.Function(self.module, ir.FunctionType(kind, [kind] * 2), name)
+            self._made[name] = function
+            function.linkage = "internal"
+            function.attributes.add("noinline")
+            inside = ir.IRBuilder(function.append_basic_block("entry"))
+            x, y = function.args
+            inside.ret(limbs.whole_product(inside, x, y, self.fraction))
+        return self._made[name]
 
     def high(self, b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -> Value:
         def written(b: ir.IRBuilder, x: Value, y: Value) -> Value:

@@ -30,6 +30,11 @@ class FlowTask(HamiltonianTask):
         """About how many float64 steps it is worth."""
         return _COST + _POINTS * self.steps
 
+    @property
+    def ensemble(self) -> str | None:
+        """Maps of one region until one time, which are held against the same exact points."""
+        return f"{self.kind} {self.hamiltonian} {self.shape} {self.step_size * self.steps}"
+
     def compute(self, keeper: Keeper) -> FlowImage:
         """The images of the outline, as a result."""
         from verify.studies.regions.carry import carry

@@ -166,8 +166,8 @@ def test_numbers_with_bits_less_than_promised_are_caught(
     true = limbs.product
 
     def coarse(b: Any, x: Any, y: Any, fraction: int) -> Any:
-        found = true(b, x, y, fraction)
-        return b.and_(found, constant(-(1 << bits), found.type.width))
+        found, unsure = true(b, x, y, fraction)
+        return b.and_(found, constant(-(1 << bits), found.type.width)), unsure
 
     monkeypatch.setattr(limbs, "product", coarse)
     assert_caught(operations)

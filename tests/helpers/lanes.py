@@ -1,0 +1,73 @@
+"""Functions in lanes beside those of one orbit: the same source, the same arguments, all paths."""
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+from unittest import mock
+
+import numpy as np
+
+from verify.arithmetic.compiled import engine, paths
+from verify.arithmetic.compiled.translation import Fixed, Source
+from verify.arithmetic.systems import fixed
+
+NATIVE = ["avx512"] if paths._has_instructions() else []
+IN_LANES = [*NATIVE, "portable"]
+PATHS = [*IN_LANES, paths.OFF]
+
+
+@contextmanager
+def path(name: str) -> Iterator[None]:
+    """As though VERIFY_LANES said so; functions that are made meanwhile take that way."""
+    with mock.patch.dict(os.environ, {paths.VARIABLE: name}):
+        engine._compiled.cache_clear()
+        yield
+        engine._compiled.cache_clear()
+
+
+class Both:
+    """A function of one orbit and the same in lanes, of one width."""
+
+    def __init__(self, text: str, width: int, way: str, names: Mapping[str, Any] | None = None):
+        made = fixed.at_bits(width - fixed.INTEGER_BITS)
+        known = tuple(sorted({**made.functions, **(names or {})}.items()))
+        own = Source(text, width, made.bits, known)
+        target = paths.Path(way).target
+        lanes = Source(text, width, made.bits, known, f"lanes, {way}", target)
+        self.one = engine.NativeFunction(own, anew=True)
+        self.layout, linked = lanes.compiled(anew=True)
+        self._lanes = linked()
+
+    def of_one(self, arguments: Sequence[Any]) -> Any:
+        """What the function of one orbit gives; None where it has no value."""
+        try:
+            return self.one(*arguments)
+        except ValueError:
+            return None
+
+    def in_lanes(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
+        """The same of each of up to eight rows of arguments."""
+        given = [self.layout.packed(row) for row in rows]
+        given += [given[0]] * (paths.LANES - len(rows))
+        words = [np.frombuffer(row, dtype=np.uint64) for row in given]
+        size = sum(self.layout.result_sizes) // 8 + 1
+        found = engine._called(self._lanes, size, np.ascontiguousarray(np.stack(words, axis=1)))
+        return [self._read(column.tobytes()) for column in found.T[: len(rows)]]
+
+    def _read(self, raw: bytes) -> Any:
+        try:
+            return self.layout.unpacked(raw)
+        except ValueError:
+            return None
+
+
+def same(x: Any, y: Any) -> bool:
+    """Bit for bit; NaN is itself."""
+    if isinstance(x, tuple) and isinstance(y, tuple):
+        return len(x) == len(y) and all(map(same, x, y))
+    return bool(x == y) or (x != x and y != y)
+
+
+def number(raw: int, width: int) -> Fixed:
+    return Fixed(raw, width - fixed.INTEGER_BITS)

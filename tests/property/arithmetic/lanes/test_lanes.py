@@ -1,0 +1,176 @@
+"""Numbers in lanes have the bits of one orbit's, whatever stands in the other lanes."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.helpers.fixed_checks import HARD, Near
+from tests.helpers.lanes import IN_LANES, Both, number, same
+from verify.arithmetic.compiled.paths import LANES
+from verify.arithmetic.lanes import circle
+from verify.arithmetic.lanes.numbers import Numbers
+
+WIDTHS = (128, 192, 256, 320, 384)
+OPERATIONS = """\
+def f(x, y, s: 'sum', by: 'int', g: 'float'):
+    n = 0
+    if x < y: n = 1
+    m = 0
+    if x >= y: m = 1
+    e = 0
+    if x == y: e = 1
+    i = 0
+    if inside(x, limit): i = 1
+    z = y
+    if x > y: z = x
+    total = s + x
+    r = x * y
+    return r, x * x, (r + r) * x, -x, abs(x), x - y, z, total, abs(total), shifted(x, by), \
+shifted(y, by), approx(x), approx(total), wide(g), g * g - g, n, m, e, i
+"""
+FUNCTIONS = {
+    "circle": "def f(x):\n    c, s = cos_sin(x)\n    return c, s\n",
+    **{f: f"def f(x): return {f}(x)\n" for f in ("sin", "cos", "exp", "log", "sqrt", "sinh")},
+    "inverse": "def f(x): return 1 / x\n",
+}
+
+
+@cache
+def both(text: str, width: int, way: str) -> Both:
+    return Both(text, width, way, {"limit": number(3 << (width - 19), width)})
+
+
+class Draws:
+    """Numbers at random, the same ones each time."""
+
+    def __init__(self, seed: int) -> None:
+        self.generator = np.random.default_rng(seed)
+
+    def bits(self, count: int) -> int:
+        return int.from_bytes(self.generator.bytes(-(-count // 8)), "big") >> (-count % 8)
+
+    def below(self, limit: int) -> int:
+        return int(self.generator.integers(limit))
+
+    def either(self) -> int:
+        return 2 * self.below(2) - 1
+
+    def unit(self) -> float:
+        return float(self.generator.random())
+
+
+def differing(pair: Both, rows: Sequence[Sequence[Any]]) -> list[Any]:
+    """Rows whose values are not those of one orbit."""
+    wrong = []
+    for first in range(0, len(rows), LANES):
+        part = rows[first : first + LANES]
+        for row, found in zip(part, pair.in_lanes(part), strict=True):
+            if not same(pair.of_one(row), found):
+                wrong.append(row)
+    return wrong
+
+
+def operands(width: int, seed: int, count: int) -> list[Any]:
+    """Rows for OPERATIONS whose products stay in range."""
+    draws = Draws(seed)
+
+    def small(raw: int) -> int:
+        top = 1 << (width - 9)  # |x| < 2^7
+        return max(-top, min(top - 1, raw))
+
+    hard = [small(shape.raw(width)) for shape in HARD]
+    hard += [small(raw >> draws.below(width)) for raw in hard]
+    both_hard = list(product(hard, hard))
+    pairs = [both_hard[draws.below(len(both_hard))] for _ in range(count)]
+    pairs += [
+        (draws.bits(width - 9) - (1 << (width - 10)), hard[draws.below(len(hard))])
+        for _ in range(count)
+    ]
+    return [
+        (
+            number(x, width),
+            number(y, width),
+            number(draws.bits(width + 40) - (1 << (width + 39)), width),
+            draws.below(64),
+            draws.either() * draws.unit() * 2.0 ** (draws.below(217) - 200),
+        )
+        for x, y in pairs
+    ]
+
+
+@pytest.mark.parametrize("way", IN_LANES)
+@pytest.mark.parametrize("width", WIDTHS)
+def test_operations_have_the_bits_of_one_orbit(width: int, way: str) -> None:
+    rows = operands(width, seed=width, count=400)
+    assert not differing(both(OPERATIONS, width, way), rows)
+
+
+def arguments(name: str, width: int) -> list[Any]:
+    """Where a table's entry changes, over all sizes, and at random."""
+    draws, bits = Draws(width), width - 16
+    angles, octaves = (0, 1, -1, 511, 512, 1024, 2048, 3071, 4096, 2**20), (0, 1, -255, 256, 2560)
+    raws = [
+        Near(step, Fraction(k), Fraction(0), add).raw(width)
+        for step, ks in (("angle", angles), ("octave", octaves))
+        for k in ks
+        for add in (-1, 0, 1)
+    ]
+    sizes = (2 ** (bits + k % 30 - 16) for k in range(1000))
+    raws += [round(Fraction(draws.unit()) * size) * draws.either() for size in sizes]
+    raws += [0, 1, -1, 1 << bits, (1 << (width - 1)) - 1, -(1 << (width - 1))]
+    return [(number(raw, width),) for raw in raws]
+
+
+@pytest.mark.parametrize("way", IN_LANES)
+@pytest.mark.parametrize("width", WIDTHS[:4])
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_have_the_bits_of_one_orbit(name: str, width: int, way: str) -> None:
+    assert not differing(both(FUNCTIONS[name], width, way), arguments(name, width))
+
+
+# -- controls -------------------------------------------------------------------------------------
+
+
+def test_lanes_that_never_ask_for_the_last_bit_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where all are taken to be sure, one in a thousand arguments or so is rounded otherwise."""
+    monkeypatch.setattr(circle, "lost_by_one", lambda width: 0)
+    monkeypatch.setattr(circle, "_lost", lambda count: 0)
+    pair = Both(FUNCTIONS["circle"], 256, IN_LANES[0])
+    draws = Draws(5)
+    assert differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
+
+
+def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
+    """By values to twice the digits: the nearest number, and how far it is from another one."""
+    draws, width = Draws(11), 128
+    pair = both(FUNCTIONS["circle"], width, IN_LANES[0])
+    finer = both(FUNCTIONS["circle"], 2 * width, IN_LANES[0])
+    most = Fraction(0)
+    for _ in range(3000):
+        raw = draws.bits(width - 2) - (1 << (width - 3))
+        found = pair.of_one((number(raw, width),))
+        true = finer.of_one((number(raw << width, 2 * width),))
+        for x, y in zip(found, true, strict=True):
+            exact = Fraction(y.raw, 2 ** (2 * width - 16)) * 2 ** (width - 16)
+            most = max(most, abs(x.raw - exact) - Fraction(1, 2))
+    # An ulp is 2^14 of the units in which it is counted.
+    assert most * 2**14 <= circle.lost_by_one(width)
+
+
+@pytest.mark.parametrize("planted", ["_signs", "carry", "from_words"])
+def test_a_step_left_out_of_a_product_is_caught(
+    monkeypatch: pytest.MonkeyPatch, planted: str
+) -> None:
+    wrong: dict[str, Any] = {
+        "_signs": lambda self, b, columns, x, y, count: columns,
+        "carry": lambda self, b, x: x.limbs,
+        "from_words": lambda self, b, words: self.known([words[0], *words], 64 * len(words)),
+    }
+    monkeypatch.setattr(Numbers, planted, wrong[planted])
+    pair = Both(OPERATIONS, 128, IN_LANES[0], {"limit": number(3 << 109, 128)})
+    assert differing(pair, operands(128, seed=1, count=40))
