@@ -11,6 +11,8 @@ import numpy as np
 from verify.arithmetic.compiled import engine, paths
 from verify.arithmetic.compiled.translation import Fixed, Source
 from verify.arithmetic.systems import fixed
+from verify.kernels.kernel import kernel_for
+from verify.studies.separation.kernel import mixed_kernel
 
 NATIVE = ["avx512"] if paths._has_instructions() else []
 IN_LANES = [*NATIVE, "portable"]
@@ -21,9 +23,15 @@ PATHS = [*IN_LANES, paths.OFF]
 def path(name: str) -> Iterator[None]:
     """As though VERIFY_LANES said so; functions that are made meanwhile take that way."""
     with mock.patch.dict(os.environ, {paths.VARIABLE: name}):
-        engine._compiled.cache_clear()
+        _forget()
         yield
-        engine._compiled.cache_clear()
+        _forget()
+
+
+def _forget() -> None:
+    engine._compiled.cache_clear()
+    kernel_for.cache_clear()
+    mixed_kernel.cache_clear()
 
 
 class Both:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import polynomials, rationals, trigonometric
-from verify.arithmetic.arb import bounds, rational_ball
+from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
@@ -96,7 +96,9 @@ class Tried:
             } | {n: Rounded(rational_ball(x) + around, flint.arb(0)) for n, x in self.state.items()}
             rounding = rounding_of(self.arithmetic)
             found = analyse(self.kernel.lowering.program, [*self.ops], given, rounding)
-            return found and {i: bounds(x.error)[1] for i, x in found.items()}
+            if found is None or not all(in_reach(x.error) for x in found.values()):
+                return None  # a bound that is too large to be a number is none
+            return {i: bounds(x.error)[1] for i, x in found.items()}
 
     def errors(self) -> dict[int, Fraction]:
         """How far each operation's value is, at least, from its value at the exact inputs."""
@@ -113,7 +115,9 @@ class Tried:
         with working_precision(2 * self.arithmetic.bits + 200):
             for i, true in self.true().items():
                 apart = abs(true - rational_ball(self.values[i]))
-                made[i] = bounds(apart)[0], bounds(count(self.ops[i], abs(true)))[1]
+                counted = count(self.ops[i], abs(true))
+                if in_reach(apart) and in_reach(counted):  # else they are no numbers here
+                    made[i] = bounds(apart)[0], bounds(counted)[1]
         return made
 
     def true(self) -> dict[int, Ball]:

@@ -1,0 +1,128 @@
+"""Runs in lockstep are those one by one: bits, bounds, and where an orbit leaves its range."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+import pytest
+
+from tests.helpers.lanes import IN_LANES, PATHS, path
+from verify import arithmetic, lockstep
+from verify.arithmetic.compiled import engine, paths, walking
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.stepping import KernelRun, Outcome
+
+OBSERVABLES = frozenset({"lambda", "mse", "delta_j_max"})
+H = {
+    "duffing": ("p**2/2 + q**2/2 + delta*q**4/4", {"delta": Fraction(1)}),
+    "pendulum": ("p**2/2 - cos(q)", {}),
+    "well": ("p**2/2 + exp(q) - q + sqrt(2 + q**2)/(1 + q**2)", {}),
+    "escapes": ("p**2/2 - q**4/4", {}),
+}
+
+
+def runs(name: str, points: int = 0, scheme: str = "lie2") -> list[KernelRun]:
+    """Eleven, of which no two are alike: the last ones have other steps."""
+    text, values = H[name]
+    hamiltonian = Hamiltonian.parse(text, values)
+    found = []
+    for k in range(11):
+        start = {"q": Fraction(k - 4, 7), "p": Fraction(3 - k, 11), "h": Fraction(1, 50 + k // 6)}
+        steps = 300 + k // 4
+        observables = OBSERVABLES | ({"extremes"} if points else set())
+        found.append(KernelRun(hamiltonian, scheme, start, steps, observables, points))
+    return found
+
+
+def done(all_runs: Sequence[KernelRun], digits: int, *, in_lockstep: bool) -> list[Outcome]:
+    own = arithmetic.get("fixed", digits)
+    calls = [partial(run.run, own, tangent=True) for run in all_runs]
+    if not in_lockstep:
+        return [call() for call in calls]
+    ended = dict(lockstep.together(iter(calls), len(calls)))
+    return [ended[k].result() for k in range(len(calls))]
+
+
+def told(outcome: Outcome) -> Any:
+    """All but times, and what is made anew for each path."""
+    own = replace(outcome, seconds=0.0, kernel=None, state=tuple(outcome.state))
+    return own, [dict(x) for x in own.trail], [dict(x) for x in own.tangents]
+
+
+@pytest.mark.parametrize("way", PATHS)
+@pytest.mark.parametrize("name", H)
+def test_runs_in_lockstep_have_the_bits_of_runs_one_by_one(name: str, way: str) -> None:
+    """An orbit that leaves its range does so at the same step, and hurts no other."""
+    with path(paths.OFF):
+        alone = [told(x) for x in done(runs(name), 33, in_lockstep=False)]
+    with path(way):
+        assert [told(x) for x in done(runs(name), 33, in_lockstep=True)] == alone
+    if name == "escapes":
+        assert len({x[0].done for x in alone}) > 3
+
+
+@pytest.mark.parametrize("digits", [53, 72])
+@pytest.mark.parametrize("scheme", ["lie2", "rk4", "stormer-verlet"])
+def test_wider_numbers_and_other_schemes_too(scheme: str, digits: int) -> None:
+    few = runs("pendulum", scheme=scheme)[:4]
+    alone = [told(x) for x in done(few, digits, in_lockstep=False)]
+    with path(IN_LANES[0]):
+        assert [told(x) for x in done(few, digits, in_lockstep=True)] == alone
+
+
+def test_a_series_is_the_same() -> None:
+    """Its kernel begins anew at every note, and is not called for a part of the way."""
+    alone = [told(x) for x in done(runs("duffing", points=7), 33, in_lockstep=False)]
+    with path(IN_LANES[0]):
+        assert [told(x) for x in done(runs("duffing", points=7), 33, in_lockstep=True)] == alone
+    assert all(len(x[0].series) == 7 for x in alone)
+
+
+def test_lanes_are_used_where_there_is_more_than_one_orbit(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[int] = []
+    true = walking.step_together
+
+    def noting(orbits: Any, kernel: Any, lanes: int, in_parts: bool) -> None:
+        seen.append(lanes)
+        true(orbits, kernel, lanes, in_parts)
+
+    monkeypatch.setattr(engine, "step_together", noting)
+    with path(IN_LANES[0]):
+        done(runs("duffing"), 33, in_lockstep=True)
+        assert paths.LANES in seen
+        seen.clear()
+        done(runs("duffing")[:1], 33, in_lockstep=True)
+        assert set(seen) == {1}
+    seen.clear()
+    with path(paths.OFF):
+        done(runs("duffing"), 33, in_lockstep=True)
+    assert set(seen) == {1}
+
+
+def test_a_lane_that_takes_its_neighbours_place_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    alone = [told(x) for x in done(runs("duffing"), 33, in_lockstep=False)]
+    true = walking.Orbit.take
+
+    def swapped(self: Any, result: Any, steps: int) -> None:
+        result = result.copy()
+        result[1] ^= 1  # the lowest bit of p
+        true(self, result, steps)
+
+    monkeypatch.setattr(walking.Orbit, "take", swapped)
+    with path(IN_LANES[0]):
+        assert [told(x) for x in done(runs("duffing"), 33, in_lockstep=True)] != alone
+
+
+def test_an_unknown_way_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(paths.VARIABLE, "avx1024")
+    with pytest.raises(InputError, match=r"VERIFY_LANES.*avx512, portable, off"):
+        paths.chosen()
+    monkeypatch.setattr(paths, "_has_instructions", lambda: False)
+    monkeypatch.setenv(paths.VARIABLE, "avx512")
+    with pytest.raises(InputError, match="no such instructions"):
+        paths.chosen()
+    monkeypatch.delenv(paths.VARIABLE)
+    assert paths.chosen() is None
