@@ -1,14 +1,17 @@
 """`verify.sweep`: runs over a product of whatever is given as a list, as one table."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from itertools import product
 from typing import Any
 
+from verify import lockstep
 from verify.arithmetic.exact import Exact, positive, rational, text
 from verify.calls.given import GivenSystem, hamiltonian_from, listed, schemes_from
 from verify.calls.progress import Progress, progress_of
 from verify.calls.run import run
 from verify.errors import InputError
+from verify.execution.ensembles import MOST_AT_ONCE
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.sweep import Sweep
 from verify.scenes.values import CLOSED_FORM
@@ -59,19 +62,22 @@ def sweep(
     combinations = list(product(*axes.values()))
     if len(combinations) > _MOST:
         raise InputError("sweep", len(combinations), f"are more than {_MOST} runs")
-    runs: list[RunResult] = []
+
+    def one(at: Sequence[Any]) -> RunResult:
+        chosen = dict(zip(axes, at, strict=True))
+        own = {name: chosen.pop(name) for name in values}
+        return run(exact, parameters=own, steps=steps, time=time, observables=observables,
+                   progress=False, **options, **chosen)  # fmt: skip
+
+    runs: dict[int, RunResult] = {}
     with progress_of(progress, "runs", len(combinations)) as tell:
-        for at in combinations:
-            chosen = dict(zip(axes, at, strict=True))
-            own = {name: chosen.pop(name) for name in values}
-            runs.append(
-                run(exact, parameters=own, steps=steps, time=time, observables=observables,
-                    progress=False, **options, **chosen)
-            )  # fmt: skip
+        calls = (partial(one, at) for at in combinations)
+        for number, future in lockstep.together(calls, MOST_AT_ONCE):
+            runs[number] = future.result()
             if tell:
                 tell(len(runs))
     shown = {name: tuple(map(_text, given)) for name, given in axes.items()}
-    return Sweep(shown, tuple(runs), tuple(observables))
+    return Sweep(shown, tuple(runs[k] for k in sorted(runs)), tuple(observables))
 
 
 def _parameters(given: Mapping[str, Any] | None) -> dict[str, list[Any]]:

@@ -9,7 +9,7 @@ happen.
 
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from itertools import product
 from typing import NamedTuple
 
@@ -46,7 +46,7 @@ def limits(
     None where no box that holds the start is safe.
     """
 
-    safe = partial(_room, kernel, inputs)
+    safe = partial(_room, kernel, tuple(inputs.items()))
 
     def largest(p: Fraction, q: Fraction, value: Fraction) -> Limits:
         """Grows a safe box, first to all sides."""
@@ -74,11 +74,19 @@ def _side(size: Fraction) -> Fraction | None:
     return min((r for r in _SIDES if r > size), default=None)
 
 
+@lru_cache(maxsize=1 << 14)
 def _room(
-    kernel: Kernel, inputs: Mapping[str, Fraction], p: Fraction, q: Fraction, value: Fraction
+    kernel: Kernel,
+    inputs: tuple[tuple[str, Fraction], ...],
+    p: Fraction,
+    q: Fraction,
+    value: Fraction,
 ) -> Fraction | None:
-    """How large Λ may become; None where an operation may leave the format in this box."""
-    given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs.items()}
+    """How large Λ may become; None where an operation may leave the format in this box.
+
+    Boxes have few sides, so that the runs of a grid ask for the same ones.
+    """
+    given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs}
     around = flint.arb(0, 1)
     given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in (("p", p), ("q", q))}
     program, live = kernel.lowering.program, kernel.lowering.live(kernel.roots)

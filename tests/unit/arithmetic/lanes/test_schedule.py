@@ -43,9 +43,7 @@ def test_what_waits_for_a_product_does_not_stand_right_behind_it() -> None:
 
 
 def test_a_return_stays_where_it_is() -> None:
-    statements = ast.parse(
-        "a = p * p\nif a > q: return\nb = q * q\n".replace("return", "pass")
-    ).body
+    statements = ast.parse("a = p * p\nif a > q: pass\nb = q * q\n").body
     guard = statements[1]
     assert isinstance(guard, ast.If)
     guard.body = [ast.Return()]
