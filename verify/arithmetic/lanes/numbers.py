@@ -22,7 +22,7 @@ from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, MultiplyAdd, 
 from verify.arithmetic.wide.limbs import Value
 
 _MOST_WEIGHT = 1 << 9  # of sums whose carries have not moved: limbs stay below 2^62
-_PRODUCT_WEIGHT = 64
+_PRODUCT_WEIGHT = 4  # columns of up to 10 limbs, 4 bits shifted out of them at least
 
 
 def count_of(width: int) -> int:
@@ -153,7 +153,7 @@ class Numbers:
         else:  # of the highest column 52 bits count, the highest of them the sign
             high = vectors.up(b, kept[-1], 64 - DIGIT)
             limbs.append(vectors.down(b, high, 64 - DIGIT + drop))
-        return Number(limbs, x.width, 2)
+        return Number(limbs, x.width, _PRODUCT_WEIGHT)
 
     def _columns(
         self, b: ir.IRBuilder, x: Number, y: Number, low: int, top: int, start: dict[int, int]

@@ -16,11 +16,9 @@ is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this i
 """
 
 import math
-from bisect import bisect_left
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import takewhile
 from typing import Any, Literal
 
 import flint
@@ -36,10 +34,10 @@ from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun
 from verify.runs.estimated import digits_of
 from verify.studies.separation.kernel import MixedKernel, mixed_kernel
+from verify.studies.separation.stepper import State, Stepper
 
 Kind = Literal["enclosed", "estimated"]
 Advance = Callable[[int], None]  # called with the number of steps just done
-State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
 POINTS = 2048  # checkpoints of a run
 _MORE_DIGITS = 15
 _WIDE = ("trajectory", "determinant", "closed")
@@ -143,7 +141,7 @@ class WorkingRun:
         fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
         label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
         found = self._kept(label, arithmetic)
-        stepper = _Stepper(kernel, arithmetic, fixed)
+        stepper = Stepper(kernel, arithmetic, fixed)
         state = found[-1] if found else self._first_state(kernel, arithmetic)
         done = self.marks[len(found) - 1] if found else 0
         while done < self.run.steps:
@@ -263,48 +261,6 @@ def rounded_inputs(run: KernelRun) -> dict[str, float]:
         if not math.isfinite(value):
             raise Stopped("left range", 1, f"{name} is beyond the range of float64")
     return found
-
-
-class _Carried(Mapping[str, Any]):
-    """A kernel's state by its names; a number is made where it is looked at."""
-
-    def __init__(self, at: Mapping[str, int], state: Sequence[Number]) -> None:
-        self._at, self.numbers = at, state
-
-    def __getitem__(self, name: str) -> Any:
-        return self.numbers[self._at[name]]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._at)
-
-    def __len__(self) -> int:
-        return len(self._at)
-
-
-class _Stepper:
-    """A mixed kernel with all that stays the same from step to step."""
-
-    def __init__(
-        self, kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number]
-    ) -> None:
-        self.kernel, self.arithmetic, self.fixed = kernel, arithmetic, fixed
-        self._at = {name: k for k, name in enumerate(kernel.state_names)}
-        # The sums of logarithms may be undefined while the orbit and the plain way go on.
-        self._vital = [n for n in self._at if n[0] == "f" and n not in ("f_sum", "f_rest")]
-
-    def states(self, state: State, every: int, stops: int) -> list[State]:
-        """Those at the next stops; fewer where float64 leaves its range on the way."""
-        begun = state.numbers if isinstance(state, _Carried) else [state[n] for n in self._at]
-        kernel = self.kernel.function
-        found = self.arithmetic.states(kernel, every, stops, self.fixed, begun)
-        return list(takewhile(self._finite, (_Carried(self._at, x) for x in found)))
-
-    def _finite(self, state: State) -> bool:
-        return all(math.isfinite(state[name]) for name in self._vital)
-
-    def last_good(self, state: State, count: int) -> int:
-        """The greatest number of steps below `count` that stays in range, by bisection."""
-        return bisect_left(range(1, count), True, key=lambda n: not self.states(state, n, 1))
 
 
 def _accumulated(
