@@ -14,8 +14,7 @@ microsecond, where threads that wait for each other take some fifty.
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future
-from typing import Any, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import greenlet
 
@@ -44,6 +43,26 @@ class Pending:
         self.result, self.error, self.finished = result, error, True
 
 
+class Ended(Generic[T]):
+    """What a function gave."""
+
+    __slots__ = ("_error", "_value")
+
+    def __init__(self, value: T | None, error: BaseException | None = None) -> None:
+        self._value, self._error = value, error
+
+    @property
+    def interruption(self) -> BaseException | None:
+        """What ended it, where that is everybody's."""
+        return None if isinstance(self._error, Exception) else self._error
+
+    def result(self) -> T:
+        """Its value; what it raised is raised."""
+        if self._error is not None:
+            raise self._error
+        return self._value  # type: ignore[return-value]  # T may be None
+
+
 class Work(Protocol):
     """What can be done for several together."""
 
@@ -70,7 +89,7 @@ def clock() -> float:
     return time.perf_counter() - (here.away if isinstance(here, _Member) else 0.0)
 
 
-def together(functions: Iterator[Callable[[], T]], most: int) -> Iterator[tuple[int, Future[T]]]:
+def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple[int, Ended[T]]]":
     """(its number, what it gave) of each function as it ends; `most` are under way at a time.
 
     The functions are taken from their iterator as there is room. Where this is left before its end,
@@ -84,8 +103,8 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> Iterator[tuple[
             while len(waiting) < most and (following := next(numbered, None)) is not None:
                 member = _Member(*following)
                 member.go_on()
-                if member.pending is None:
-                    yield member.number, member.future
+                if member.ended is not None:
+                    yield member.number, member.ended
                 else:
                     waiting.append(member)
             if not waiting:
@@ -93,9 +112,9 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> Iterator[tuple[
             _advance(waiting)
             for member in [member for member in waiting if member.ready]:
                 member.go_on()
-                if member.pending is None:
+                if member.ended is not None:
                     waiting.remove(member)
-                    yield member.number, member.future
+                    yield member.number, member.ended
     except KeyboardInterrupt as error:
         reason = error
         raise
@@ -121,21 +140,21 @@ class _Member(greenlet.greenlet):
     def __init__(self, number: int, function: Callable[[], Any]) -> None:
         super().__init__(self._whole)
         self.number, self.function = number, function
-        self.future: Future[Any] = Future()
+        self.ended: Ended[Any] | None = None
         self.work: Work | None = None
         self.pending: Pending | None = None
         self.away = 0.0  # seconds for which others ran since it began
 
     @property
     def ready(self) -> bool:
-        return self.pending is None or self.pending.finished
+        """Whether what it waits for is done."""
+        return self.pending is not None and self.pending.finished
 
     def go_on(self) -> None:
         self.parent = greenlet.getcurrent()
         self.switch()
-        error = self.future.done() and self.future.exception()
-        if error and not isinstance(error, Exception):  # an interruption is everybody's
-            raise error
+        if self.ended is not None and self.ended.interruption is not None:
+            raise self.ended.interruption
 
     def end(self, reason: BaseException) -> None:
         """Ends it where it waits."""
@@ -155,6 +174,6 @@ class _Member(greenlet.greenlet):
 
     def _whole(self) -> None:
         try:
-            self.future.set_result(self.function())
+            self.ended = Ended(self.function())
         except BaseException as error:
-            self.future.set_exception(error)
+            self.ended = Ended(None, error)

@@ -72,8 +72,8 @@ def sweep(
     runs: dict[int, RunResult] = {}
     with progress_of(progress, "runs", len(combinations)) as tell:
         calls = (partial(one, at) for at in combinations)
-        for number, future in lockstep.together(calls, MOST_AT_ONCE):
-            runs[number] = future.result()
+        for number, ended in lockstep.together(calls, MOST_AT_ONCE):
+            runs[number] = ended.result()
             if tell:
                 tell(len(runs))
     shown = {name: tuple(map(_text, given)) for name, given in axes.items()}

@@ -41,5 +41,5 @@ def in_lockstep(
     """The result of each task as it is there. What a task raises is raised here."""
     names = list(group)
     calls = (partial(compute, name, task) for name, task in group.items())
-    for number, future in lockstep.together(calls, MOST_AT_ONCE):
-        yield names[number], future.result()
+    for number, ended in lockstep.together(calls, MOST_AT_ONCE):
+        yield names[number], ended.result()
