@@ -15,9 +15,7 @@ from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, LANES, W
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import MoreFunctions
-from verify.arithmetic.wide.translate import FLOAT_FUNCTIONS, LIBM_FUNCTIONS
-
-_DOUBLE = ir.DoubleType()
+from verify.arithmetic.wide.one_orbit import float_function
 
 
 class LaneFunctions:
@@ -63,17 +61,9 @@ class LaneFunctions:
 
     def of_doubles(self, b: ir.IRBuilder, name: str, x: Value) -> Value:
         """A function of float64, lane by lane: the same bits as for one orbit."""
-        plain = name.removeprefix("f_")
-        if plain == "sqrt":
-            return b.call(vectors.intrinsic(self.module, plain), [x])
-        if plain in FLOAT_FUNCTIONS:
-            function = self.module.declare_intrinsic(f"llvm.{plain}", [_DOUBLE])
-        elif plain in LIBM_FUNCTIONS:
-            if plain not in self.module.globals:
-                ir.Function(self.module, ir.FunctionType(_DOUBLE, [_DOUBLE]), plain)
-            function = self.module.globals[plain]
-        else:
-            raise NotImplementedError(name)
+        if name.removeprefix("f_") == "sqrt":
+            return b.call(vectors.intrinsic(self.module, "sqrt"), [x])
+        function = float_function(self.module, name)
         total = ir.Constant(DOUBLES, ir.Undefined)
         for lane in range(LANES):
             value = b.call(function, [b.extract_element(x, constant(lane, 64))])

@@ -199,11 +199,16 @@ class OneOrbit:
         return limbs.joined(b, moved)
 
     def _float_function(self, name: str, x: Value) -> Value:
-        plain = name.removeprefix("f_")
-        if plain in FLOAT_FUNCTIONS:
-            return self.b.call(self.module.declare_intrinsic(f"llvm.{plain}", [DOUBLE]), [x])
-        if plain not in LIBM_FUNCTIONS:
-            raise NotImplementedError(name)
-        if plain not in self.module.globals:
-            ir.Function(self.module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
-        return self.b.call(self.module.globals[plain], [x])
+        return self.b.call(float_function(self.module, name), [x])
+
+
+def float_function(module: ir.Module, name: str) -> ir.Function:
+    """The function of one float64 that a source calls by that name; NotImplementedError."""
+    plain = name.removeprefix("f_")
+    if plain in FLOAT_FUNCTIONS:
+        return module.declare_intrinsic(f"llvm.{plain}", [DOUBLE])
+    if plain not in LIBM_FUNCTIONS:
+        raise NotImplementedError(name)
+    if plain not in module.globals:
+        ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
+    return module.globals[plain]
