@@ -8,6 +8,7 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
 
@@ -15,6 +16,7 @@ from verify.errors import InputError
 
 MOST_BYTES = 64 * 2**20
 MOST_TEXT = 4 * 2**20  # of what people write by hand
+_MOST_NAMES = 1000  # of a folder, among which one is looked for that may be meant
 
 
 @contextmanager
@@ -52,7 +54,8 @@ def _instead(path: Path, error: OSError) -> str:
     here: dict[str, Path] = {}
     with suppress(OSError):
         # Of two with one stem the last is taken: that of the same kind.
-        there = sorted(path.parent.iterdir(), key=lambda each: (each.suffix == path.suffix, each))
+        some = islice(path.parent.iterdir(), _MOST_NAMES)
+        there = sorted(some, key=lambda each: (each.suffix == path.suffix, each))
         here = {each.stem.lower(): each for each in there}
     near = get_close_matches(path.stem.strip().lower(), here, n=1, cutoff=0.7)
     return f"; is {here[near[0]]} meant?" if near else "; give a file that is there"

@@ -7,6 +7,7 @@ code is taken for one of this.
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -21,7 +22,15 @@ from verify.execution.executors import (
     open_place,
     results_of,
 )
-from verify.execution.keeping import KEPT, NOTHING, Keeper, fingerprint, kept_text, sealed
+from verify.execution.keeping import (
+    KEPT,
+    NOTHING,
+    Keeper,
+    fingerprint,
+    kept_text,
+    sealed,
+    tasks_with_checkpoints,
+)
 from verify.execution.plan import Plan
 from verify.execution.task import Task
 from verify.files import write_atomically
@@ -41,6 +50,12 @@ class Store:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
         self.taken = 0  # results that were found here
+        self._keepers: dict[str, Keeper] = {}
+
+    @cached_property
+    def _interrupted(self) -> frozenset[str]:
+        """The tasks that another process has left checkpoints of; looked for once, not for each."""
+        return tasks_with_checkpoints(self.folder) if self.folder else frozenset()
 
     def path(self, name: str) -> Path | None:
         return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
@@ -63,11 +78,14 @@ class Store:
         path = self.path(name)
         if path is not None:
             write_atomically(path, sealed(KEPT, path.stem, result.model_dump_json(indent=1)))
-            self.keeper(name).clear()
+            keeper = self.keeper(name)
+            if keeper.saved or name in self._interrupted:
+                keeper.clear()
+        self._keepers.pop(name, None)
 
     def keeper(self, name: str) -> Keeper:
         """What keeps the checkpoints of that task's runs."""
-        return Keeper(self.folder, name)
+        return self._keepers.setdefault(name, Keeper(self.folder, name))
 
 
 def execute(

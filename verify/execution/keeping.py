@@ -73,10 +73,17 @@ def unsealed(form: str, name: str, text: str) -> str | None:
 
 def kept_text(form: str, path: Path) -> str | None:
     """What was sealed under the file's own name; None for what is damaged or that of another."""
+    if not path.exists():  # most often, and to say what is there instead would take long
+        return None
     try:
         return unsealed(form, path.stem, read_text(path, most=None))
     except InputError:
         return None
+
+
+def tasks_with_checkpoints(folder: Path) -> frozenset[str]:
+    """The names of the tasks of which checkpoints are kept there."""
+    return frozenset(path.name.rsplit("-", 2)[0] for path in folder.glob("*.checkpoint"))
 
 
 class Keeper:
@@ -89,6 +96,7 @@ class Keeper:
     def __init__(self, folder: Path | None, name: str) -> None:
         self._folder, self._name = folder, name
         self._written: dict[str, float] = {}
+        self.saved = False  # whether it has kept a checkpoint
 
     def _path(self, label: str) -> Path | None:
         if self._folder is None:
@@ -117,6 +125,7 @@ class Keeper:
             content = json.dumps({"label": label, "data": data})
             write_atomically(path, sealed(CHECKPOINT, path.stem, content))
             self._written[label] = time.monotonic()
+            self.saved = True
 
     def clear(self) -> None:
         """Forgets all checkpoints of the task, which is done."""

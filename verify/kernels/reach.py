@@ -7,6 +7,7 @@ or a function's value its limit. So an overflow is not looked for at every opera
 happen.
 """
 
+from bisect import bisect_right
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -27,6 +28,7 @@ _SIDES = tuple(
     for n in range(15, -8, -1)
     for share in (1, Fraction(3, 4))
 )
+_ASCENDING = _SIDES[::-1]
 
 
 class Limits(NamedTuple):
@@ -45,13 +47,33 @@ def limits(
 
     None where no box that holds the start is safe.
     """
+    own = [abs(start[n]) for n in ("p", "q")]
+    roomy = [[room * max(own)] * 2 for room in (16, 2)]
+    boxes = tuple((_side(p), _side(q)) for p, q in (*roomy, own))
+    return _largest(kernel, tuple(inputs.items()), boxes)
 
-    safe = partial(_room, kernel, tuple(inputs.items()))
 
-    def largest(p: Fraction, q: Fraction, value: Fraction) -> Limits:
-        """Grows a safe box, first to all sides."""
-        boxes = ((max(p, r), max(q, r)) for r in _SIDES)
-        p, q = next((p, q) for p, q in boxes if safe(p, q, value) is not None)
+def _side(size: Fraction) -> Fraction | None:
+    """The least side beyond a size."""
+    at = bisect_right(_ASCENDING, size)
+    return _ASCENDING[at] if at < len(_ASCENDING) else None
+
+
+# Of a grid's starts most lie in the same few boxes.
+@lru_cache(maxsize=1 << 12)
+def _largest(
+    kernel: Kernel,
+    inputs: tuple[tuple[str, Fraction], ...],
+    boxes: tuple[tuple[Fraction | None, Fraction | None], ...],
+) -> Limits | None:
+    """The limits of the first of the boxes that is safe, with the greatest limit of values, grown
+    as far as can be."""
+    safe = partial(_room, kernel, inputs)
+
+    def grown(p: Fraction, q: Fraction, value: Fraction) -> Limits:
+        """First to all sides."""
+        wider = ((max(p, r), max(q, r)) for r in _SIDES)
+        p, q = next((p, q) for p, q in wider if safe(p, q, value) is not None)
         # q first: it is an angle more often than p, and grows where that turns.
         q = next(r for r in _SIDES if r == q or safe(p, r, value) is not None)
         p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
@@ -60,18 +82,10 @@ def limits(
         return Limits(p, q, part, value)
 
     with working_precision(PRECISION):
-        own = [abs(start[n]) for n in ("p", "q")]
-        roomy = [[room * max(own)] * 2 for room in (16, 2)]
-        for sizes, value in product([*roomy, own], _VALUE_LIMITS):
-            p, q = map(_side, sizes)
+        for (p, q), value in product(boxes, _VALUE_LIMITS):
             if p and q and safe(p, q, value) is not None:
-                return largest(p, q, value)
+                return grown(p, q, value)
     return None
-
-
-def _side(size: Fraction) -> Fraction | None:
-    """The least side beyond a size."""
-    return min((r for r in _SIDES if r > size), default=None)
 
 
 @lru_cache(maxsize=1 << 14)

@@ -35,6 +35,7 @@ class RunInputs:
     """H, a scheme, where it starts, so many steps, and what is asked of them.
 
     The state is noted `points` times on the way where a series is kept, else `sections` times.
+    `shares_kernel`: so many other runs are done with the same kernel that it repays being compiled.
     """
 
     def __init__(
@@ -47,12 +48,13 @@ class RunInputs:
         points: int,
         keeper: Keeper = NOTHING,
         sections: int = 16,
+        shares_kernel: bool = False,
     ) -> None:
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
         self.sections = points or sections
-        self.keeper = keeper
+        self.keeper, self.shares_kernel = keeper, shares_kernel
 
     @property
     def implicit(self) -> bool:

@@ -25,7 +25,7 @@ from verify.runs.estimated import (
 )
 
 _ATTEMPTS = 5
-_WORTH_COMPILING = (
+WORTH_COMPILING = (
     60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
 )
 _SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
@@ -49,7 +49,8 @@ def choose(kernel_run: KernelRun, digits: int) -> str:
     """
     *faster, last = number_systems.automatic()
     for system in faster:
-        worth = worth_compiling(system, kernel_run.steps) and digits <= system.most_digits
+        repaid = kernel_run.shares_kernel or worth_compiling(system, kernel_run.steps)
+        worth = repaid and digits <= system.most_digits
         if worth and _fits(kernel_run, system.make(digits)):
             return system.name
     return last.name
@@ -57,7 +58,7 @@ def choose(kernel_run: KernelRun, digits: int) -> str:
 
 def worth_compiling(system: NumberSystem, steps: int) -> bool:
     """Whether so many steps repay what the number system takes to compile a kernel."""
-    return steps >= _WORTH_COMPILING or not system.compiles
+    return steps >= WORTH_COMPILING or not system.compiles
 
 
 def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:

@@ -46,6 +46,7 @@ def run(
     observables: Sequence[str] = CLOSED_FORM,
     points: int = 0,
     progress: Progress | None = None,
+    shares_kernel: bool = False,
     keeper: Keeper = NOTHING,
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
@@ -53,8 +54,9 @@ def run(
     `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest with rigorous
     bounds. `digits`: significant digits wanted (float64 gives what it knows). `points`: at most so
     many points of a thinned series are kept. `progress` is called with the number of steps done.
-    `keeper` keeps checkpoints, from which an interrupted run goes on. Raises InputError for h ≤ 0,
-    N < 1, a parameter without a value, unknown names.
+    `keeper` keeps checkpoints, from which an interrupted run goes on. `shares_kernel`: see
+    `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a parameter without a value,
+    unknown names.
     """
     scheme = canonical(scheme)
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
@@ -62,7 +64,9 @@ def run(
     whole("points", points, 0)
     known = proved(step_map_of(hamiltonian, scheme), start["h"], steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
-    kernel_run = KernelRun(hamiltonian, scheme, start, steps, needed, points, keeper)
+    kernel_run = KernelRun(
+        hamiltonian, scheme, start, steps, needed, points, keeper, shares_kernel=shares_kernel
+    )
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits)
     done = _run(kernel_run, arithmetic, digits, known, progress)

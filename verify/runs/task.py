@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from verify.arithmetic import in_lanes, step_cost
+from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import Keeper
 from verify.execution.task import InitialValueTask
@@ -26,17 +26,19 @@ class RunTask(InitialValueTask):
     digits: int
     observables: tuple[str, ...]
     points: int
+    shares_kernel: bool = False
 
     @property
     def cost(self) -> int:
         """Steps times what a step in this arithmetic costs, beside what any run does.
 
-        Short ones in float64 are held against a run in mpfr, whose steps are what they cost.
+        Short ones in float64 are held against another run, whose steps are what they cost.
         """
         if self.arithmetic != float64.NAME:
             return _RUN_COST + self.steps * step_cost(self.arithmetic)
         if self.steps <= DIRECT_STEPS:
-            return _RUN_COST + self.steps * step_cost(mpfr.NAME)
+            other = AUTO if self.shares_kernel else mpfr.NAME
+            return _RUN_COST + self.steps * step_cost(other)
         return _LONG_RUN_COST + self.steps * step_cost(float64.NAME)
 
     @property
@@ -49,7 +51,7 @@ class RunTask(InitialValueTask):
 
     def proved(self) -> RunResult | None:
         """What a proof gives of the run without a step; None where it is not all that is asked."""
-        asked = self.asked("arithmetic", "points")
+        asked = self.asked("arithmetic", "points", "shares_kernel")
         return proved_run(self.exact_hamiltonian(), **asked)
 
     def compute(self, keeper: Keeper) -> RunResult:

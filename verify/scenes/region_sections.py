@@ -49,18 +49,13 @@ class PlacedShape(Frozen):
 
     shape: str | None = None
     """A shape by its name; or `polygon`, or `path`."""
-    """A shape by its name; or `polygon`, or `path`."""
     polygon: Annotated[tuple[Corner, ...], Field(max_length=10_000)] | None = None
-    """A polygon by its corners (q, p)."""
     """A polygon by its corners (q, p)."""
     path: Annotated[str, Field(max_length=100_000)] | None = None
     """An outline as SVG path data, whose y points down: p = −y."""
-    """An outline as SVG path data, whose y points down: p = −y."""
     centre: InitialValue = InitialValue(q=Fraction(0), p=Fraction(0))
     """Where the shape's (0, 0) is put."""
-    """Where the shape's (0, 0) is put."""
     scale: Number = Fraction(1)
-    """By which it is made larger first."""
     """By which it is made larger first."""
 
     @model_validator(mode="after")
@@ -123,27 +118,19 @@ class Flow(PlacedShape):
 
     step_size: StepSize
     """The step size h."""
-    """The step size h."""
     steps: Annotated[tuple[Steps, ...], Field(max_length=100)] = ()
-    """After how many steps the region is looked at, each once; or `times`."""
     """After how many steps the region is looked at, each once; or `times`."""
     times: Annotated[tuple[Time, ...], Field(max_length=100)] = ()
     """At which times it is looked at, N = T/h rounded down; or `steps`."""
-    """At which times it is looked at, N = T/h rounded down; or `steps`."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
-    """The maps; the scene's schemes, where it is left out."""
     """The maps; the scene's schemes, where it is left out."""
     exact: Annotated[bool, Field(strict=True)] = True
     """Whether the exact flow stands beside them, with the distance from it."""
-    """Whether the exact flow stands beside them, with the distance from it."""
     mean_lambda: Annotated[bool, Field(strict=True)] = True
-    """Whether the mean of Λ over the region is computed, where a map changes area."""
     """Whether the mean of Λ over the region is computed, where a map changes area."""
     digits: Digits = 17
     """With more than 17, all points are carried with 33 or more."""
-    """With more than 17, all points are carried with 33 or more."""
     source: Annotated[str, Field(max_length=80)] = ""
-    """What of a paper it repeats, for its caption."""
     """What of a paper it repeats, for its caption."""
 
     @model_validator(mode="after")

@@ -1,6 +1,7 @@
 """Sections of a scene that ask for runs of its schemes: a grid of them, separations, series."""
 
 from fractions import Fraction
+from functools import cached_property
 from typing import Annotated, Self
 
 from pydantic import Field, model_validator
@@ -27,33 +28,23 @@ class Grid(Frozen):
 
     time: Time | None = None
     """The length T of each run, N = T/h rounded down; or `steps`."""
-    """The length T of each run, N = T/h rounded down; or `steps`."""
     steps: Steps | None = None
-    """The number N of steps of each run; or `time`."""
     """The number N of steps of each run; or `time`."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     """The step sizes h, each once."""
-    """The step sizes h, each once."""
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    """Where the runs start, such as `{ q = 1.5, p = 0 }`, each once."""
     """Where the runs start, such as `{ q = 1.5, p = 0 }`, each once."""
     arithmetic: ArithmeticName = "float64"
     """The number system; `auto` where `digits` stand and this does not."""
-    """The number system; `auto` where `digits` stand and this does not."""
     digits: Digits = 17
-    """Significant digits that are asked for."""
     """Significant digits that are asked for."""
     observables: tuple[str, ...] = CLOSED_FORM
     """What is computed: `delta_j_max`, `mse`, `lambda`, `lambda_plain`, `lambda_max`."""
-    """What is computed: `delta_j_max`, `mse`, `lambda`, `lambda_plain`, `lambda_max`."""
     separate: bool = False
-    """Whether truncation is separated from rounding in Λ of each of these runs."""
     """Whether truncation is separated from rounding in Λ of each of these runs."""
     growth: bool = False
     """Whether Λ of each of these runs is held against its growth law."""
-    """Whether Λ of each of these runs is held against its growth law."""
     growth_explains: Annotated[str, Field(max_length=200)] = ""
-    """What of a paper the growth law explains, for the page."""
     """What of a paper the growth law explains, for the page."""
 
     _auto = model_validator(mode="before")(auto_for_digits)
@@ -80,21 +71,27 @@ class Grid(Frozen):
         """N: as given, or the whole steps of size h that fit into `time`."""
         return steps_of(self.time, self.steps, h)
 
+    @property
+    def runs(self) -> int:
+        """Those of one scheme."""
+        return len(self.step_sizes) * len(self.initial_values)
+
+    @cached_property
+    def steps_in_all(self) -> int:
+        """Those of all runs of one scheme."""
+        return sum(map(self.steps_for, self.step_sizes)) * len(self.initial_values)
+
 
 class SeparationOver(Frozen):
     """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
     """The step sizes h over which the two are compared."""
-    """The step sizes h over which the two are compared."""
     initial_value: InitialValue
-    """Where the runs start."""
     """Where the runs start."""
     time: Time | None = None
     """The length of each run; or `steps`."""
-    """The length of each run; or `steps`."""
     steps: Steps | None = None
-    """The number of steps of each run; or `time`."""
     """The number of steps of each run; or `time`."""
 
     @model_validator(mode="after")
@@ -120,27 +117,19 @@ class Series(Frozen):
 
     step_size: StepSize
     """The step size h."""
-    """The step size h."""
     initial_value: InitialValue
-    """Where the run starts."""
     """Where the run starts."""
     time: Time | None = None
     """The length of the run; or `steps`."""
-    """The length of the run; or `steps`."""
     steps: Steps | None = None
-    """The number of its steps; or `time`."""
     """The number of its steps; or `time`."""
     points: Annotated[int, Field(ge=2, le=5000, strict=True)] = 600
     """At most so many points of the run are kept."""
-    """At most so many points of the run are kept."""
     arithmetic: ArithmeticName = "float64"
-    """The number system; `auto` where `digits` stand and this does not."""
     """The number system; `auto` where `digits` stand and this does not."""
     digits: Digits = 17
     """Significant digits that are asked for."""
-    """Significant digits that are asked for."""
     source: Annotated[str, Field(max_length=80)] = ""
-    """What of a paper it repeats, for its caption."""
     """What of a paper it repeats, for its caption."""
 
     _auto = model_validator(mode="before")(auto_for_digits)

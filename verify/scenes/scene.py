@@ -84,54 +84,37 @@ class Scene(Frozen):
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", max_length=80)] = ""
     """What results and files are called; the file's own name where it is left out."""
-    """What results and files are called; the file's own name where it is left out."""
     title: str = ""
-    """The headline of its part of a page."""
     """The headline of its part of a page."""
     system: SystemName | None = None
     """A named system; or `hamiltonian`."""
-    """A named system; or `hamiltonian`."""
     hamiltonian: str | None = None
-    """H as a formula in p, q and parameters; or `system`."""
     """H as a formula in p, q and parameters; or `system`."""
     parameters: dict[str, Number] = Field(default_factory=dict)
     """The values of H's parameters; a section that runs needs all of them."""
-    """The values of H's parameters; a section that runs needs all of them."""
     schemes: Annotated[tuple[SchemeName, ...], Field(min_length=1, max_length=100)]
-    """Names of schemes, or formulas `p_next = …; q_next = …` of your own."""
     """Names of schemes, or formulas `p_next = …; q_next = …` of your own."""
     every_hamiltonian: bool = False
     """Whether to prove what holds of the schemes for every H, too."""
-    """Whether to prove what holds of the schemes for every H, too."""
     criteria: tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...] = ()
-    """Which of the paper's criteria of area preservation are judged."""
     """Which of the paper's criteria of area preservation are judged."""
     grid: Grid | None = None
     """Runs of every scheme for every step size and initial value."""
-    """Runs of every scheme for every step size and initial value."""
     separation: tuple[SeparationOver, ...] = ()
-    """Truncation and rounding in Λ against h, and where the two cross."""
     """Truncation and rounding in Λ against h, and where the two cross."""
     series: tuple[Series, ...] = ()
     """ΔJ(t) and Λ(t) of one run, for a plot."""
-    """ΔJ(t) and Λ(t) of one run, for a plot."""
     work_precision: WorkPrecision | None = None
-    """Error against run time."""
     """Error against run time."""
     flow: tuple[Flow, ...] = ()
     """Regions that maps carry, and their areas."""
-    """Regions that maps carry, and their areas."""
     stability: tuple[Stability, ...] = ()
-    """Runs, judged: stable or not, and whose fault it is."""
     """Runs, judged: stable or not, and whose fault it is."""
     largest_step: tuple[LargestStepOver, ...] = ()
     """The largest step size with bounded motion."""
-    """The largest step size with bounded motion."""
     stability_map: tuple[StabilityMap, ...] = ()
     """Verdicts over step size and one parameter, as a picture."""
-    """Verdicts over step size and one parameter, as a picture."""
     reference: tuple[Reference, ...] = ()
-    """Numbers to test integrators against: `verify reference make`."""
     """Numbers to test integrators against: `verify reference make`."""
 
     @model_validator(mode="after")

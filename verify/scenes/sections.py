@@ -49,33 +49,23 @@ class WorkPrecision(Frozen):
 
     time: Time
     """The length T of each run, N = T/h rounded down; the error is that at t = N·h."""
-    """The length T of each run, N = T/h rounded down; the error is that at t = N·h."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=100)]
-    """The step sizes h, each once."""
     """The step sizes h, each once."""
     initial_value: InitialValue
     """Where the runs start."""
-    """Where the runs start."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
-    """The schemes that are compared; the scene's, where it is left out."""
     """The schemes that are compared; the scene's, where it is left out."""
     repeats: Annotated[int, Field(ge=1, le=1000, strict=True)] = 5
     """Timings of each point, of which the median is told."""
-    """Timings of each point, of which the median is told."""
     number_systems: tuple[ArithmeticName, ...] = ()
-    """Certified digits against run time in these; then `digits` too."""
     """Certified digits against run time in these; then `digits` too."""
     digits: Annotated[tuple[Digits, ...], Field(max_length=100)] = ()
     """Digits that these number systems are asked for."""
-    """Digits that these number systems are asked for."""
     number_systems_scheme: SchemeName | None = None
-    """Their scheme; the first of the schemes, where it is left out."""
     """Their scheme; the first of the schemes, where it is left out."""
     number_systems_step_size: StepSize | None = None
     """Their step size; the middle one, where it is left out."""
-    """Their step size; the middle one, where it is left out."""
     peers: bool | None = None
-    """Whether others' solvers stand beside; where it is left out, those installed do."""
     """Whether others' solvers stand beside; where it is left out, those installed do."""
 
     @model_validator(mode="after")
@@ -109,21 +99,15 @@ class Reference(Frozen):
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     """The step sizes h, each once."""
-    """The step sizes h, each once."""
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    """Where the runs start, each once."""
     """Where the runs start, each once."""
     steps: Annotated[tuple[Chosen, ...], Field(min_length=1, max_length=1000)]
     """After how many steps the state, ΔJ, MSE and Λ are given; ascending."""
-    """After how many steps the state, ΔJ, MSE and Λ are given; ascending."""
     digits: Annotated[int, Field(ge=1, le=_MOST_DIGITS, strict=True)] = 30
-    """Significant digits of every number, correctly rounded."""
     """Significant digits of every number, correctly rounded."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
     """The schemes; the scene's, where it is left out."""
-    """The schemes; the scene's, where it is left out."""
     flow: Annotated[bool, Field(strict=True)] = True
-    """Whether the exact flow at the times N·h is given, too."""
     """Whether the exact flow at the times N·h is given, too."""
 
     @model_validator(mode="after")

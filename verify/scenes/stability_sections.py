@@ -85,7 +85,6 @@ class OfSchemes(Frozen):
 
     schemes: Schemes = ()
     """The schemes; the scene's, where it is left out."""
-    """The schemes; the scene's, where it is left out."""
 
     @model_validator(mode="after")
     def _known(self) -> Self:
@@ -100,18 +99,13 @@ class Stability(OfSchemes):
 
     name: Annotated[str, Field(max_length=80)] = ""
     """Part of the names of its cases."""
-    """Part of the names of its cases."""
     time: Time | None = None
-    """The length of each run; or `steps`."""
     """The length of each run; or `steps`."""
     steps: Steps | None = None
     """The number of steps of each run; or `time`."""
-    """The number of steps of each run; or `time`."""
     step_sizes: StepSizes
     """The step sizes; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
-    """The step sizes; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
     initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    """Where the runs start."""
     """Where the runs start."""
 
     @model_validator(mode="after")
@@ -132,9 +126,7 @@ class LargestStepOver(OfSchemes):
 
     time: Time
     """Until when the motion is to stay bounded."""
-    """Until when the motion is to stay bounded."""
     initial_value: InitialValue
-    """Where the runs start."""
     """Where the runs start."""
 
 
@@ -143,18 +135,13 @@ class StabilityMap(OfSchemes):
 
     parameter: str
     """The parameter of H that is varied."""
-    """The parameter of H that is varied."""
     values: Values
-    """Its values; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
     """Its values; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
     step_sizes: StepSizes
     """The step sizes, likewise."""
-    """The step sizes, likewise."""
     steps: Annotated[int, Field(ge=1, le=_MOST_MAP_STEPS, strict=True)]
     """The number of steps of each run."""
-    """The number of steps of each run."""
     initial_value: InitialValue
-    """Where the runs start."""
     """Where the runs start."""
 
     @model_validator(mode="after")

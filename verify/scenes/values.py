@@ -105,7 +105,5 @@ class InitialValue(Frozen):
 
     q: Number
     """The displacement."""
-    """The displacement."""
     p: Number
-    """The momentum."""
     """The momentum."""

@@ -347,3 +347,34 @@ def test_an_interruption_between_two_results_ends_the_workers_at_once(tmp_path: 
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
+
+
+def test_the_folder_of_what_is_kept_is_looked_through_once_and_not_for_each_task(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A scene of 10⁴ runs would look at 10⁸ names."""
+    looks: list[Path] = []
+    for name in ("glob", "iterdir"):
+        original: Callable[..., Any] = getattr(Path, name)
+
+        def counted(self: Path, *more: Any, original: Callable[..., Any] = original) -> Any:
+            looks.append(self)
+            return original(self, *more)
+
+        monkeypatch.setattr(Path, name, counted)
+    execute(plan, kept_in(tmp_path), where=THIS_PROCESS)
+    assert [path for path in looks if path == tmp_path / "kept"] == [tmp_path / "kept"]
+
+
+def test_checkpoints_of_a_task_that_another_process_left_go_when_it_is_done(
+    plan: Plan, tmp_path: Path
+) -> None:
+    store, name = kept_in(tmp_path), next(iter(plan.tasks))
+    (tmp_path / "kept").mkdir()
+    left = tmp_path / "kept" / f"{name}-{'0' * 12}-{'1' * 12}.checkpoint"
+    other = tmp_path / "kept" / f"another-{'0' * 12}-{'1' * 12}.checkpoint"
+    for path in (left, other):
+        path.write_text("{}")
+    execute(plan, store, where=THIS_PROCESS)
+    assert not left.exists()
+    assert other.exists()

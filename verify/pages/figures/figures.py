@@ -29,6 +29,7 @@ from verify.scenes.results.run import RunResult
 
 _PANEL = 230  # points high, with the legend
 _LABEL_WIDTH, _LABEL_HEIGHT = 0.1, 0.08  # of the axes: the room for a guide's label
+MOST_LINES = 120  # drawn in one panel, beyond which none can be told from its neighbours
 _GUIDE_GAP = 0.35  # decades between a slope guide and the line that it is nearest to
 
 
@@ -61,6 +62,19 @@ def lines_of(runs: Sequence[RunResult], place: Callable[[RunResult], float]) -> 
             groups.setdefault(start(run), []).append((run.step_size, at))
     found = {start(run): groups.get(start(run), []) for run in runs}
     return [Line(label, tuple(points)) for label, points in found.items() if len(points) > 1]
+
+
+def thinned(found: Sequence[Line], most: int = MOST_LINES) -> list[Line]:
+    """So many of the lines at most, in their order: by their height, evenly, both ends included.
+
+    >>> [x.label for x in thinned([Line(str(k), (("1", k % 5),)) for k in range(5)], most=3)]
+    ['0', '2', '4']
+    """
+    if len(found) <= most:
+        return list(found)
+    by_height = sorted(range(len(found)), key=lambda k: max(y for _, y in found[k].points))
+    places = {by_height[k * (len(found) - 1) // (most - 1)] for k in range(most)}
+    return [line for k, line in enumerate(found) if k in places]
 
 
 def _lg(found: Value | None) -> float:

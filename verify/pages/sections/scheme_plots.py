@@ -4,6 +4,7 @@ The drawing, and with it matplotlib, is imported only where something is drawn.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -39,7 +40,9 @@ def against_step_size(
     if shown:
         bound = [_bound(runs, of_lam)] if lam.lines else []
         yield plotted(
-            lambda: figures.draw_against_step_size(shown),
+            lambda: figures.draw_against_step_size(
+                [replace(each, lines=figures.thinned(each.lines)) for each in shown]
+            ),
             name=f"step-sizes-of-{name}",
             lead=f"{' and '.join(each.title for each in shown)} {span} against the step size h",
             caption=" ".join([*map(_told, shown), *bound, computed(runs)]),
@@ -47,9 +50,14 @@ def against_step_size(
 
 
 def _told(shown: "Quantity") -> str:
-    """What its lines do, and which guides stand beside them."""
-    trend = _trend(shown.lines)
-    return f"{shown.title}: {trend[0].lower()}{trend[1:]} {_guides(shown.guides)}".rstrip()
+    """What its lines do, which of them are drawn, and which guides stand beside them."""
+    from verify.pages.figures.figures import thinned
+
+    trend, drawn = _trend(shown.lines), len(thinned(shown.lines))
+    told = [f"{shown.title}: {trend[0].lower()}{trend[1:]}"]
+    if drawn < len(shown.lines):
+        told.append(f"{drawn} of them are drawn, from the highest to the lowest.")
+    return " ".join([*told, *filter(None, [_guides(shown.guides)])])
 
 
 def _trend(plotted: Sequence["Line"]) -> str:

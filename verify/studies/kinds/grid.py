@@ -5,6 +5,7 @@ from typing import Any
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Study, called, known_results, toml_section
+from verify.runs.digits_on_demand import WORTH_COMPILING
 from verify.runs.task import RunTask
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
@@ -19,6 +20,7 @@ def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
         **scene.hamiltonian_fields(), scheme=scheme,
         step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, arithmetic=grid.arithmetic,
         digits=grid.digits, observables=grid.observables, points=0,
+        shares_kernel=grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from verify.arithmetic.exact import plain, short
 from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.sections.by_key import by_key
-from verify.pages.sections.rows import Row
+from verify.pages.sections.rows import Row, shown, told
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text.prose import prose
 from verify.pages.text.typography import listed, number, step, whole
@@ -40,12 +40,15 @@ MEANINGS: dict[Kind, str] = {
 class StabilityView:
     """`kinds`: the verdicts that occur; `bound`: over which time steps are bounded.
 
-    `runs`: each with its name and its step size. `plots`: each with how many kinds of run it shows.
+    `runs`: those that are shown, each with its name and its step size, `told` which they are of how
+    many, `count`. `plots`: each with how many kinds of run it shows.
     """
 
     finding: tuple[str, ...]
     kinds: tuple[Kind, ...]
     runs: tuple[tuple[str, str, StabilityResult], ...]
+    count: int
+    told: str
     largest: tuple[Row, ...]
     bound: str
     plots: tuple[tuple[int, Plot], ...]
@@ -56,14 +59,21 @@ def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
     if not (runs or steps or maps):
         return None
     seen = {run.kind for run in runs} | {kind for over in maps for kind in over.counted()}
+    (held,) = shown([runs], _unsound)
     return StabilityView(
         finding=tuple(_finding(runs, steps)),
         kinds=tuple(kind for kind in KINDS if kind in seen),
-        runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in runs),
+        runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in held),
+        count=len(runs),
+        told=told(len(runs), len(held), sum(map(_unsound, runs))),
         largest=tuple(map(_largest, steps)),
         bound=_bound(steps),
         plots=tuple(_plots(maps, anchor)),
     )
+
+
+def _unsound(run: StabilityResult) -> bool:
+    return run.kind != "stable"
 
 
 def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few, plotted
 from verify.pages.figures.logarithm import lg
-from verify.pages.sections.rows import Group, Row, shown
+from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown, told
 from verify.pages.sections.section import Section
 from verify.pages.text import mathml
 from verify.pages.text.prose import prose
@@ -28,6 +28,7 @@ class GrowthView:
     plots: tuple[Plot, ...]
     groups: tuple[Group, ...]
     count: int
+    told: str  # which of them are shown, where not all are
     computed: str
 
 
@@ -40,7 +41,8 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
         finding=tuple(_finding(laws, scene.growth_explains)),
         plots=tuple(_plots(laws, anchor)),
         groups=tuple(_groups(laws)),
-        count=sum(len(each.predictions) for each in laws),
+        count=(count := sum(len(each.predictions) for each in laws)),
+        told=told(count, min(count, MOST_ROWS)),
         computed=_computed(laws),
     )
 
@@ -148,15 +150,19 @@ def _plots(laws: Sequence[GrowthLawResult], name: str) -> Iterator[Plot]:
     drawable = orbits(laws)
     if not drawable:
         return
+    from verify.pages.figures.figures import MOST_LINES
     from verify.pages.figures.growth_figure import draw_predicted_against_measured
+
+    drawn = drawable[:: -(-len(drawable) // MOST_LINES)]
+    left = f" {len(drawn)} of {whole(len(drawable))} orbits are drawn." * (drawn != drawable)
 
     lead = "Λ as the growth law predicts it and as measured, against the step size h"
     yield plotted(
-        lambda: draw_predicted_against_measured(drawable),
+        lambda: draw_predicted_against_measured(drawn),
         name=f"growth-of-{name}",
         lead=lead,
         label=lead,
-        caption=_caption(drawable[0].law),
+        caption=_caption(drawable[0].law) + left,
     )
 
 
@@ -195,7 +201,8 @@ def _known(each: GrowthLawResult) -> tuple[PredictionResult, ...]:
 
 def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
     for each, rows in zip(laws, shown(each.predictions for each in laws), strict=True):
-        yield Group(start(each.law), [_row(p) for p in rows], _about(each.law))
+        if rows or not each.predictions:
+            yield Group(start(each.law), [_row(p) for p in rows], _about(each.law))
 
 
 def _about(law: AverageResult) -> str:

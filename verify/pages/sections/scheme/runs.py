@@ -7,7 +7,7 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import computed
 from verify.pages.sections.by_key import by_key
-from verify.pages.sections.rows import MOST_ROWS, Group, Row
+from verify.pages.sections.rows import Group, Row, shown, told
 from verify.pages.sections.section import Section
 from verify.pages.text import words
 from verify.pages.text.typography import number, start, value, whole
@@ -30,7 +30,7 @@ class RunTable:
     columns: tuple[str, ...]
     groups: tuple[Group, ...]
     count: int
-    shown: int
+    told: str  # which of them are shown, where not all are
     computed: str
     certainty: str  # which of the bounds are rigorous
     fallbacks: tuple[str, ...]  # where another arithmetic was taken than the one asked for
@@ -42,17 +42,22 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
     names = [n for n in _COLUMNS if any(n in run.values for run in runs)]
     if not names and all(run.status == "finished" for run in runs):
         return None
-    shown = runs[:MOST_ROWS]
+    failed = [run for run in runs if _failed(run)]
+    (held,) = shown([runs], _failed)
     return RunTable(
         columns=tuple(_COLUMNS[n] for n in names) or ("outcome",),
-        groups=tuple(_groups(shown, names)),
+        groups=tuple(_groups(held, names)),
         count=len(runs),
-        shown=len(shown),
+        told=told(len(runs), len(held), len(failed)),
         computed=computed(runs),
         certainty=_certainty(runs),
         fallbacks=tuple(_fallbacks(runs)),
         proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),
     )
+
+
+def _failed(run: RunResult) -> bool:
+    return run.status != "finished"
 
 
 def _certainty(runs: Sequence[RunResult]) -> str:

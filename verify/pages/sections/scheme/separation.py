@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few_digits, plotted
 from verify.pages.figures.separation_caption import caption, end_of
-from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown
+from verify.pages.sections.rows import Group, Row, shown, told
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import (
     computed,
@@ -40,7 +40,7 @@ class SeparationView:
     parts: tuple[Group, ...]
     growths: tuple[Group, ...]
     count: int
-    shown: int
+    told: str  # which of them are shown, where not all are
     growth: str
     computed: str
 
@@ -61,7 +61,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
         parts=tuple(_groups([*own, *wide], _parts_row)),
         growths=tuple(_groups([*own, *wide], _growth_row)),
         count=len(rows),
-        shown=min(len(rows), MOST_ROWS),
+        told=told(len(rows), sum(map(len, shown([rows], _failed))), sum(map(_failed, rows))),
         growth=growth_finding(of_grid),
         computed=computed(rows),
     )
@@ -87,6 +87,10 @@ def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
         )
 
 
+def _failed(point: SeparationResult) -> bool:
+    return point.plain is None
+
+
 # -- tables ---------------------------------------------------------------------------------------
 
 
@@ -94,7 +98,7 @@ def _groups(
     grids: Sequence[SeparationGrid], row: Callable[[SeparationResult], Row | None]
 ) -> Iterator[Group]:
     """A group for each grid with a row; as many rows as are shown, of all that there are."""
-    for grid, held in zip(grids, shown(grid.points for grid in grids), strict=True):
+    for grid, held in zip(grids, shown((grid.points for grid in grids), _failed), strict=True):
         points = sorted(held, key=lambda point: Fraction(point.step_size))
         rows = [found for point in points if (found := row(point))]
         if rows:
