@@ -13,6 +13,7 @@ from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene
+from verify.exploration.tasks import ExploreTask
 from verify.scenes.results.exploration import ExploreReport
 from verify.scenes.scene import load_scene
 from verify.scenes.toml_text import scene_text
@@ -87,6 +88,16 @@ def test_how_the_work_is_cut_does_not_matter(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("verify.exploration.explore._STRETCH", 7)
     assert len(exploration().plan.tasks) == 5
     assert explore(exploration(), Store(None), where=THIS_PROCESS) == whole
+
+
+@pytest.mark.parametrize("examples", [1, 50, 51, 49_999, 1_000_000, 1_000_003])
+def test_the_plan_of_a_million_scenes_is_that_of_some_thousand_tasks(examples: int) -> None:
+    tasks = list(exploration(examples=examples).plan.tasks.values())
+    assert len(tasks) <= 1000
+    held = [(task.first, task.count) for task in tasks if isinstance(task, ExploreTask)]
+    ends = [0, *(first + count for first, count in held)]
+    assert [first for first, _ in held] == ends[:-1], "each scene once, and none left out"
+    assert ends[-1] == examples
 
 
 def failing(**changes: object) -> ExploreReport:
