@@ -22,7 +22,7 @@ from verify.algebra.functions_used import (
 )
 from verify.algebra.identities.numbers import rational_root
 from verify.algebra.lattice import lattice, lattice_and_turns
-from verify.algebra.monomials import exponents
+from verify.algebra.monomials import monomials_of
 from verify.algebra.ring import Poly, Ring, RingFullError
 from verify.errors import LimitError
 
@@ -38,7 +38,7 @@ def embed(
 
     Raises InputError where an expression divides by zero, or grows beyond `most_terms` terms.
     """
-    nodes = subexpressions(expressions)
+    nodes = subexpressions([x for x in expressions if monomials_of(x) is None])
     levels = levels_of(nodes)
     powers = {node for node in nodes if node.is_Pow and not is_natural(node.exp)}
     functions, rest = sum(map(len, levels)), len(powers) + (sympy.pi in nodes)
@@ -225,12 +225,16 @@ class _Builder:
     def sum(self, node: sympy.Add) -> Poly:
         ring, plain = self.ring, dict[tuple[int, ...], flint.fmpq]()
         total, length = ring.zero, ring.room + len(ring.variables)
-        for argument in node.args:
-            found = exponents(argument, ring.places, length)
-            if found is None:
+        for argument in node.args if monomials_of(node) is None else (node,):
+            terms = monomials_of(argument)
+            if terms is None:
                 total += self.element(argument)
-            else:
-                monomial, number = found
+                continue
+            for number, powers in terms:
+                exponents = [0] * length
+                for name, n in powers:
+                    exponents[ring.places[name]] += n
+                monomial = tuple(exponents)
                 value = flint.fmpq(int(number.p), int(number.q))
                 plain[monomial] = plain.get(monomial, 0) + value
         return total + ring.context.from_dict(plain)

@@ -4,6 +4,7 @@ import math
 
 import sympy
 
+from verify.algebra.monomials import monomials_of
 from verify.errors import InputError, LimitError
 
 MAX_EXPONENT = 64
@@ -16,6 +17,8 @@ _NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Mi
 
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     """The expression itself, where it is finite, real, smooth and of bounded size."""
+    if _small_polynomial(result):
+        return result
     result = _one_product(result)
     numbers, powers, others = _by_kind(result)
     if any(isinstance(node, sympy.Abs) for node in others):
@@ -37,6 +40,16 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
+
+
+def _small_polynomial(x: sympy.Expr) -> bool:
+    """Whether it is a polynomial with nothing in it that is too large; no, where it is one term."""
+    terms = monomials_of(x) if x.is_Add else None
+    return terms is not None and all(
+        max(number.p.bit_length(), number.q.bit_length()) <= MAX_NUMBER_BITS
+        and all(n <= MAX_EXPONENT for _, n in powers)
+        for number, powers in terms
+    )
 
 
 def _one_product(x: sympy.Expr) -> sympy.Expr:

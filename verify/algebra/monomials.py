@@ -5,9 +5,10 @@ what it could be simplified to.
 """
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import lru_cache
+from typing import NamedTuple
 
 import sympy
 
@@ -55,7 +56,8 @@ class Monomials:
                 # As sympy writes them: the number first, where it is not 1, and names in its order.
                 names = _names(powers) if powers else ()
                 number = [sympy.Rational(c.numerator, c.denominator)] if c != 1 or not names else []
-                yield sympy.Mul(*number, *names, evaluate=False)
+                # It is in order already; to be asked about that takes sympy ten times as long.
+                yield sympy.Mul._from_args((*number, *names), is_commutative=True)
 
     def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
         """The number before the names, whose powers are added to `powers`; None of what else it
@@ -134,17 +136,36 @@ def reads_back(x: sympy.Expr, most: int) -> bool:
     return length <= most
 
 
-def exponents(
-    term: sympy.Expr, at: Mapping[str, int], length: int
-) -> tuple[tuple[int, ...], sympy.Rational] | None:
-    """A term's exponents, that of a name at its place among so many, and its number; None where it
-    is no monomial."""
-    found, number = [0] * length, sympy.S.One
-    for factor in term.args if term.is_Mul else (term,):
-        if factor.is_Rational:
-            number *= factor  # sympy's products may have several
-        elif is_of_name(factor) and (n := int(factor.as_base_exp()[1])) > 0:
-            found[at[factor.as_base_exp()[0].name]] += n
-        else:
-            return None
-    return tuple(found), number
+class Monomial(NamedTuple):
+    """A number times powers of names, with exponents of at least 1."""
+
+    number: sympy.Rational
+    powers: tuple[tuple[str, int], ...]
+
+
+# A formula's expression is asked for its terms whenever something is made of it.
+@lru_cache(maxsize=64)
+def monomials_of(x: sympy.Expr) -> tuple[Monomial, ...] | None:
+    """The terms of x, as they stand there; None where one of them is no monomial."""
+    found = []
+    for term in x.args if x.is_Add else (x,):
+        number, powers = sympy.S.One, []
+        for factor in term.args if term.is_Mul else (term,):
+            if factor.is_Symbol:
+                powers.append((factor.name, 1))
+            elif factor.is_Rational:
+                number *= factor  # sympy's products may have several
+            elif is_of_name(factor) and factor.exp.p > 0:
+                powers.append((factor.base.name, int(factor.exp.p)))
+            else:
+                return None
+        found.append(Monomial(number, tuple(powers)))
+    return tuple(found)
+
+
+def names_in(x: sympy.Expr) -> frozenset[str]:
+    """The names of the symbols in x."""
+    terms = monomials_of(x)
+    if terms is None:
+        return frozenset(symbol.name for symbol in x.free_symbols)
+    return frozenset(name for term in terms for name, _ in term.powers)

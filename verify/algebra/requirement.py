@@ -7,6 +7,8 @@ from typing import Literal, NamedTuple
 
 import sympy
 
+from verify.algebra.monomials import monomials_of
+
 Relation = Literal["!=", ">=", ">"]
 
 
@@ -38,7 +40,9 @@ def of_function(name: str, argument: sympy.Expr) -> list[Requirement]:
 
 def of_expression(expression: sympy.Expr, *, smooth: bool = False) -> list[Requirement]:
     """What an expression asks for as it stands; `smooth`: also to be smooth, as no root is at 0."""
-    found = []
+    found: list[Requirement] = []
+    if monomials_of(expression) is not None:
+        return found
     for node in sympy.preorder_traversal(expression):
         if node.is_Pow and node.exp.is_Rational:
             for expected in of_power(node.base, node.exp):

@@ -5,6 +5,7 @@ from collections.abc import Collection
 
 import sympy
 
+from verify.algebra.monomials import names_in
 from verify.errors import InputError
 
 _LIKELY = {
@@ -20,7 +21,7 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
 
     `parameters`: those without a value; whoever gives one its value says that it is one.
     """
-    present = {s.name for s in expression.free_symbols}
+    present = names_in(expression)
     missing = [name for name in _LIKELY if name not in present]
     if missing:
         _check_words(formula, " and no ".join(missing), parameters)

@@ -19,7 +19,7 @@ from verify.algebra.formula import (
     symbol,
     to_text,
 )
-from verify.algebra.monomials import reads_back
+from verify.algebra.monomials import names_in, reads_back
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
@@ -107,9 +107,7 @@ class Hamiltonian:
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """All parameter names, with or without a value."""
-        return tuple(
-            sorted(s.name for s in self.expression.free_symbols if s.name not in ("p", "q"))
-        )
+        return tuple(sorted(names_in(self.expression) - {"p", "q"}))
 
     @property
     def symbols(self) -> tuple[str, ...]:
