@@ -10,7 +10,7 @@ import math
 import operator
 import re
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import ModuleType
 
@@ -266,7 +266,7 @@ class _Reader:
         else:
             minus = False
         if ast.Add in kinds:
-            return self.finite(sympy.Add(*self.terms(first, chain, depth)))
+            return self.finite(self.sum(first, chain, depth))
         value = self.read(first, depth + 1)
         factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
         if value.is_Rational and all(op is ast.Mult and is_of_name(x) for op, x in factors):
@@ -280,15 +280,15 @@ class _Reader:
             value = self.apply(_APPLY[op], value, right, shown="a product or quotient in it")
         return self.finite(-value if minus else value)
 
-    def terms(self, first: ast.expr, chain: list[ast.BinOp], depth: int) -> Iterator[sympy.Expr]:
-        """What a chain of + and − sums, to be summed at once as it may be long."""
+    def sum(self, first: ast.expr, chain: list[ast.BinOp], depth: int) -> sympy.Expr:
+        """What a chain of + and − sums, summed at once as it may be long."""
         signs = [(step.right, -1 if isinstance(step.op, ast.Sub) else 1) for step in chain]
-        plain = Monomials(self.line, self.name)
+        plain, others = Monomials(self.line, self.name), []
         for node, sign in ((first, 1), *reversed(signs)):
             if depth + DEEPEST >= MAX_DEPTH or not plain.take(node, sign):
                 term = self.read(node, depth + 1)
-                yield term if sign > 0 else -term
-        yield from plain.terms()
+                others.append(term if sign > 0 else -term)
+        return sympy.Add(*others, plain.sum())
 
     def power(
         self, base: sympy.Expr, exponent: sympy.Expr, at: ast.expr | None = None

@@ -5,11 +5,11 @@ what it could be simplified to.
 """
 
 import ast
-from collections.abc import Callable, Iterator
-from fractions import Fraction
-from functools import lru_cache
+from collections.abc import Callable, Sequence
+from functools import cmp_to_key, lru_cache
 from typing import NamedTuple
 
+import gmpy2
 import sympy
 
 from verify.errors import InputError
@@ -17,6 +17,7 @@ from verify.errors import InputError
 DEEPEST = 6  # levels of nesting within a monomial, at most
 _LONGEST = 18  # digits of a number
 _MOST_BITS, _MOST_POWER = 1000, 64
+_PLACE = cmp_to_key(sympy.Basic.compare)  # in sums
 
 Powers = tuple[tuple[sympy.Symbol, int], ...]
 Quotient = tuple[int, int]  # numerator, denominator
@@ -31,7 +32,7 @@ class Monomials:
 
     def __init__(self, line: str, name: Callable[[str], sympy.Expr]) -> None:
         self.line, self.name = line, name
-        self.collected: dict[Powers, Fraction] = {}
+        self.collected: dict[Powers, gmpy2.mpq] = {}
 
     def take(self, node: ast.expr, sign: int) -> bool:
         """Adds the term times its sign; False where it is to be read in the ordinary way."""
@@ -46,18 +47,26 @@ class Monomials:
         if not all(symbol.is_Symbol for symbol, _ in symbols):
             return False
         key = tuple(sorted(((s, n) for s, n in symbols if n), key=lambda pair: pair[0].name))
-        self.collected[key] = self.collected.get(key, Fraction(0)) + sign * Fraction(*quotient)
+        above, below = quotient
+        self.collected[key] = self.collected.get(key, 0) + gmpy2.mpq(sign * above, below)
         return True
 
-    def terms(self) -> Iterator[sympy.Expr]:
-        """The sum of what was taken, term by term."""
+    def sum(self) -> sympy.Expr:
+        """The sum of what was taken, as sympy has it: sums it has in its own order, a number first;
+        products with a number before the names, where that is not 1."""
+        constant, terms = sympy.S.Zero, []
         for powers, c in self.collected.items():
-            if c:
-                # As sympy writes them: the number first, where it is not 1, and names in its order.
-                names = _names(powers) if powers else ()
-                number = [sympy.Rational(c.numerator, c.denominator)] if c != 1 or not names else []
-                # It is in order already; to be asked about that takes sympy ten times as long.
-                yield sympy.Mul._from_args((*number, *names), is_commutative=True)
+            number = sympy.Rational(int(c.numerator), int(c.denominator))
+            if not powers:
+                constant = number
+            elif c:
+                names = _names(powers)
+                factors = names if c == 1 else (number, *names)
+                terms.append(factors[0] if len(factors) == 1 else _in_order(sympy.Mul, factors))
+        if len(terms) < 2:
+            return sympy.Add(constant, *terms)
+        terms.sort(key=_PLACE)
+        return _in_order(sympy.Add, terms if constant.is_zero else [constant, *terms])
 
     def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
         """The number before the names, whose powers are added to `powers`; None of what else it
@@ -96,6 +105,11 @@ class Monomials:
             return None
         above, below = above * found[0], below * found[1]
         return (above, below) if max(abs(above), abs(below)).bit_length() <= _MOST_BITS else None
+
+
+def _in_order(kind: type[sympy.Expr], args: Sequence[sympy.Expr]) -> sympy.Expr:
+    """The sum or product of what is in order, which takes sympy ten times as long to find out."""
+    return kind._from_args(tuple(args), is_commutative=True)
 
 
 @lru_cache(maxsize=1024)
