@@ -6,11 +6,10 @@ units of 2^(2 − W) before it rounds, this one at most `_lost` units of 2^−52
 farther than both together from where rounding changes, both round alike. Where it is not, in one of
 a hundred lanes, the function of one orbit is asked.
 
-What is lost here, in units of 2^−52n, with n ≤ 20 limbs: r is within 2 (the table step has 52 bits
-more than a fraction, and is multiplied by |k| < 2^26); t = u² with u = 2^10 |r| within 2^11·2 + 2n;
-the series' terms lose 2n + 2 each, twenty of them at most beside what is left out; divided by 2^10
-and 2^20 that leaves less than 8 of sin r, and of 1 − cos r. The products with the table's values,
-which are within 1, lose 2n + 9 each. Together that is less than 4 n + 40.
+What is lost here, in units of 2^−52n, with n ≤ 20 limbs: r is within 2; t = u² with u = 2^10 |r|
+within 2^11·2 + 2n; the series' terms lose 2n + 2 each, twenty of them at most beside what is left
+out; divided by 2^10 and 2^20 that leaves less than 8 of sin r, and of 1 − cos r. The products with
+the table's values, which are within 1, lose 2n + 9 each. Together that is less than 4 n + 40.
 
 What one orbit's function loses, with m limbs of 64 bits, follows from the same count: r within 2
 units of 2^−W, sin r and 1 − cos r within 8, table values within ½ unit of 2^(2 − W), two products
@@ -35,9 +34,11 @@ from verify.arithmetic.lanes.fractions import (
     taken,
 )
 from verify.arithmetic.lanes.numbers import Number, Numbers
-from verify.arithmetic.lanes.vectors import DIGIT, LANES, WORDS, splat
+from verify.arithmetic.lanes.reduction import Reduction
+from verify.arithmetic.lanes.table import Table
+from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
 from verify.arithmetic.wide.functions import arb_integer
-from verify.arithmetic.wide.limbs import I64, Value
+from verify.arithmetic.wide.limbs import Value
 
 _ANGLES = 4096  # table steps of a full turn
 _QUARTER = _ANGLES // 4
@@ -58,17 +59,21 @@ class Circle:
 
     def __init__(self, module: ir.Module, width: int, numbers: Numbers) -> None:
         self.module, self.width, self.numbers = module, width, numbers
-        self.count = -(-width // DIGIT)
-        self.spare = DIGIT * self.count - numbers.fraction  # a fraction's bits below a number's
+        self.reduction = Reduction(width, numbers, lambda: 2 * flint.arb.pi() / _ANGLES)
+        self.count, self.spare = self.reduction.count, self.reduction.spare
+        self._table: Table | None = None
         self.fractions = Fractions(numbers.multiply_add, self.count)
 
     def cos_sin(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Number]]:
         """(where they are not known to be those of one orbit, [cos x, sin x])."""
-        k, r = self._reduced(b, x)
+        near = self.reduction.steps(b, x)
+        k = b.fptosi(b.call(vectors.intrinsic(self.module, "rint"), [near]), WORDS)
+        r = self.reduction.rest(b, x, k)
         negative = b.icmp_signed("<", r[-1], splat(0))
         sine, versine = self._small(b, settled(b, negated(b, negative, r)))
         index = b.and_(k, splat(_QUARTER - 1))
-        s, c = self._entries(b, index), self._entries(b, b.sub(splat(_QUARTER), index))
+        table = self._sines()
+        s, c = table.entries(b, index), table.entries(b, b.sub(splat(_QUARTER), index))
         product = self.fractions.product
         along = negated(b, negative, product(b, c, sine))
         across = negated(b, negative, product(b, s, sine))
@@ -85,34 +90,6 @@ class Circle:
         unsure_sin, sine_of_x = self._rounded(b, negated(b, half, sin))
         return b.or_(unsure_cos, unsure_sin), [cosine, sine_of_x]
 
-    def _reduced(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Value]]:
-        """(k, r): x = k·2π/4096 + r, r in fractions' units with its sign."""
-        with working_precision(self.width + 256):
-            step = 2 * flint.arb.pi() / _ANGLES
-            unit = arb_integer(step, DIGIT * (self.count + 1))
-            inverse = float((1 / step).mid())
-        near = b.fmul(self.numbers.to_double(b, x), vectors.splat_double(inverse))
-        k = b.fptosi(b.call(vectors.intrinsic(self.module, "rint"), [near]), WORDS)
-        below = b.icmp_signed("<", k, splat(0))
-        size = b.select(below, b.sub(splat(0), k), k)
-        # |k|·unit, whose lowest limb is below a fraction's units. What is above them is whole
-        # numbers, which x has as well, so that they need not be known.
-        multiple = settled(b, self._times(b, constant(unit, self.count + 1), size))[1:]
-        stretched = self._times(b, self.numbers.settle(b, x), splat(1 << self.spare))
-        rest = settled(b, taken(b, stretched, negated(b, below, multiple)))
-        # Of the highest limb 52 bits count, the highest of them the sign.
-        high = vectors.down(b, vectors.up(b, rest[-1], 64 - DIGIT), 64 - DIGIT)
-        return k, [*rest[:-1], high]
-
-    def _times(self, b: ir.IRBuilder, limbs: Sequence[Value], factor: Value) -> list[Value]:
-        """The limbs of the product with one limb, but for what goes beyond the highest."""
-        multiply_add, columns = self.numbers.multiply_add, [splat(0)] * len(limbs)
-        for i, limb in enumerate(limbs):
-            columns[i] = multiply_add.low(b, columns[i], limb, factor)
-            if i + 1 < len(limbs):
-                columns[i + 1] = multiply_add.high(b, columns[i + 1], limb, factor)
-        return columns
-
     def _small(self, b: ir.IRBuilder, size: Sequence[Value]) -> tuple[list[Value], list[Value]]:
         """sin |r| and 1 − cos |r|."""
         fractions = self.fractions
@@ -125,32 +102,15 @@ class Circle:
         versine = fractions.shifted(b, settled(b, fractions.product(b, t, by_t)), 2 * _SHIFT)
         return sine, versine
 
-    def _entries(self, b: ir.IRBuilder, index: Value) -> list[Value]:
-        """sin of so many table steps in the first quarter."""
-        table, first = self._table(), b.mul(index, splat(self.count))
-        found = [ir.Constant(WORDS, ir.Undefined)] * self.count
-        for lane in range(LANES):
-            at = b.extract_element(first, ir.Constant(I64, lane))
-            for i in range(self.count):
-                path = [ir.Constant(I64, 0), b.add(at, ir.Constant(I64, i))]
-                limb = b.load(b.gep(table, path, inbounds=True), typ=I64)
-                found[i] = b.insert_element(found[i], limb, ir.Constant(I64, lane))
-        return found
-
-    def _table(self) -> ir.GlobalVariable:
-        """sin of all table steps of a quarter, limb after limb; 1 is the fraction next to it."""
-        name, places = "lanes_sines", DIGIT * self.count
-        if name not in self.module.globals:
+    def _sines(self) -> Table:
+        """sin of all table steps of a quarter."""
+        if self._table is None:
             with working_precision(self.width + 256):
                 step = 2 * flint.arb.pi() / _ANGLES
-                exact = [arb_integer((step * k).sin(), places) for k in range(_QUARTER + 1)]
-            values = [min(value, 2**places - 1) for value in exact]
-            rows = [(v >> DIGIT * i) % (1 << DIGIT) for v in values for i in range(self.count)]
-            kind = ir.ArrayType(I64, len(rows))
-            table = ir.GlobalVariable(self.module, kind, name)
-            table.linkage, table.global_constant = "internal", True
-            table.initializer = ir.Constant(kind, rows)
-        return self.module.globals[name]
+                places = DIGIT * self.count
+                values = [arb_integer((step * k).sin(), places) for k in range(_QUARTER + 1)]
+            self._table = Table(self.module, "lanes_sines", values, self.count)
+        return self._table
 
     def _rounded(self, b: ir.IRBuilder, value: Sequence[Value]) -> tuple[Value, Number]:
         """(where it may round otherwise, the number) of a fraction with its sign."""

@@ -10,6 +10,8 @@ from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.circle import Circle
+from verify.arithmetic.lanes.exponential import Exponential
+from verify.arithmetic.lanes.newton import Newton
 from verify.arithmetic.lanes.numbers import Number, Numbers
 from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, LANES, WORDS, splat
 from verify.arithmetic.wide import limbs
@@ -27,18 +29,26 @@ class LaneFunctions:
         self._made: dict[str, ir.Function] = {}
         # What is written in lanes: where it is unsure, and its values.
         self._written: dict[str, Callable[[ir.IRBuilder, Number], tuple[Value, list[Number]]]] = {}
+        newton = Newton(module, width, numbers)
+        # What has the bits of one orbit at once: where it has a value, and that.
+        self._exact = {"inverse": newton.inverse, "sqrt": newton.sqrt}
         circle = Circle(module, width, numbers)
+        exponential = Exponential(module, width, numbers)
         if circle.spare < DIGIT:
             self._written = {
                 "cos_sin": circle.cos_sin,
                 "cos": lambda b, x: _part(circle.cos_sin(b, x), 0),
                 "sin": lambda b, x: _part(circle.cos_sin(b, x), 1),
+                **{name: getattr(exponential, name) for name in ("exp", "sinh", "cosh")},
             }
 
     def call(
         self, b: ir.IRBuilder, name: str, x: Number, allocations: ir.IRBuilder
     ) -> tuple[Value, Sequence[Number]]:
         """Where the function has a value, and its values; memory is taken by `allocations`."""
+        if name in self._exact:
+            valid, value = self._exact[name](b, x)
+            return valid, [value]
         if name not in self._written:
             everywhere = ir.Constant(CONDITIONS, [1] * LANES)
             return self._one_by_one(b, name, x, everywhere, allocations)
@@ -48,16 +58,21 @@ class LaneFunctions:
             for limb, place in zip(self.numbers.settle(b, value), own, strict=True):
                 b.store(limb, place)
         cold, after = b.append_basic_block("unsure"), b.append_basic_block("sure")
+        before, everywhere = b.block, ir.Constant(CONDITIONS, [1] * LANES)
         b.cbranch(vectors.any_of(b, unsure), cold, after)
         b.position_at_end(cold)
-        _, exact = self._one_by_one(b, name, x, unsure, allocations)
+        has_value, exact = self._one_by_one(b, name, x, unsure, allocations)
+        has_value, end = b.or_(has_value, b.not_(unsure)), b.block
         for value, own in zip(exact, places, strict=True):
             for limb, place in zip(self.numbers.settle(b, value), own, strict=True):
                 b.store(b.select(unsure, limb, b.load(place)), place)
         b.branch(after)
         b.position_at_end(after)
+        valid = b.phi(CONDITIONS)
+        valid.add_incoming(everywhere, before)
+        valid.add_incoming(has_value, end)
         found = [self.numbers.known([b.load(p) for p in own], self.width) for own in places]
-        return ir.Constant(CONDITIONS, [1] * LANES), found
+        return valid, found
 
     def of_doubles(self, b: ir.IRBuilder, name: str, x: Value) -> Value:
         """A function of float64, lane by lane: the same bits as for one orbit."""

@@ -9,8 +9,8 @@ from verify.arithmetic.wide.functions import INTEGER_BITS, Functions, arb_intege
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 
 DOUBLE = ir.DoubleType()
-_LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
-_LEAST_DIVISOR = 14
+LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
+LEAST_DIVISOR = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
@@ -45,22 +45,23 @@ def from_double(b: ir.IRBuilder, value: Value, width: int, fraction: int) -> Val
     return b.select(negative, b.neg(total), total)
 
 
+def iterations(width: int, *, quadratic: bool) -> int:
+    """Steps from 2^−48 to below 2^−width; each doubles the bits, or adds 48."""
+    done, steps = 48, 0
+    while done < width:
+        done = 2 * done if quadratic else done + 48
+        steps += 1
+    return steps
+
+
 class MoreFunctions(Functions):
     """`Functions` and those found by iteration."""
-
-    def _iterations(self, *, quadratic: bool) -> int:
-        """Steps from 2^−48 to below 2^−W; each doubles the bits, or adds 48."""
-        done, steps = 48, 0
-        while done < self.width:
-            done = 2 * done if quadratic else done + 48
-            steps += 1
-        return steps
 
     def _inverse(self) -> ir.Function:
         b, x = self._define("inverse", 1)
         size = self._signed(b, x, x)
         valid = b.icmp_unsigned(
-            ">=", size, constant(1 << self.fraction - _LEAST_DIVISOR, self.width)
+            ">=", size, constant(1 << self.fraction - LEAST_DIVISOR, self.width)
         )
         one = ir.Constant(DOUBLE, 1.0)
         # Where x is out of range 1 is divided by, so that no infinity is turned into an integer.
@@ -68,14 +69,14 @@ class MoreFunctions(Functions):
         y = from_double(b, guess, self.width, self.fraction)
         product = self.products.product
         # y ← y + y (1 − x y): the relative error is squared each time.
-        for _ in range(self._iterations(quadratic=True)):
+        for _ in range(iterations(self.width, quadratic=True)):
             error = b.sub(constant(1 << self.fraction, self.width), product(b, x, y))
             y = b.add(y, product(b, y, error))
         return self._result(b, valid, y)
 
     def _sqrt(self) -> ir.Function:
         b, x = self._define("sqrt", 1)
-        valid = b.icmp_signed(">=", x, constant(1 << self.fraction - _LEAST_ROOT, self.width))
+        valid = b.icmp_signed(">=", x, constant(1 << self.fraction - LEAST_ROOT, self.width))
         root = self.module.declare_intrinsic("llvm.sqrt", [DOUBLE])
         one = ir.Constant(DOUBLE, 1.0)
         guess = b.call(root, [b.select(valid, to_double(b, x, self.fraction), one)])
@@ -84,7 +85,7 @@ class MoreFunctions(Functions):
         slope = from_double(b, half, self.width, self.fraction)
         product = self.products.product
         # s ← s + (x − s²)/(2 s₀): the slope stays that of the guess, which saves a division.
-        for _ in range(self._iterations(quadratic=False)):
+        for _ in range(iterations(self.width, quadratic=False)):
             s = b.add(s, product(b, b.sub(x, product(b, s, s)), slope))
         return self._result(b, valid, s)
 

@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from llvmlite import ir
 
 from tests.helpers.fixed_checks import HARD, Near
 from tests.helpers.lanes import IN_LANES, Both, number, same
 from verify.arithmetic.compiled.paths import LANES
-from verify.arithmetic.lanes import circle
+from verify.arithmetic.lanes import circle, exponential
+from verify.arithmetic.lanes.functions import LaneFunctions
 from verify.arithmetic.lanes.numbers import Numbers
+from verify.arithmetic.lanes.vectors import CONDITIONS
 
 WIDTHS = (128, 192, 256, 320, 384)
 OPERATIONS = """\
@@ -160,6 +163,44 @@ def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
             most = max(most, abs(x.raw - exact) - Fraction(1, 2))
     # An ulp is 2^14 of the units in which it is counted.
     assert most * 2**14 <= circle.lost_by_one(width)
+
+
+def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
+    """It cuts what is below a unit, and what it loses before is a part of a unit for e^x < 2^14."""
+    draws, width = Draws(13), 128
+    pair = both(FUNCTIONS["exp"], width, IN_LANES[0])
+    finer = both(FUNCTIONS["exp"], 2 * width, IN_LANES[0])
+    for _ in range(3000):
+        raw = draws.bits(width - 12) - (1 << (width - 13))  # |x| < 8
+        x = pair.of_one((number(raw, width),))
+        y = finer.of_one((number(raw << width, 2 * width),))
+        exact = Fraction(y.raw, 2 ** (2 * width - 16)) * 2 ** (width - 16)
+        lost = Fraction(circle.lost_by_one(width), 2**14) * max(1, exact / 2 ** (width - 16))
+        assert exact - 1 - lost <= x.raw <= exact + lost
+
+
+def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exponential, "lost_by_one", lambda width: 0)
+    monkeypatch.setattr(exponential, "_lost", lambda count: 0)
+    pair = Both(FUNCTIONS["exp"], 256, IN_LANES[0])
+    draws = Draws(7)
+    assert differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
+
+
+@pytest.mark.parametrize("name", ["circle", "exp", "sinh", "sqrt", "inverse"])
+def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where what one orbit's function gives is thrown away, few values are wrong, or none."""
+
+    def zeros(self: LaneFunctions, b: ir.IRBuilder, *_: Any) -> tuple[Any, list[Any]]:
+        nothing = self.numbers.constant(0, self.width)
+        return ir.Constant(CONDITIONS, [1] * LANES), [nothing] * (2 if name == "circle" else 1)
+
+    monkeypatch.setattr(LaneFunctions, "_one_by_one", zeros)
+    pair = Both(FUNCTIONS[name], 128, IN_LANES[0])
+    draws = Draws(17)
+    rows = [(number(draws.bits(111) + (1 << 111), 128),) for _ in range(2000)]  # ½ … 1
+    wrong = len(differing(pair, rows))
+    assert wrong <= (0 if name in ("sqrt", "inverse") else 100)
 
 
 @pytest.mark.parametrize("planted", ["_signs", "carry", "from_words"])

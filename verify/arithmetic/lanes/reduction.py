@@ -1,0 +1,58 @@
+"""x as a whole multiple of a table's step and a small rest, in lanes."""
+
+from collections.abc import Callable, Sequence
+
+import flint
+from llvmlite import ir
+
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.fractions import constant, negated, settled, taken
+from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.vectors import DIGIT, splat
+from verify.arithmetic.wide.functions import arb_integer
+from verify.arithmetic.wide.limbs import Value
+
+
+class Reduction:
+    """x = k·step + rest for numbers of one width, the step below 1.
+
+    The rest is a fraction of `count` limbs with a sign, and within 2 units of 2^−52 count: the step
+    has 52 bits more than a fraction, and is multiplied by |k| < 2^26. `spare`: how many of a
+    fraction's bits lie below a number's.
+    """
+
+    def __init__(self, width: int, numbers: Numbers, step: Callable[[], flint.arb]) -> None:
+        self.width, self.numbers = width, numbers
+        self.count = -(-width // DIGIT)
+        self.spare = DIGIT * self.count - numbers.fraction
+        with working_precision(width + 256):
+            exact = step()
+            self.unit = arb_integer(exact, DIGIT * (self.count + 1))
+            self.inverse = float((1 / exact).mid())
+
+    def steps(self, b: ir.IRBuilder, x: Number) -> Value:
+        """x / step in float64, within 2^−50 of its size."""
+        return b.fmul(self.numbers.to_double(b, x), vectors.splat_double(self.inverse))
+
+    def rest(self, b: ir.IRBuilder, x: Number, k: Value) -> list[Value]:
+        """x − k·step, which is below ½ in size; its highest limb has the sign."""
+        below = b.icmp_signed("<", k, splat(0))
+        size = b.select(below, b.sub(splat(0), k), k)
+        # |k|·step, whose lowest limb is below a fraction's units. What is above them is whole
+        # numbers, which x has as well, so that they need not be known.
+        multiple = settled(b, self._times(b, constant(self.unit, self.count + 1), size))[1:]
+        stretched = self._times(b, self.numbers.settle(b, x), splat(1 << self.spare))
+        rest = settled(b, taken(b, stretched, negated(b, below, multiple)))
+        # Of the highest limb 52 bits count, the highest of them the sign.
+        high = vectors.down(b, vectors.up(b, rest[-1], 64 - DIGIT), 64 - DIGIT)
+        return [*rest[:-1], high]
+
+    def _times(self, b: ir.IRBuilder, limbs: Sequence[Value], factor: Value) -> list[Value]:
+        """The limbs of the product with one limb, but for what goes beyond the highest."""
+        multiply_add, columns = self.numbers.multiply_add, [splat(0)] * len(limbs)
+        for i, limb in enumerate(limbs):
+            columns[i] = multiply_add.low(b, columns[i], limb, factor)
+            if i + 1 < len(limbs):
+                columns[i + 1] = multiply_add.high(b, columns[i + 1], limb, factor)
+        return columns
