@@ -53,7 +53,8 @@ class ExactOrbit:
     period: Fraction | None = None
 
 
-@lru_cache(maxsize=256)
+# The maps of several schemes have the same orbits, some hundreds.
+@lru_cache(maxsize=4096)
 def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:
     """The orbit through (p, q) until `time`."""
     orbit = _OrbitSearch(hamiltonian, (p, q), time).orbit()
