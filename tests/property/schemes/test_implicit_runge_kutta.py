@@ -39,7 +39,8 @@ def test_a_step_is_that_of_the_equations_solved_by_hand(
     assume(_tame(text, z))
     found = steps(made, "mpfr", DIGITS, z, STEP)
     true = by_hand(text, TABLEAUS[name], z, STEP, DIGITS)
-    assert max(abs(x - y) for x, y in zip(found, true, strict=True)) < Fraction(50, 10**DIGITS)
+    # The constants of a closed form are made of h and numbers of the size of 100, and lose by that.
+    assert max(abs(x - y) for x, y in zip(found, true, strict=True)) < Fraction(200, 10**DIGITS)
     gap = abs(plain_determinant(made, "mpfr", DIGITS, z, STEP) - 1)
     assert gap < Fraction(1000, 10**DIGITS)
 
