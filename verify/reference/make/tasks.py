@@ -41,6 +41,11 @@ class OrbitTask(AtSteps, InitialValueTask):
     def cost(self) -> int:
         return _ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
 
+    @property
+    def ensemble(self) -> str | None:
+        """Orbits of one scheme's map, whatever the step size and the initial value."""
+        return f"{self.kind} {self.scheme} {self.hamiltonian}"
+
     def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points
 
