@@ -41,6 +41,7 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
+_NO_TIME = "an H that depends on time is taken by `prove` alone as yet; write one without t"
 _SHORT = 18  # digits of a number that is surely within the limits
 _DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
@@ -86,17 +87,28 @@ def parameter_name(name: str) -> str:
     return name
 
 
-def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formula") -> sympy.Expr:
+def parse(
+    text: str,
+    names: Iterable[str] | None = None,
+    *,
+    source: str = "formula",
+    time: bool = False,
+) -> sympy.Expr:
     """The exact expression that `text` writes.
 
-    `names`: the names that may occur; None allows p, q and any parameter name. `source` is the
-    name under which an error speaks of the text. Raises InputError, never anything else.
+    `names`: the names that may occur; None allows p, q and any parameter name, and t where `time`
+    is allowed for. `source` is the name under which an error speaks of the text. Raises InputError,
+    never anything else.
     """
-    return read(text, names, source=source)[0]
+    return read(text, names, source=source, time=time)[0]
 
 
 def read(
-    text: str, names: Iterable[str] | None = None, *, source: str = "formula"
+    text: str,
+    names: Iterable[str] | None = None,
+    *,
+    source: str = "formula",
+    time: bool = False,
 ) -> tuple[sympy.Expr, list[Requirement]]:
     """As `parse`, with all that what is written asks for to be defined, simplified away or not."""
     if not isinstance(text, str):
@@ -112,7 +124,7 @@ def read(
     line = " ".join(text.replace("^", "**").split())
     tree = _tree(line, text, source)
     known = None if names is None else frozenset(names)
-    reader = _Reader(source, text, line, known)
+    reader = _Reader(source, text, line, known, time)
     result = reader.read(tree, 0)
     if not isinstance(tree, ast.BinOp):
         checked(result, source, text)
@@ -145,8 +157,11 @@ def _nodes() -> ModuleType:
 class _Reader:
     """Turns one syntax tree into an expression; each method takes a node and its depth."""
 
-    def __init__(self, source: str, text: str, line: str, names: frozenset[str] | None) -> None:
+    def __init__(
+        self, source: str, text: str, line: str, names: frozenset[str] | None, time: bool
+    ) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
+        self.time = time if names is None else "t" in names
         self.required: list[Requirement] = []
 
     def fail(self, problem: str, at: ast.expr | int | None = None) -> InputError:
@@ -201,12 +216,11 @@ class _Reader:
     def name(self, name: str, at: ast.expr | None = None) -> sympy.Expr:
         if name == "pi":
             return sympy.pi
-        if name == "t" and (self.names is None or "t" not in self.names):
-            without = "an H that depends on time is not covered yet; write one without t"
-            raise self.fail(f"t is not allowed: {without}", at)
+        if name == "t" and not self.time:
+            raise self.fail(f"t is not allowed: {_NO_TIME}", at)
         if self.names is not None and name not in self.names:
             raise self.fail(_nodes().unknown_name(name, self.names, FUNCTIONS), at)
-        if self.names is None and name not in ("p", "q"):
+        if self.names is None and name not in ("p", "q", "t"):
             if name in RESERVED:
                 raise self.fail(_nodes().reserved_name(name, FUNCTIONS), at)
             parameter_name(name)

@@ -40,10 +40,13 @@ _SCHEME = (
 )
 
 
-def hamiltonian_from(system: GivenSystem, parameters: GivenParameters = None) -> Hamiltonian:
+def hamiltonian_from(
+    system: GivenSystem, parameters: GivenParameters = None, *, time: bool = False
+) -> Hamiltonian:
     """The Hamiltonian that is meant, with these parameter values beside those that it has.
 
-    Raises InputError for what is no system, an unknown name, a bad formula or parameter.
+    `time`: whether it may depend on t. Raises InputError for what is no system, an unknown name, a
+    bad formula or parameter.
 
     >>> hamiltonian_from("Duffing", {"delta": 0.1}).texts
     {'hamiltonian': 'delta*q**4/4 + p**2/2 + q**2/2', 'parameters': {'delta': '0.1'}}
@@ -51,6 +54,8 @@ def hamiltonian_from(system: GivenSystem, parameters: GivenParameters = None) ->
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError("parameters", parameters, "is not a mapping of names to values")
     if isinstance(system, Hamiltonian):
+        if system.time_dependent and not time:
+            raise InputError("hamiltonian", system.formula, "depends on t: prove alone takes that")
         values = {**dict(system.values), **(parameters or {})}
         return system.with_values(values) if parameters else system
     if isinstance(system, System):
@@ -62,7 +67,7 @@ def hamiltonian_from(system: GivenSystem, parameters: GivenParameters = None) ->
         return systems.get(name).hamiltonian(parameters)
     if len(system.strip()) >= _LEAST and _NAME.fullmatch(system.strip()):
         raise unknown("system", system, systems.names(), "; or a formula in p and q")
-    return Hamiltonian.parse(system, parameters)
+    return Hamiltonian.parse(system, parameters, time=time)
 
 
 def scheme_from(scheme: GivenScheme) -> Scheme | StepMap:

@@ -25,8 +25,8 @@ def prove(
 
     Parameters
     ----------
-    system: a Hamiltonian, a system's name, a formula; or a StepMap, which is then proved itself,
-        with a `scheme` or without one whose claims it is held to.
+    system: a Hamiltonian, a system's name, a formula in p, q and, if you like, t; or a StepMap,
+        which is then proved itself, with a `scheme` or without one whose claims it is held to.
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     parameters: exact values by name; one without a value stays a symbol, and the proof holds for
         all its values but those that `domain` names.
@@ -45,7 +45,7 @@ def prove(
                 name, parameters or claims, "does not go with a StepMap that is proved"
             )
         return prove_map(system, claims)
-    exact = hamiltonian_from(system, parameters)
+    exact = hamiltonian_from(system, parameters, time=True)
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     found = scheme_from(scheme)

@@ -37,6 +37,11 @@ _WIDTH = 88
     "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
 )
 @click.option(
+    "--time-dependent",
+    is_flag=True,
+    help="With --every-hamiltonian: for every H(p, q, t), or T(p, t) + V(q, t).",
+)
+@click.option(
     "--certificate",
     type=PATH,
     metavar="FILE",
@@ -50,6 +55,7 @@ def prove(
     scheme: str,
     every_hamiltonian: bool,
     separable: bool,
+    time_dependent: bool,
     certificate: Path | None,
 ) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
@@ -59,20 +65,33 @@ def prove(
 
     \b
     verify prove --system duffing --scheme lie2
+    verify prove --hamiltonian "p**2/2 - (1 + cos(2*t)/2)*cos(q)" --scheme lie2
     verify prove --every-hamiltonian --scheme lie6
+    verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     """
     if not every_hamiltonian:
-        if separable:
-            raise InputError("--separable", NOT_GIVEN, "goes with --every-hamiltonian")
-        return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
+        for option, given in {"separable": separable, "time-dependent": time_dependent}.items():
+            if given:
+                raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
+        exact = hamiltonian_of(system, hamiltonian, params, time=True)
+        if certificate is not None and exact.time_dependent:
+            raise InputError(
+                "--certificate", str(certificate), "is of no H that depends on time as yet"
+            )
+        return _prove_one(exact, scheme, certificate)
     if system is not None or hamiltonian is not None or params:
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
         )
+    if time_dependent and certificate is not None:
+        raise InputError(
+            "--certificate", str(certificate), "is of no H that depends on time as yet"
+        )
     from verify.proof.every import prove_every
+    from verify.proof.every_in_time import prove_every_in_time
 
     begun = time.perf_counter()
-    proof = prove_every(scheme, separable)
+    proof = prove_every_in_time(scheme) if time_dependent else prove_every(scheme, separable)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
         from verify.proof.certificates.every import of_every
@@ -185,7 +204,8 @@ def _print_every(proof: "EveryProof") -> None:
         if proof.formula:
             _line("", f"= h^{proof.order} · ({cut(proof.leading)})")
     if proof.telescopes:
-        _line("G", f"{cut(proof.potential or '')}, the leading coefficient is X·G")
+        by = "D" if proof.timed else "X"
+        _line("G", f"{cut(proof.potential or '')}, the leading coefficient is {by}·G")
     if proof.telescopes is not None:
         _line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     if proof.domain:

@@ -1,4 +1,4 @@
-"""A planar Hamiltonian H(p, q) with exact parameters, and its Lie derivative."""
+"""A planar Hamiltonian H(p, q), or H(p, q, t), with exact parameters, and its Lie derivative."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -33,16 +33,18 @@ from verify.notebook import aligned_latex, cut, short_latex
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
 @lru_cache(maxsize=64)
-def _of_formula(formula: str) -> "Hamiltonian":
+def _of_formula(formula: str, time: bool) -> "Hamiltonian":
     """H as it is read from its own text: tasks, kept results and certificates hold that.
 
     It can be much longer than the formula, and sympy multiplies a number into a sum one level
     deeper each time that it is read.
     """
-    found, required = read(formula, source="hamiltonian")
+    found, required = read(formula, source="hamiltonian", time=time)
     for _ in range(MAX_DEPTH):
         same = reads_back(found, MAX_LENGTH)
-        again = found if same else parse(to_text(found), source="hamiltonian, written out")
+        again = (
+            found if same else parse(to_text(found), source="hamiltonian, written out", time=time)
+        )
         if again == found:
             made = Hamiltonian(found)
             written = Domain.of(required) if required else EVERYWHERE
@@ -62,7 +64,8 @@ def _with_values(made: "Hamiltonian", values: tuple[tuple[str, Fraction], ...]) 
 @drawn_by("hamiltonians")
 @dataclass(frozen=True)
 class Hamiltonian:
-    """H(p, q) as an exact expression, with the values of those parameters that have one.
+    """H(p, q) or H(p, q, t) as an exact expression, with the values of those parameters that have
+    one.
 
     A parameter without a value stays a symbol. `expression` holds all parameters as symbols;
     `exact` has the values put in. `written`: what the text it was read from asks for, where that
@@ -75,16 +78,21 @@ class Hamiltonian:
 
     @classmethod
     def parse(
-        cls, formula: str, parameters: Mapping[str, Exact | None] | None = None
+        cls,
+        formula: str,
+        parameters: Mapping[str, Exact | None] | None = None,
+        *,
+        time: bool = False,
     ) -> "Hamiltonian":
         """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
 
-        Raises InputError for a bad formula, a bad value, a parameter that H does not have, or a
-        name that is likely meant for a p or q that is missing.
+        `time`: whether H may depend on t, which most of the toolkit does not take as yet. Raises
+        InputError for a bad formula, a bad value, a parameter that H does not have, or a name that
+        is likely meant for a p or q that is missing.
         """
         if not isinstance(formula, str):  # the parser says so
             parse(formula, source="hamiltonian")
-        made = _of_formula(formula)
+        made = _of_formula(formula, time)
         if parameters is not None and not isinstance(parameters, Mapping):
             raise InputError("parameters", parameters, "is not a mapping of names to values")
         result = made.with_values(parameters or {})
@@ -107,7 +115,12 @@ class Hamiltonian:
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """All parameter names, with or without a value."""
-        return tuple(sorted(names_in(self.expression) - {"p", "q"}))
+        return tuple(sorted(names_in(self.expression) - {"p", "q", "t"}))
+
+    @cached_property
+    def time_dependent(self) -> bool:
+        """Whether t is in H, with the parameters' values put in."""
+        return "t" in names_in(self.exact)
 
     @property
     def symbols(self) -> tuple[str, ...]:
@@ -159,8 +172,9 @@ class Hamiltonian:
             "parameters": {name: text(value) for name, value in self.values},
         }
 
-    def gradient(self) -> Callable[[float, float], tuple[float, float]]:
-        """(p, q) ↦ (H_p, H_q) in Python floats, for a step function of one's own.
+    def gradient(self) -> Callable[..., tuple[float, float]]:
+        """(p, q) ↦ (H_p, H_q) in Python floats, for a step function of one's own; (p, q, t) ↦ where
+        H depends on time.
 
         Each is rounded at every operation, so its last digits are not known. It raises what `math`
         raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H is not
@@ -168,10 +182,11 @@ class Hamiltonian:
         """
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
-        p, q = symbol("p"), symbol("q")
-        slopes = self.exact.diff(p), self.exact.diff(q)
-        made: Callable[[float, float], tuple[float, float]]
-        made = sympy.lambdify((p, q), slopes, modules="math", cse=True)
+        names = ("p", "q", "t") if self.time_dependent else ("p", "q")
+        at = tuple(map(symbol, names))
+        slopes = self.exact.diff(at[0]), self.exact.diff(at[1])
+        made: Callable[..., tuple[float, float]]
+        made = sympy.lambdify(at, slopes, modules="math", cse=True)
         return made
 
     def with_symbols(self) -> "Hamiltonian":
@@ -194,7 +209,8 @@ class Hamiltonian:
 def _embedded(
     hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
 ) -> tuple["VectorField", list[Poly]]:
-    variables = ("p", "q", "h", *hamiltonian.symbols)
+    time = ("t",) if hamiltonian.time_dependent else ()
+    variables = ("p", "q", "h", *time, *hamiltonian.symbols)
     ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
     return VectorField.of(ring, elements[0]), elements[1:]
 
@@ -210,7 +226,9 @@ def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
 class VectorField:
     """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative.
 
-    `of_energy`: H itself; None in a ring to which only its derivatives were carried.
+    Where H depends on t the ring has that variable, and D = ∂_t + X takes the place of X in all
+    that is derived along the flow. `of_energy`: H itself; None in a ring to which only its
+    derivatives were carried.
     """
 
     ring: Ring
@@ -230,9 +248,15 @@ class VectorField:
         return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"), hamiltonian)
 
     def derive(self, y: Poly) -> Poly:
-        """X y, the derivative of y along the flow."""
+        """X y, the derivative of y along the flow; D y where H depends on time."""
         ring = self.ring
-        return ring.reduce(self.h_p * ring.diff(y, "q") - self.h_q * ring.diff(y, "p"))
+        along = self.h_p * ring.diff(y, "q") - self.h_q * ring.diff(y, "p")
+        return ring.reduce(along + ring.diff(y, "t") if self.timed else along)
+
+    @property
+    def timed(self) -> bool:
+        """Whether H depends on t."""
+        return "t" in self.ring.places
 
     def powers(self, y: Poly, most: int) -> Sequence[Poly]:
         """[y, X y, …, X^most y]."""

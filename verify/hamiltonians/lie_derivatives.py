@@ -11,7 +11,10 @@ _MOST_KEPT = 2000  # terms of a coefficient of ΔJ, beyond which it is made anew
 
 
 class LieDerivatives:
-    """Xⁿp and Xⁿq of X = H_p ∂_q − H_q ∂_p, their gradients, and ΔJ of their Taylor polynomials."""
+    """Xⁿp and Xⁿq of X = H_p ∂_q − H_q ∂_p, their gradients, and ΔJ of their Taylor polynomials.
+
+    In a ring with t it is D = ∂_t + X in place of X.
+    """
 
     def __init__(self, ring: Ring, h_p: Poly, h_q: Poly) -> None:
         self.ring, self.h_p, self.h_q = ring, h_p, h_q
@@ -31,7 +34,10 @@ class LieDerivatives:
             found = self.ring.reduce(-self.h_q if name == "p" else self.h_p)
         else:
             y_p, y_q = self._gradient(name, n - 1)
-            found = self.ring.reduce(self.h_p * y_q - self.h_q * y_p)
+            found = self.h_p * y_q - self.h_q * y_p
+            if "t" in self.ring.places:
+                found += self.ring.diff(self.power(name, n - 1), "t")
+            found = self.ring.reduce(found)
         self._powers[name, n] = found
         return found
 

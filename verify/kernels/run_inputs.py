@@ -50,6 +50,8 @@ class RunInputs:
         sections: int = 16,
         shares_kernel: bool = False,
     ) -> None:
+        if hamiltonian.time_dependent:
+            raise InputError("hamiltonian", hamiltonian.formula, "depends on t: no run takes that")
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points

@@ -35,7 +35,8 @@ class EveryProof:
     h^order, a polynomial in H_p, H_q, H_pp, …, and `formula` what it is in closed form, where that
     is known. `telescopes`: whether it is X·`potential` for every H, `why` says how that is known.
     `checked` names the identities that were checked, `conditions` those on the coefficients, of a
-    scheme that is given by them.
+    scheme that is given by them. `timed`: for every such H that depends on t, with D = ∂_t + X in
+    place of X.
     """
 
     scheme: str
@@ -53,11 +54,12 @@ class EveryProof:
     why: Prose = NONE
     checked: tuple[Prose, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    timed: bool = False
 
     @property
     def argument(self) -> Prose:
         """What is proved on paper beside what the machine checked; see the module's text."""
-        if isinstance(get(self.scheme).every_h, TaylorSeries):
+        if isinstance(get(self.scheme).every_h, TaylorSeries) and not self.timed:
             return ARGUMENT
         return NONE
 
@@ -69,4 +71,7 @@ class EveryProof:
     @property
     def quantifier(self) -> str:
         """For which H it is proved, in words."""
+        if self.timed:
+            form = "T(p, t) + V(q, t)" if self.separable else "H(p, q, t)"
+            return f"every smooth {'H = ' * self.separable}{form}"
         return "every smooth H = T(p) + V(q)" if self.separable else "every smooth H"

@@ -1,4 +1,5 @@
-"""For which values of the parameters a coefficient is not the zero function of p and q.
+"""For which values of the parameters a coefficient is not the zero function of p and q, and of t
+where H depends on time.
 
 That it is not zero at some point says nothing of a single value of δ: 12 δ p q is zero at δ = 0.
 """
@@ -18,7 +19,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.zero_test import clear_inverses
 from verify.errors import InputError
 
-_COORDINATES = ("p", "q", "h")
+_COORDINATES = ("p", "q", "h", "t")
 _AT = (0, 1, 2)  # where functions of p and q have simple values
 _MOST_PARTS = 12  # coefficients that are said not to vanish all together
 
@@ -116,9 +117,9 @@ def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
 
 def _is_product(ring: Ring, x: Poly, factors: Sequence[Poly], point: _Point) -> bool:
     """Whether at the point nothing of x is left but some of the factors, and a number not 0."""
-    put = dict(zip((symbol("p"), symbol("q")), point, strict=True))
+    put = dict(zip((symbol("p"), symbol("q"), symbol("t")), (*point, sympy.S.One), strict=True))
     value = ring.expression(x).xreplace(put)
-    names = [name for name in ring.variables if name not in ("p", "q")]
+    names = [name for name in ring.variables if name not in ("p", "q", "t")]
     try:
         own, (left, *known) = embed([value, *map(ring.expression, factors)], names)
     except InputError:

@@ -1,5 +1,7 @@
 """Whether the leading coefficient L of ΔJ is X·G for one given H, whose structure may help.
 
+Where H depends on time it is D·G, D = ∂_t + X, that is looked for.
+
 True: G is given, and X·G − L is decided to be zero. False: at an equilibrium X·G = 0 for every
 smooth G, and L is not zero there. None: neither is found. G is looked for by the formula for even
 η, and else among the polynomials in what H and L are made of (p, q, parameters, sin, cos, …).
@@ -62,7 +64,8 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
     if proof.order is None or proof.first.element is None:
         return Potential(None, "the leading coefficient is not known")
     field, leading = _in_a_field(proof)
-    where = _equilibrium_against(field, leading)
+    # D·G need not vanish where the motion rests: there it is ∂G/∂t.
+    where = None if field.timed else _equilibrium_against(field, leading)
     if where is not None:
         return Potential(
             False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"

@@ -5,7 +5,8 @@ the size of h, so that their rounding is h times smaller than that of Y_i (Haire
 Solving Ordinary Differential Equations I, II.8, and II, IV.8). Z_i = h Σ a_ij f(z + Z_j), and
 z' = z + h Σ b_i f(z + Z_i). Newton's method begins at Z_i = h c_i f(z); of several solutions, which
 there may be where h is large, it finds one, and that is the map. For a quadratic H the equations
-are linear, and the map is written in closed form.
+are linear, and the map is written in closed form. Where H depends on time, stage i is taken at
+t + c_i h, c_i = Σ_j a_ij.
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ import sympy
 from verify.algebra.conditions import ByConditions
 from verify.algebra.implicit_unknowns import Matrix, define, unknowns
 from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series, at_point, partials
+from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.implicit_tableau import ImplicitTableau
@@ -53,7 +54,8 @@ def implicit(
 @lru_cache(maxsize=64)
 def implicit_map(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
     """The map: in closed form where H is quadratic, else by its equations."""
-    return _linear(hamiltonian, tableau) or _Equations(hamiltonian, tableau).step_map()
+    closed = None if hamiltonian.time_dependent else _linear(hamiltonian, tableau)
+    return closed or _Equations(hamiltonian, tableau).step_map()
 
 
 class _Equations:
@@ -66,12 +68,13 @@ class _Equations:
         exact = [at(x) for x in self.numbers]
         rows = [exact[self.count * i : self.count * (i + 1)] for i in range(self.count + 1)]
         self.a, self.b = rows[:-1], rows[-1]
+        self.clocks = [sum(row, self.stages.ring.zero) for row in self.a]  # of the stages
 
     def step_map(self) -> StepMap:
         stages, ring, count = self.stages, self.stages.ring, self.count
         h = ring.variable("h")
         own = unknowns(ring, 2 * count)
-        slopes, gradients = self._at_stages(own)
+        slopes, gradients, drifts = self._at_stages(own)
         pairs = [(i, part) for i in range(count) for part in (0, 1)]
 
         def mean(weights: Sequence[Poly], part: int) -> Poly:
@@ -85,6 +88,19 @@ class _Equations:
             [ring.reduce(h * self.a[i][j] * gradients[j][r][c]) for j, c in pairs] for i, r in pairs
         ]
         force = [ring.named(x) for x in (-stages.field.h_q, stages.field.h_p)]
+
+        def later(i: int, part: int, clocks: Sequence[Poly]) -> Poly:
+            """h Σ a_ij f_part,t(Y_j) by what the stages' times move."""
+            terms = zip(self.a[i], drifts, clocks, strict=True)
+            return ring.reduce(h * sum((a * x[part] * c for a, x, c in terms), ring.zero))
+
+        def by_h() -> list[Poly]:
+            if not drifts:
+                return [-y for y in means]
+            late = [later(i, part, self.clocks) for i, part in pairs]
+            return [-y - x for y, x in zip(means, late, strict=True)]
+
+        by_t = {"t": lambda: [-later(i, part, [ring.one] * count) for i, part in pairs]}
         define(
             ring,
             own,
@@ -93,39 +109,48 @@ class _Equations:
             partials={
                 "p": lambda: [-sum(row[0::2], ring.zero) for row in change],
                 "q": lambda: [-sum(row[1::2], ring.zero) for row in change],
-                "h": lambda: [-y for y in means],
+                "h": by_h,
+                **(by_t if drifts else {}),
             },
             starts=[h * sum(self.a[i], ring.zero) * force[part] for i, part in pairs],
-            added_to=list(stages.start) * count,
+            added_to=list(stages.start[:2]) * count,
         )
-        p_next, q_next = (x + h * mean(self.b, part) for part, x in enumerate(stages.start))
+        p_next, q_next = (x + h * mean(self.b, part) for part, x in enumerate(stages.start[:2]))
         step = Substep(stages.field, p_next, q_next, self.tableau.area_conditions())
-        return StepMap(
-            self.hamiltonian, (step,), self.taylor, lambda: order_of(self.tableau, self.source)
-        )
+        return StepMap(self.hamiltonian, (step,), self.taylor, self._known_order)
 
-    def _at_stages(self, own: Sequence[Poly]) -> tuple[list[Point], list[Matrix]]:
-        """f and f' at each Y_j."""
+    def _known_order(self) -> int | None:
+        """By rooted trees, which are those of an autonomous H."""
+        return None if self.source.timed else order_of(self.tableau, self.source)
+
+    def _at_stages(self, own: Sequence[Poly]) -> tuple[list[Point], list[Matrix], list[Point]]:
+        """f and f' at each Y_j, and ∂f/∂t where H depends on time."""
         ring, source = self.stages.ring, self.source
         diff = source.ring.diff
         second = diff(source.h_p, "p"), diff(source.h_q, "p"), diff(source.h_q, "q")
         slopes: list[Point] = []
         gradients: list[Matrix] = []
-        for z in zip(own[0::2], own[1::2], strict=True):
-            point = [x + y for x, y in zip(self.stages.start, z, strict=True)]
-            at = self.stages.at(self.stages.named((point[0], point[1])))
+        drifts: list[Point] = []
+        for *z, clock in zip(own[0::2], own[1::2], self.clocks, strict=True):
+            change = [*z, ring.variable("h") * clock][: len(self.stages.names)]
+            point = [x + y for x, y in zip(self.stages.start, change, strict=True)]
+            at = self.stages.at(self.stages.named(tuple(point)))
             slopes.append((ring.named(at(-source.h_q)), ring.named(at(source.h_p))))
             pp, pq, qq = (ring.named(at(x)) for x in second)
             gradients.append([[-pq, -qq], [pp, pq]])
-        return slopes, gradients
+            if source.timed:
+                p_t, q_t = (ring.named(at(diff(x, "t"))) for x in (source.h_p, source.h_q))
+                drifts.append((-q_t, p_t))
+        return slopes, gradients, drifts
 
     def taylor(self, most: int) -> Expanded:
         """p' and q' up to h^most, by iteration: each makes one power of h more right."""
         field, ring, count = self.source, self.source.ring, self.count
         rows = [self.numbers[count * i : count * (i + 1)] for i in range(count + 1)]
         start = [ring.variable(name) for name in ("p", "q")]
-        gradient = [partials(ring, x) for x in (-field.h_q, field.h_p)]
-        slopes = [[Series.of(ring, [x(0, 0)], 0) for x in gradient]] * count
+        force = [-field.h_q, field.h_p]
+        gradient = [partials(ring, x) for x in force]
+        slopes = [[Series.of(ring, [x], 0) for x in force]] * count
 
         def moved(weights: Sequence[Poly], part: int, longest: int) -> Series:
             """h Σ w_j k_j, as far as h^longest."""
@@ -137,7 +162,14 @@ class _Equations:
 
         for longest in range(1, most):
             points = [[moved(row, part, longest) for part in (0, 1)] for row in rows[:-1]]
-            slopes = [[at_point(x, *point) for x in gradient] for point in points]
+            if field.timed:
+                clocks = [
+                    Series.of(ring, [ring.zero, sum(row, ring.zero)], longest) for row in rows
+                ]
+                timed = zip(points, clocks, strict=False)
+                slopes = [[at_time(ring, x, u, v, w) for x in force] for (u, v), w in timed]
+            else:
+                slopes = [[at_point(x, *point) for x in gradient] for point in points]
         p, q = (
             Series.of(ring, [x], most) + moved(rows[-1], part, most) for part, x in enumerate(start)
         )

@@ -1,5 +1,7 @@
 """Explicit Runge–Kutta schemes for one H.
 
+Where that depends on time, t is one more coordinate, of slope 1: stage i is taken at t + c_i h.
+
 The same few lines, `RungeKutta.step`, are read in two ways: with ring elements they make the map,
 stage by stage, and with power series in h its Taylor series.
 """
@@ -7,7 +9,7 @@ stage by stage, and with power series in h its Taylor series.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.algebra.series.power_series import Series, at_point, partials
+from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.scheme import Scheme
@@ -36,21 +38,25 @@ def runge_kutta_map(hamiltonian: Hamiltonian, tableau: RungeKutta) -> StepMap:
     ring = stages.ring
 
     def moved(weights: Sequence[Fraction], slopes: Sequence[Point]) -> Point:
-        p, q = stages.start
-        for w, (u, v) in zip(weights, slopes, strict=True):
+        point = stages.start
+        for w, slope in zip(weights, slopes, strict=True):
             part = ring.constant(w) * ring.variable("h")
-            p, q = p + part * u, q + part * v
-        return p, q
+            point = tuple(x + part * u for x, u in zip(point, slope, strict=True))
+        return point
 
-    substep = Substep(stages.field, *tableau.step(stages.slope, moved))
+    p_next, q_next, *_ = tableau.step(stages.slope, moved)
+    substep = Substep(stages.field, p_next, q_next)
     return StepMap(hamiltonian, (substep,), lambda most: (field, *taylor(field, tableau, most)))
 
 
 def taylor(field: VectorField, tableau: RungeKutta, most: int) -> tuple[Series, Series]:
     """The Taylor series of p' and q' up to h^most."""
     ring = field.ring
-    start = [Series.of(ring, [ring.variable(name)], most) for name in ("p", "q")]
-    gradient = [partials(ring, x) for x in (-field.h_q, field.h_p)]
+    names = ("p", "q", "t") if field.timed else ("p", "q")
+    start = [Series.of(ring, [ring.variable(name)], most) for name in names]
+    force = [-field.h_q, field.h_p]
+    gradient = [partials(ring, x) for x in force]
+    one = Series.of(ring, [ring.one], most)
 
     def moved(weights: Sequence[Fraction], slopes: Sequence[list[Series]]) -> list[Series]:
         result = []
@@ -62,8 +68,10 @@ def taylor(field: VectorField, tableau: RungeKutta, most: int) -> tuple[Series, 
         return result
 
     def slope(point: Sequence[Series]) -> list[Series]:
-        u, v = (x - x0 for x, x0 in zip(point, start, strict=True))
+        u, v, *w = (x - x0 for x, x0 in zip(point, start, strict=True))
+        if w:
+            return [*(at_time(ring, x, u, v, w[0]) for x in force), one]
         return [at_point(partial, u, v) for partial in gradient]
 
-    p, q = tableau.step(slope, moved)
+    p, q, *_ = tableau.step(slope, moved)
     return p, q

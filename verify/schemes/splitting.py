@@ -1,21 +1,42 @@
-"""Compositions of the two shears of H = T(p) + V(q): kicks p − a h V'(q), drifts q + a h T'(p)."""
+"""Compositions of the two shears of H = T(p) + V(q): kicks p − a h V'(q), drifts q + a h T'(p).
+
+Where H depends on time, each part has a time of its own. By default a kick is made at t + h times
+the sum of the drifts before it, and a drift at t + h times the sum of the kicks before it: two
+clocks, each of which the other flow advances. So the parts are flows of an autonomous H in two more
+degrees of freedom, in which the clocks are coordinates, and the order that the parts have for every
+separable H stays. A time that is given is a part of h as well.
+"""
 
 from collections.abc import Iterable, Sequence
 from itertools import cycle
 
 import sympy
 
+from verify.algebra.formula import symbol
+from verify.algebra.ring import Poly
+from verify.algebra.series.power_series import Series, at_time
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting_conditions import LETTERS, Part, Splitting
-from verify.schemes.step_map import StepMap, Substep
+from verify.schemes.step_map import Expanded, StepMap, Substep
+
+Times = tuple[sympy.Expr | None, ...]  # those that are given, None for one that is not
 
 
 def splitting(
-    name: str, parts: Sequence[Part], *, order: int, symmetric: bool, source: str
+    name: str,
+    parts: Sequence[Part],
+    *,
+    order: int,
+    symmetric: bool,
+    source: str,
+    times: Times = (),
 ) -> Scheme:
-    """The scheme that kicks and drifts by these parts of h in turn; every one preserves area."""
+    """The scheme that kicks and drifts by these parts of h in turn; every one preserves area.
+
+    `times`: that of each part, in parts of h; left out, the two clocks' own.
+    """
     return Scheme(
         name=name,
         order=order,
@@ -23,8 +44,8 @@ def splitting(
         explicit=True,
         symmetric=symmetric,
         source=source,
-        build=lambda hamiltonian: shears(hamiltonian, name, parts),
-        every_h=Splitting(tuple(parts)),
+        build=lambda hamiltonian: shears(hamiltonian, name, parts, times),
+        every_h=Splitting(tuple(parts), times=times if any(x is not None for x in times) else ()),
     )
 
 
@@ -52,23 +73,89 @@ def composed(first: str, steps: Sequence[sympy.Expr]) -> tuple[Part, ...]:
     return alternating(first, [steps[0] / 2, *inner])
 
 
-def shears(hamiltonian: Hamiltonian, scheme: str, parts: Sequence[Part]) -> StepMap:
+def right_times(parts: Sequence[Part]) -> tuple[sympy.Expr, ...]:
+    """The time of each part by the two clocks, in parts of h.
+
+    >>> right_times(alternating("kick", [sympy.Rational(1, 2), sympy.S.One, sympy.Rational(1, 2)]))
+    (0, 1/2, 1)
+    """
+    clocks = dict.fromkeys(LETTERS, sympy.S.Zero)
+    found = []
+    for kind, size in parts:
+        (other,) = (each for each in LETTERS if each != kind)
+        found.append(clocks[other])
+        clocks[kind] += size
+    return tuple(found)
+
+
+def all_times(parts: Sequence[Part], given: Times = ()) -> tuple[sympy.Expr, ...]:
+    """The time of each part: the one that is given, else that of `right_times`."""
+    own = given or (None,) * len(parts)
+    both = zip(own, right_times(parts), strict=True)
+    return tuple(right if time is None else time for time, right in both)
+
+
+def shears(
+    hamiltonian: Hamiltonian, scheme: str, parts: Sequence[Part], times: Times = ()
+) -> StepMap:
     """The map that kicks and drifts by these parts of h in turn, `scheme` being its name.
 
-    Raises InputError unless H = T(p) + V(q).
+    Raises InputError unless H = T(p) + V(q), or T(p, t) + V(q, t).
     """
     field, sizes = hamiltonian.field(*(size for _, size in parts))
-    ring = field.ring
     if not field.separable():
         raise InputError(
             "hamiltonian",
             str(hamiltonian.expression),
             f"{scheme} is explicit only for H = T(p) + V(q)",
         )
-    p, q, h = (ring.variable(name) for name in ("p", "q", "h"))
-    steps = []
-    for (kind, _), size in zip(parts, sizes, strict=True):
-        kicked, drifted = p - size * h * field.h_q, q + size * h * field.h_p
-        step = Substep(field, kicked, q) if kind == "kick" else Substep(field, p, drifted)
-        steps.append(step)
+    if field.timed:
+        return _at_times(hamiltonian, parts, all_times(parts, times))
+    h = field.ring.variable("h")
+    moves = [_move(field, kind) for kind, _ in parts]
+    steps = [
+        _shear(field, kind, h * size * move)
+        for (kind, _), size, move in zip(parts, sizes, moves, strict=True)
+    ]
     return StepMap(hamiltonian, tuple(steps))
+
+
+def _move(field: VectorField, kind: str) -> Poly:
+    """−H_q of a kick, H_p of a drift."""
+    return -field.h_q if kind == "kick" else field.h_p
+
+
+def _shear(field: VectorField, kind: str, by: Poly) -> Substep:
+    p, q = (field.ring.variable(name) for name in ("p", "q"))
+    return Substep(field, p + by, q) if kind == "kick" else Substep(field, p, q + by)
+
+
+def _at_times(
+    hamiltonian: Hamiltonian, parts: Sequence[Part], times: Sequence[sympy.Expr]
+) -> StepMap:
+    """The shears of H(p, q, t), each with H's derivative at its own time."""
+    p, q, t, h = map(symbol, "pqth")
+    slopes = {"kick": -hamiltonian.exact.diff(q), "drift": hamiltonian.exact.diff(p)}
+    moves = [slopes[kind].subs(t, t + h * at) for (kind, _), at in zip(parts, times, strict=True)]
+    field, elements = hamiltonian.field(
+        *(h * size * move for (_, size), move in zip(parts, moves, strict=True))
+    )
+    steps = [_shear(field, kind, by) for (kind, _), by in zip(parts, elements, strict=True)]
+    return StepMap(hamiltonian, tuple(steps), lambda most: _taylor(hamiltonian, parts, times, most))
+
+
+def _taylor(
+    hamiltonian: Hamiltonian, parts: Sequence[Part], times: Sequence[sympy.Expr], most: int
+) -> Expanded:
+    """p' and q' up to h^most."""
+    numbers = [x for (_, size), time in zip(parts, times, strict=True) for x in (size, time)]
+    field, exact = hamiltonian.field(*numbers)
+    ring = field.ring
+    start = {name: Series.of(ring, [ring.variable(name)], most) for name in ("p", "q")}
+    z = dict(start)
+    for (kind, _), size, time in zip(parts, exact[0::2], exact[1::2], strict=True):
+        u, v = (z[name] - start[name] for name in ("p", "q"))
+        clock = Series.of(ring, [ring.zero, time], most)
+        moved = at_time(ring, _move(field, kind), u, v, clock).times(size).shifted(1)
+        z["p" if kind == "kick" else "q"] += moved
+    return field, z["p"], z["q"]

@@ -49,11 +49,14 @@ _DIGITS = 12  # of a residue
 class Splitting:
     """Kicks p − a h V'(q) and drifts q + a h T'(p) of these parts of h, for H = T(p) + V(q).
 
-    The parts are rational or algebraic numbers. It is a `verify.algebra.conditions.ByConditions`.
+    The parts are rational or algebraic numbers. `times`: of an H that depends on time, when each
+    part is made, in parts of h from the step's start, where that is given. It is a
+    `verify.algebra.conditions.ByConditions`.
     """
 
     parts: tuple[Part, ...]
     separable: bool = True
+    times: tuple[sympy.Expr | None, ...] = ()
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     @property

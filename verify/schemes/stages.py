@@ -11,13 +11,13 @@ lower powers of h, which vanish identically in the closed form, vanish here only
 working precision it costs the digits from h², or h, to the order of ΔJ; bounds of runs count that.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from verify.algebra.generator import Generator, terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.hamiltonians.hamiltonian import VectorField
 
-Point = tuple[Poly, Poly]
+Point = tuple[Poly, ...]  # p, q, and t where H depends on time
 _NAMES = 4  # for a stage: its point and its slope
 _DERIVATIVES = 7  # of a name: itself, its two first partial derivatives and its four second ones
 
@@ -25,7 +25,8 @@ _DERIVATIVES = 7  # of a name: itself, its two first partial derivatives and its
 class Stages:
     """A ring with room for so many stages of a vector field, and the field at points of it.
 
-    `start` is (p, q) in that ring, and `field` the vector field there. `more`: generators beside.
+    `start` is (p, q) in that ring, or (p, q, t), and `field` the vector field there. `more`:
+    generators beside.
     """
 
     def __init__(self, field: VectorField, count: int, more: int = 0) -> None:
@@ -33,21 +34,24 @@ class Stages:
         functions = len(field.ring.generators) - len(field.ring.variables)
         room = (count + 1) * functions + count * _NAMES * _DERIVATIVES + more
         self.ring = Ring(field.ring.variables, room)
-        self.start = self.ring.variable("p"), self.ring.variable("q")
+        self.names = ("p", "q", "t") if field.timed else ("p", "q")
+        self.start: Point = tuple(map(self.ring.variable, self.names))
         at = self.at(self.start)
         self.field = VectorField(self.ring, at(field.h_p), at(field.h_q))
 
     def at(self, point: Point) -> "_Moved":
         """Takes elements of the field's own ring to their values at the point."""
-        return _Moved(self.source.ring, self.ring, *point)
+        return _Moved(self.source.ring, self.ring, dict(zip(self.names, point, strict=True)))
 
     def named(self, point: Point) -> Point:
-        return self.ring.named(point[0]), self.ring.named(point[1])
+        """Names for p and q; the time is as short as a name."""
+        return *map(self.ring.named, point[:2]), *point[2:]
 
     def slope(self, point: Point) -> Point:
-        """(−H_q, H_p) at the point, by names."""
+        """(−H_q, H_p) at the point, by names, and 1, by which t moves."""
         at = self.at(self.named(point))
-        return self.named((at(-self.source.h_q), at(self.source.h_p)))
+        slope = self.named((at(-self.source.h_q), at(self.source.h_p)))
+        return (*slope, self.ring.one)[: len(self.names)]
 
 
 def chained(field: VectorField, maps: Sequence[Point]) -> tuple[VectorField, Poly, Poly]:
@@ -56,22 +60,22 @@ def chained(field: VectorField, maps: Sequence[Point]) -> tuple[VectorField, Pol
     Returns the field in the ring of the result, and the result.
     """
     stages = Stages(field, len(maps))
-    point = stages.start
+    p, q, *time = stages.start  # a map has its own clock, which begins with the step
     for p_next, q_next in maps:
-        at = stages.at(stages.named(point))
-        point = at(p_next), at(q_next)
-    return stages.field, *point
+        at = stages.at(stages.named((p, q, *time)))
+        p, q = at(p_next), at(q_next)
+    return stages.field, p, q
 
 
 class _Moved:
-    """Elements of one ring at a point of another one: x ↦ x(P, Q)."""
+    """Elements of one ring at a point of another one: x ↦ x(P, Q), or x(P, Q, T)."""
 
-    def __init__(self, source: Ring, target: Ring, p: Poly, q: Poly) -> None:
-        self.target = target
+    def __init__(self, source: Ring, target: Ring, point: Mapping[str, Poly]) -> None:
+        self.target, self.point = target, point
         self.images: dict[int, Poly] = {}
         new: dict[int, Generator] = {}
         for g in source.generators:
-            image = self._known(g, p, q)
+            image = self._known(g)
             if image is None:
                 new[g.index] = g
                 expression = g.expression if g.argument is None else None
@@ -87,10 +91,10 @@ class _Moved:
             chain = [(self(outer), self(inner[name])) for name, outer in gradient.items()]
             target.set_chain(self.images[index], chain)
 
-    def _known(self, g: Generator, p: Poly, q: Poly) -> Poly | None:
+    def _known(self, g: Generator) -> Poly | None:
         if g.kind == "variable":
             name = str(g.expression)
-            return {"p": p, "q": q}[name] if name in ("p", "q") else self.target.variable(name)
+            return self.point[name] if name in self.point else self.target.variable(name)
         argument = None if g.argument is None else self(g.argument)
         return self.target.find(g.kind, argument, g.degree)
 

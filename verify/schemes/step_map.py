@@ -123,11 +123,12 @@ class StepMap:
 
     @classmethod
     def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
-        """A user's own map, from formulas in p, q, h and the parameters of H.
+        """A user's own map, from formulas in p, q, h, the parameters of H, and t where H has it.
 
         `q_next` may also use p_next, and then stands for the composition. Raises InputError.
         """
-        names = ("p", "q", "h", *hamiltonian.parameters)
+        time = ("t",) if hamiltonian.time_dependent else ()
+        names = ("p", "q", "h", *time, *hamiltonian.parameters)
         if "p_next" in names:
             raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
         p1, asked = read(p_next, names, source="p_next")

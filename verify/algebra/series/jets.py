@@ -11,6 +11,7 @@ h⁰, h¹, …, cut off at the same power.
 """
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from itertools import product
 
@@ -20,52 +21,27 @@ Poly = flint.fmpq_mpoly
 Series = list[Poly]
 
 
-class Jets:
-    """The ring of p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a derivative beyond."""
+class JetRing(ABC):
+    """Polynomials in p, q and derivatives of H: `names` are those of all variables."""
 
-    def __init__(self, order: int, *, separable: bool = False) -> None:
-        self.order, self.separable = order, separable
-        self.indices = [
-            (n - j, j)
-            for n in range(1, order + 1)
-            for j in range(n + 1)
-            if not separable or j in (0, n)
-        ]
-        names = ["p", "q", *("H_" + "p" * i + "q" * j for i, j in self.indices)]
-        self.context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.degrevlex)
+    def __init__(self, names: Sequence[str]) -> None:
+        self.context = flint.fmpq_mpoly_ctx.get(list(names), flint.Ordering.degrevlex)
         self.names = tuple(names)
-        self._at = {index: k + 2 for k, index in enumerate(self.indices)}
-        self._gens = self.context.gens()
-        self.p, self.q = self._gens[:2]
+        self.gens = self.context.gens()
+        self.p, self.q = self.gens[:2]
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
 
-    def h(self, i: int, j: int) -> Poly:
-        """H_ij."""
-        if self.separable and i and j:
-            return self.zero
-        if i + j > self.order:
-            raise OverflowError(f"a derivative of order {i + j} of H; there are {self.order}")
-        return self._gens[self._at[i, j]]
-
-    # -- derivatives --------------------------------------------------------------------------
-
+    @abstractmethod
     def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂p or ∂x/∂q."""
-        di, dj = (1, 0) if name == "p" else (0, 1)
-        total = x.derivative("pq".index(name))
-        for at, degree in enumerate(x.degrees()[2:], 2):
-            if degree > 0:  # −1 of zero
-                i, j = self.indices[at - 2]
-                total += x.derivative(at) * self.h(i + di, j + dj)
-        return total
+        """∂x/∂p or ∂x/∂q; ∂x/∂t where H depends on time."""
+
+    @abstractmethod
+    def derive(self, x: Poly) -> Poly:
+        """The derivative along the flow."""
 
     def reduce(self, x: Poly) -> Poly:
         """x itself: between jets there are no relations."""
         return x
-
-    def derive(self, x: Poly) -> Poly:
-        """X x, the derivative along the flow."""
-        return self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
 
     def lie_derivatives(self, name: str, most: int) -> Series:
         """[y, X y, …, X^most y] of y = p or q."""
@@ -84,6 +60,45 @@ class Jets:
         for n in range(1, len(p_next)):
             pairs = [(gradients[0][k], gradients[1][n - k]) for k in range(n + 1)]
             yield sum((a * d - b * c for (a, b), (c, d) in pairs), self.zero)
+
+
+class Jets(JetRing):
+    """The ring of p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a derivative beyond."""
+
+    def __init__(self, order: int, *, separable: bool = False) -> None:
+        self.order, self.separable = order, separable
+        self.indices = [
+            (n - j, j)
+            for n in range(1, order + 1)
+            for j in range(n + 1)
+            if not separable or j in (0, n)
+        ]
+        super().__init__(["p", "q", *("H_" + "p" * i + "q" * j for i, j in self.indices)])
+        self._at = {index: k + 2 for k, index in enumerate(self.indices)}
+
+    def h(self, i: int, j: int) -> Poly:
+        """H_ij."""
+        if self.separable and i and j:
+            return self.zero
+        if i + j > self.order:
+            raise OverflowError(f"a derivative of order {i + j} of H; there are {self.order}")
+        return self.gens[self._at[i, j]]
+
+    # -- derivatives --------------------------------------------------------------------------
+
+    def diff(self, x: Poly, name: str) -> Poly:
+        """∂x/∂p or ∂x/∂q."""
+        di, dj = (1, 0) if name == "p" else (0, 1)
+        total = x.derivative("pq".index(name))
+        for at, degree in enumerate(x.degrees()[2:], 2):
+            if degree > 0:  # −1 of zero
+                i, j = self.indices[at - 2]
+                total += x.derivative(at) * self.h(i + di, j + dj)
+        return total
+
+    def derive(self, x: Poly) -> Poly:
+        """X x, the derivative along the flow."""
+        return self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
 
     # -- series -------------------------------------------------------------------------------
 

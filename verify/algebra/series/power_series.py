@@ -119,6 +119,20 @@ def at_point(partial: Partial, u: Series, v: Series) -> Series:
     return total
 
 
+def at_time(ring: Ring, x: Poly, u: Series, v: Series, w: Series) -> Series:
+    """f(p + u, q + v, t + w) for the ring element f; u, v and w are O(h)."""
+    if not w.coefficients[0].is_zero():
+        raise ValueError("the time is not t at h = 0")
+    total, power = Series.of(ring, [], u.most), Series.of(ring, [ring.one], u.most)
+    for n in range(u.most + 1):
+        if x.is_zero() or power.vanishes:
+            break
+        share = power.times(Fraction(1, math.factorial(n)))
+        total += at_point(partials(ring, x), u, v) * share
+        x, power = ring.diff(x, "t"), power * w
+    return total
+
+
 def delta_j(p_next: Series, q_next: Series) -> Series:
     """ΔJ of the map with these series, by its increments."""
     ring = p_next.ring

@@ -132,9 +132,12 @@ def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def hamiltonian_of(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...], *, time: bool = False
 ) -> "Hamiltonian":
-    """The Hamiltonian that the options name; InputError unless they name one."""
+    """The Hamiltonian that the options name; InputError unless they name one.
+
+    `time`: whether it may depend on t.
+    """
     from verify.hamiltonians import systems
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -154,7 +157,7 @@ def hamiltonian_of(
     if system is not None:
         return systems.get(system).hamiltonian(values)
     systems.check_is_formula(hamiltonian or "")
-    return Hamiltonian.parse(hamiltonian or "", values)
+    return Hamiltonian.parse(hamiltonian or "", values, time=time)
 
 
 def paper_folder() -> Path:

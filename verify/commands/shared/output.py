@@ -84,9 +84,10 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
     closed = proof.step_map.delta_j_text
     shown = "left out: the closed form is too large" if closed is None else cut(closed)
     click.echo(f"  exactly  ΔJ = {shown}")
+    by = "D" if exact.time_dependent else "X"  # D = ∂_t + X
     if potential.text is not None and proof.order is not None:
         click.echo(
-            f"  along an orbit the leading term telescopes: it is X·G, G = {cut(potential.text)}"
+            f"  along an orbit the leading term telescopes: it is {by}·G, G = {cut(potential.text)}"
         )
     elif potential.holds is False:
         click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")

@@ -11,6 +11,7 @@ from functools import lru_cache
 from verify.algebra.implicit_unknowns import define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, partials
+from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.methods.splitting.symplectic_euler import PARTS
@@ -32,6 +33,9 @@ def implicit_euler_map(hamiltonian: Hamiltonian) -> StepMap:
     ring = field.ring
     if field.separable():
         return shears(hamiltonian, _NAME, PARTS)
+    if field.timed:
+        problem = f"{_NAME} takes an H that depends on time only as T(p, t) + V(q, t) as yet"
+        raise InputError("hamiltonian", str(hamiltonian.expression), problem)
     mixed = ring.diff(field.h_q, "p")
     if ring.decide(ring.diff(mixed, "p")).zero is not True:
         return _by_equations(hamiltonian, field)

@@ -1,7 +1,7 @@
 """A user's own map, written as formulas: `p_next = p - h*q; q_next = q + h*p_next`.
 
-The formulas may use p, q, h and the parameters of H; q_next may use p_next. The map claims
-consistency (order 1) and nothing else; what it has is proved, not believed.
+The formulas may use p, q, h, the parameters of H, and t where H depends on it; q_next may use
+p_next. The map claims consistency (order 1) and nothing else; what it has is proved, not believed.
 """
 
 from verify.errors import InputError

@@ -2,7 +2,12 @@
 
 Coefficients are exact: decimals and quotients, and what they are made of by `sqrt` and powers, as
 `drift 1/(2 - 2**(1/3))`. `order` is what is claimed of it; without it that is 1.
+
+For an H that depends on time a part may have its own, in parts of h from the step's start, as in
+`kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is that of `right_times`.
 """
+
+import sympy
 
 from verify.algebra.formula import parse
 from verify.errors import InputError
@@ -25,13 +30,14 @@ def make(name: str) -> Scheme | None:
     if any(len(part) < 2 for part in words) or len(words) > _MOST_PARTS:
         raise InputError("scheme", name, _FORM)
     order = _order(name, words.pop()[1]) if words[-1][0] == "order" else 1
-    parts = tuple(_part(name, *part) for part in words)
+    parts, times = zip(*(_part(name, *part) for part in words), strict=True)
     return splitting(
         "; ".join(" ".join(part.split()) for part in name.split(";") if part.strip()),
         parts,
         order=order,
         symmetric=_palindrome(parts),
         source="the user's coefficients",
+        times=times,
     )
 
 
@@ -44,12 +50,15 @@ def _order(name: str, text: str) -> int:
     return order
 
 
-def _part(name: str, kind: str, size: str) -> Part:
+def _part(name: str, kind: str, text: str) -> tuple[Part, sympy.Expr | None]:
+    """The part and its time, None where that is not given."""
     if kind not in LETTERS:
         raise InputError("scheme", name, f"{kind}: unknown; {_FORM}")
-    if "," in size:
+    if "," in text:
         raise InputError("scheme", name, f"a , parts nothing; {_FORM}")
-    return kind, parse(size, (), source=kind)
+    size, at, time = text.partition(" at ")
+    given = parse(time, (), source=f"{kind} at") if at else None
+    return (kind, parse(size, (), source=kind)), given
 
 
 def _palindrome(parts: tuple[Part, ...]) -> bool:
