@@ -13,6 +13,7 @@ from verify.execution.keeping import fingerprint
 from verify.execution.processes import safe_path
 
 _PATIENCE = 5.0  # seconds for a scheduler to answer, and to have a worker
+_LOGGERS = ("distributed", "tornado")
 _LOOK = 5.0  # seconds between two looks at who is there
 _FORSAKEN = 60.0  # seconds without any worker after which none is waited for
 _AHEAD = 2  # calls for each worker, so that it has the next while a result is on its way
@@ -143,11 +144,12 @@ class Cluster:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Without distributed's log: what goes wrong is said in one line, where it goes wrong."""
+    """Without distributed's log, and that of tornado below it: what goes wrong is said in one line,
+    where it goes wrong."""
     loggers = [
         logging.getLogger(name)
-        for name in ("distributed", *logging.root.manager.loggerDict)
-        if name.partition(".")[0] == "distributed"
+        for name in (*_LOGGERS, *logging.root.manager.loggerDict)
+        if name.partition(".")[0] in _LOGGERS
     ]
     levels = [logger.level for logger in loggers]
     for logger in loggers:

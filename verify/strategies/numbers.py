@@ -52,7 +52,8 @@ def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrate
     InputError for most ≤ 0.
 
     >>> from hypothesis import find, settings
-    >>> found = find(initial_values(), lambda z: z.q > 1, settings=settings(database=None))
+    >>> same = settings(database=None, derandomize=True)
+    >>> found = find(initial_values(), lambda z: z.q > 1, settings=same)
     >>> str(found.q), str(found.p)
     ('2', '0')
     """

@@ -27,7 +27,7 @@ from verify.verdict import Verdict
 HAMILTONIANS = st.one_of(polynomials(degree=4, most_terms=3), trigonometric(most_terms=1))
 STATES = st.tuples(*(st.builds(Fraction, st.integers(-8, 8), st.just(11)) for _ in "pq"))
 STEP = Fraction(1, 400)
-DIGITS = 40
+DIGITS, MORE = 40, 6
 
 
 @drawn(15)
@@ -37,10 +37,11 @@ def test_a_step_is_that_of_the_equations_solved_by_hand(
 ) -> None:
     made = schemes.get(name).step_map(Hamiltonian.parse(text))
     assume(_tame(text, z))
-    found = steps(made, "mpfr", DIGITS, z, STEP)
-    true = by_hand(text, TABLEAUS[name], z, STEP, DIGITS)
-    # The constants of a closed form are made of h and numbers of the size of 100, and lose by that.
-    assert max(abs(x - y) for x, y in zip(found, true, strict=True)) < Fraction(200, 10**DIGITS)
+    # A closed form moves by the distance to where the motion rests, which may be far, and loses
+    # some digits by that.
+    found = steps(made, "mpfr", DIGITS + MORE, z, STEP)
+    true = by_hand(text, TABLEAUS[name], z, STEP, DIGITS + MORE)
+    assert max(abs(x - y) for x, y in zip(found, true, strict=True)) < Fraction(50, 10**DIGITS)
     gap = abs(plain_determinant(made, "mpfr", DIGITS, z, STEP) - 1)
     assert gap < Fraction(1000, 10**DIGITS)
 

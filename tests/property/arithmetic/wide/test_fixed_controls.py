@@ -237,12 +237,12 @@ def test_a_reduced_argument_without_its_further_bits_is_caught(
 def test_an_iteration_that_ends_too_early_is_caught(
     monkeypatch: pytest.MonkeyPatch, kind: str, steps: int
 ) -> None:
-    true = newton.MoreFunctions._iterations
+    true = newton.iterations
 
-    def fewer(self: Any, *, quadratic: bool) -> int:
-        return true(self, quadratic=quadratic) - steps
+    def fewer(width: int, *, quadratic: bool) -> int:
+        return true(width, quadratic=quadratic) - steps
 
-    monkeypatch.setattr(newton.MoreFunctions, "_iterations", fewer)
+    monkeypatch.setattr(newton, "iterations", fewer)
     assert_caught(function(kind))
 
 
