@@ -60,7 +60,6 @@ FORMULAS = {
     "p**2/2 + tah(q)": "unknown function 'tah'; is tanh meant?",
     "p**2/2 + 0,5*q": "column 11: 'p**2/2 + 0,5*q' is not allowed; write a decimal with a point",
     "H = p**2/2 + q": "column 3: a formula has no =; write its right side alone",
-    "p**2/2 + q*t": "t is not allowed: an H that depends on time is not covered yet",
     "p**2/2 + \\omega*q": "this is LaTeX; write omega without the backslash",
     "p**2/2 + q!": "! is not allowed; write a factorial as the number",
     "p**2/2 + abs(q)": "abs is not smooth, and H must be; allowed: atan",
@@ -80,6 +79,19 @@ FORMULAS = {
 def test_a_formula(formula: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
     typed = ["prove", "--scheme", "lie2", "--hamiltonian", formula]
     told(capsys, typed, (f"hamiltonian={formula}: ", words))
+
+
+def test_an_h_that_depends_on_time_is_for_prove_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    formula, run = "p**2/2 + q*t", "--steps 3 --step-size 0.1 --q 1 --p 0"
+    words = ("is not allowed: an H that depends on time is taken by `prove` alone as yet",)
+    for command in (f"run {run}", f"separate {run}", f"export -o {'x.c'}"):
+        name, *rest = command.split()
+        told(capsys, [name, "--scheme", "lie2", "--hamiltonian", formula, *rest], words)
+    lie2 = ["prove", "--scheme", "lie2"]
+    told(capsys, [*lie2, "--hamiltonian", formula, "--certificate", "c.json"], ("as yet",))
+    timed = [*lie2, "--every-hamiltonian", "--time-dependent", "--certificate", "c.json"]
+    told(capsys, timed, ("as yet",))
+    told(capsys, [*lie2, "--time-dependent", "--hamiltonian", formula], ("--time-dependent",))
 
 
 SCHEMES = {

@@ -153,5 +153,6 @@ def _equation(word: Word, flow: Fraction) -> str:
         ((kind, n),) = word
         times = "" if n == 0 else "·time" if n == 1 else f"·time^{n}"
         return f"Σ {_PLURAL[kind]}{times} = {flow}"
-    letters = " ".join(kind if n == 0 else f"{kind}_{n}" for kind, n in word)
+    between = " " if any(n for _, n in word) else ""
+    letters = between.join(kind if n == 0 else f"{kind}_{n}" for kind, n in word)
     return f"coefficient of {letters} = {flow}"
