@@ -55,7 +55,9 @@ def hamiltonian_from(
         raise InputError("parameters", parameters, "is not a mapping of names to values")
     if isinstance(system, Hamiltonian):
         if system.time_dependent and not time:
-            raise InputError("hamiltonian", system.formula, "depends on t: prove alone takes that")
+            raise InputError(
+                "hamiltonian", system.formula, "depends on t: only prove and run take that"
+            )
         values = {**dict(system.values), **(parameters or {})}
         return system.with_values(values) if parameters else system
     if isinstance(system, System):

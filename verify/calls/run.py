@@ -33,6 +33,7 @@ def run(
     step_size: Exact,
     steps: int | None = None,
     time: Exact | None = None,
+    t0: Exact = 0,
     parameters: GivenParameters = None,
     arithmetic: str | None = None,
     digits: int | None = None,
@@ -49,6 +50,7 @@ def run(
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10.
     steps, time: one of the two; N = ⌊time / step_size⌋ steps.
+    t0: when the run starts, for an H that depends on t.
     parameters: exact values by name, beside those that the Hamiltonian has.
     arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
         Left out: float64, or auto where `digits` is given.
@@ -71,8 +73,8 @@ def run(
     >>> found.values["lambda"] < 0, found.orbit.t.tolist()[:3], found.orbit.texts("p")[1]
     (True, [0.0, 0.01, 0.02], '-0.04875')
     """
-    exact = hamiltonian_from(system, parameters)
-    check_start(exact, q, p)
+    exact = hamiltonian_from(system, parameters, time=True)
+    check_start(exact, q, p, t0)
     name = scheme_name(scheme, exact)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)
@@ -88,6 +90,7 @@ def run(
             p=p,
             step_size=step_size,
             steps=count,
+            t0=t0,
             arithmetic=arithmetic,
             digits=digits or _DIGITS,
             observables=tuple(observables) if is_list(observables) else (str(observables),),

@@ -19,13 +19,14 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@with_hamiltonian
+@with_hamiltonian(time=True)
 @scheme_option
 @answering
 @cache_option
 @click.option("--step-size", required=True, metavar="H", help="Greater than 0.")
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
 @click.option("--time", metavar="T", help="N is T/H rounded down.")
+@click.option("--t0", default="0", metavar="T", help="When it starts, of an H(p, q, t).")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")

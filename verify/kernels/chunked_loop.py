@@ -15,6 +15,7 @@ from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, State
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels import tangent_map
+from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel
 from verify.kernels.run_inputs import RunInputs
 from verify.scenes.results.run import SeriesPoint
@@ -89,6 +90,8 @@ class ChunkedLoop:
         self.fixed: list[Number] = [number(x) for x in run.inputs(kernel, shift).values()]
         self.fixed += [shift] if kernel.scales else []
         self.fixed += [number(x) for x in limits]
+        if kernel.timed:
+            self.fixed += [number(x) for x in clock_inputs(arithmetic, run.start).values()]
         self.state: State = self._first_state()
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
         self._observables = ("p", "q", *sorted(run.observables & set(_ACCUMULATORS)))
@@ -105,6 +108,8 @@ class ChunkedLoop:
 
     def _first_state(self) -> State:
         start, number = self.run.start, self.arithmetic.number
+        if self.kernel.timed:
+            start = start | first_rest(self.arithmetic, start)
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)

@@ -39,8 +39,8 @@ class Observed:
 @dataclass(frozen=True, eq=False)
 class Computation:
     """`outputs`: the indices of the increments of p and q, `dp` and `dq`, of ΔJ, `dj`, and of det J
-    where it is asked for, `det`. `power` is the r of κ; `parameters` are those of H. Nobody writes
-    into the program any more.
+    where it is asked for, `det`. `power` is the r of κ; `parameters` are those of H; `timed` says
+    whether it depends on t, which is one more input then. Nobody writes into the program any more.
     """
 
     program: Program
@@ -48,6 +48,7 @@ class Computation:
     tangent: Tangent | None
     power: int
     parameters: tuple[str, ...]
+    timed: bool
 
     @property
     def roots(self) -> list[int]:
@@ -74,7 +75,8 @@ def _first_part(
     arguments = {"h": "h"} | {n: f"x{k}" for k, n in enumerate(parameters)}
     named = {n: program.input(a, static=True) for n, a in arguments.items()}
     found = program.constant(Fraction(0))
-    named |= {n: program.input(n, static=False) for n in _STATE}
+    time = ("t",) if step_map.hamiltonian.time_dependent else ()
+    named |= {n: program.input(n, static=False) for n in (*_STATE, *time)}
     if scaled:
         program.input("kappa", static=True)
     first = step_map.substeps[0]
@@ -117,7 +119,8 @@ def computed(step_map: StepMap, asked: Observed) -> Computation:
         a, b, c, d = jacobian
         minus = program.neg(program.mul(b, c))
         result["det"] = program.add(program.mul(a, d), minus)
-    return Computation(program, result, tangent, power, step_map.hamiltonian.symbols)
+    exact = step_map.hamiltonian
+    return Computation(program, result, tangent, power, exact.symbols, exact.time_dependent)
 
 
 def _delta_j(evaluator: Evaluator, step: Substep, scaled: bool, power: int) -> int:

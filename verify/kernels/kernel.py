@@ -5,6 +5,8 @@ the closed form of ΔJ as Λ ← Λ + ΔJ + Λ ΔJ, `lambda_max` the greatest |�
 `lambda_plain` Π det J the plain way (four entries,
 their determinant, the product), `extremes` the least and greatest ΔJ and Λ of one call's steps.
 
+Where H depends on time, step k is made at t = t₀ + k h (`verify.kernels.clock`).
+
 `tangent` carries the tangent map along (see `verify.kernels.tangent_map`), for a rigorous bound.
 
 Where an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
@@ -26,6 +28,7 @@ from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import newton, tangent_map
+from verify.kernels.clock import clock_of
 from verify.kernels.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.lowering import Lowering
 from verify.schemes.step_map import StepMap
@@ -44,7 +47,7 @@ LOOP = "    for k in range(steps):"  # what is before this line is the same for 
 class Kernel(Computation):
     """What is computed, in an arithmetic.
 
-    `function(steps, h, *parameters, *scales, *limits, *state)` → (steps done, *state).
+    `function(steps, h, *parameters, *scales, *limits, *clock, *state)` → (steps done, *state).
 
     `state_names` names the state and accumulators in their order: p, q, then those of the
     observables; `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start`
@@ -106,6 +109,9 @@ class Writer:
             self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
         )
         self.state_names: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
+        self.clock = clock_of(arithmetic) if self.made.timed else None
+        for name, start in self.clock.carried if self.clock else ():
+            self.carry(name, start)
 
     # -- what is computed ---------------------------------------------------------------------
 
@@ -114,14 +120,16 @@ class Writer:
         lines = self.statements(self.made.outputs)
         limits = LIMITS if self.arithmetic.absolute else ()
         scales = SCALES if self.scaled else ()
+        clock = self.clock.arguments if self.clock else ()
         needed = self.made.roots
         self.check(needed)
-        source = self.assemble(needed, lines, (*scales, *limits))
+        source = self.assemble(needed, lines, (*scales, *limits, *clock))
         scope = {
             **self.arithmetic.functions,
             **self.lowering.named_constants(self.arithmetic.number, needed),
             **newton.constants(self.arithmetic.bits, self.arithmetic.number),
             **self.constants_of_tangent(),
+            **(self.clock.constants(self.arithmetic) if self.clock else {}),
         }
         names, kinds, start = zip(*self.state_names, strict=True)
         return Kernel(
@@ -242,6 +250,8 @@ class Writer:
         if self.tangent:
             more = self.tangent.lowering.lines(self.tangent.change)
             static, dynamic = static + more[0], dynamic + more[1]
+        if self.clock:
+            dynamic, statements = [self.clock.now, *dynamic], [*statements, *self.clock.later]
         names = ", ".join(name for name, _, _ in self.state_names)
         parameters = [f"x{k}" for k in range(len(self.made.parameters))]
         given = [f"{name}: 'int'" if name == "shift" else name for name in more_arguments]

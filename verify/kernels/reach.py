@@ -31,6 +31,9 @@ _SIDES = tuple(
 _ASCENDING = _SIDES[::-1]
 
 
+Times = tuple[Fraction, Fraction] | None
+
+
 class Limits(NamedTuple):
     """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `kernel.LIMITS`."""
 
@@ -41,16 +44,20 @@ class Limits(NamedTuple):
 
 
 def limits(
-    kernel: Kernel, inputs: Mapping[str, Fraction], start: Mapping[str, Fraction]
+    kernel: Kernel,
+    inputs: Mapping[str, Fraction],
+    start: Mapping[str, Fraction],
+    times: Times = None,
 ) -> Limits | None:
     """The kernel's limits for these h and parameters, by the names that its source has for them.
 
-    None where no box that holds the start is safe.
+    `times`: the first and the last, where H depends on time. None where no box that holds the start
+    is safe.
     """
     own = [abs(start[n]) for n in ("p", "q")]
     roomy = [[room * max(own)] * 2 for room in (16, 2)]
     boxes = tuple((_side(p), _side(q)) for p, q in (*roomy, own))
-    return _largest(kernel, tuple(inputs.items()), boxes)
+    return _largest(kernel, tuple(inputs.items()), times, boxes)
 
 
 def _side(size: Fraction) -> Fraction | None:
@@ -64,11 +71,12 @@ def _side(size: Fraction) -> Fraction | None:
 def _largest(
     kernel: Kernel,
     inputs: tuple[tuple[str, Fraction], ...],
+    times: Times,
     boxes: tuple[tuple[Fraction | None, Fraction | None], ...],
 ) -> Limits | None:
     """The limits of the first of the boxes that is safe, with the greatest limit of values, grown
     as far as can be."""
-    safe = partial(_room, kernel, inputs)
+    safe = partial(_room, kernel, inputs, times)
 
     def grown(p: Fraction, q: Fraction, value: Fraction) -> Limits:
         """First to all sides."""
@@ -92,6 +100,7 @@ def _largest(
 def _room(
     kernel: Kernel,
     inputs: tuple[tuple[str, Fraction], ...],
+    times: Times,
     p: Fraction,
     q: Fraction,
     value: Fraction,
@@ -103,11 +112,14 @@ def _room(
     given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs}
     around = flint.arb(0, 1)
     given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in (("p", p), ("q", q))}
+    if times:
+        first, last = map(rational_ball, times)
+        given["t"] = Rounded(first.union(last), flint.arb(0))
     program, live = kernel.lowering.program, kernel.lowering.live(kernel.roots)
     found = analyse(program, live, given, lambda *_: flint.arb(0), rational_ball(value))
     if found is None:
         return None
-    sizes = [x.magnitude for x in found.values()]
+    sizes = [x.magnitude for x in (*found.values(), *([given["t"]] if times else []))]
     size = {name: found[index].magnitude for name, index in kernel.outputs.items()}
     sizes += [rational_ball(p) + size["dp"], rational_ball(q) + size["dq"]]
     sizes.append(size["dj"] * size["dj"])

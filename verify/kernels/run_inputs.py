@@ -34,6 +34,8 @@ def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
 class RunInputs:
     """H, a scheme, where it starts, so many steps, and what is asked of them.
 
+    `start` has p, q, the step size h, and the time t where H depends on it.
+
     The state is noted `points` times on the way where a series is kept, else `sections` times.
     `shares_kernel`: so many other runs are done with the same kernel that it repays being compiled.
     """
@@ -50,8 +52,6 @@ class RunInputs:
         sections: int = 16,
         shares_kernel: bool = False,
     ) -> None:
-        if hamiltonian.time_dependent:
-            raise InputError("hamiltonian", hamiltonian.formula, "depends on t: no run takes that")
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
@@ -76,3 +76,12 @@ class RunInputs:
         named = {f"x{k}": self.parameters[n] for k, n in enumerate(kernel.parameters)}
         scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
         return {"h": h, **named, **(scales if kernel.scales else {})}
+
+    @property
+    def times(self) -> tuple[Fraction, Fraction] | None:
+        """The first and the last time at which a step is made; None where H does not depend on
+        it."""
+        if not self.hamiltonian.time_dependent:
+            return None
+        first = self.start["t"]
+        return first, first + self.steps * self.start["h"]

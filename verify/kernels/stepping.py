@@ -92,7 +92,7 @@ class KernelRun(RunInputs):
         finest = min(63, max(0, (1 / h_power).__floor__().bit_length() - 1))
         last = None
         for shift in range(finest, -1, -_FEWER_BITS):
-            found = limits(kernel, self.inputs(kernel, shift), self.start)
+            found = limits(kernel, self.inputs(kernel, shift), self.start, self.times)
             if found is not None and found != last:
                 last = found
                 yield shift, found

@@ -45,6 +45,7 @@ import flint
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
+from verify.kernels.clock import error_of_time
 from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.derivatives import Derivatives, norm
@@ -127,12 +128,22 @@ class _Certificate:
         added = [self.adding(name, values[f"d{name}"]) for name in ("p", "q")]
         return _Steps(norm(added), values["dj"].error, tangent, values["dj"].magnitude)
 
+    def times(self) -> Ball:
+        """All times at which a step is made."""
+        begun = rational_ball(self.run.start.get("t", Fraction(0)))
+        return begun.union(begun + self.steps * self.h)
+
     def inputs(self) -> dict[str, Rounded]:
-        """The state, which is data and has no error, and h and the parameters as rounded."""
+        """The state, which is data and has no error, and h, t and the parameters as rounded."""
         given = {n: Rounded(x, flint.arb(0)) for n, x in self.box(flint.arb(0)).items()}
         for name, exact in self.run.inputs(self.kernel, self.shift).items():
             lost = self.arithmetic.exact(self.arithmetic.number(exact)) - exact
             given[name] = Rounded(rational_ball(exact), rational_ball(abs(lost)))
+        if self.kernel.timed:
+            latest = abs(self.run.start["t"]) + self.steps * self.run.start["h"]
+            given["t"] = Rounded(
+                self.times(), rational_ball(error_of_time(self.arithmetic, latest))
+            )
         return given
 
     def adding(self, name: str, increment: Rounded) -> Ball:
@@ -194,7 +205,8 @@ class _Certificate:
 
     def values_of_inputs(self) -> dict[str, Ball]:
         named = {n: rational_ball(x) for n, x in self.run.parameters.items()}
-        return {"h": self.h, **named}
+        time = {"t": self.times()} if self.kernel.timed else {}
+        return {"h": self.h, **named, **time}
 
     # -- the observables ----------------------------------------------------------------------
 

@@ -39,7 +39,9 @@ def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Bounds:
     """
     if first.done < run.steps:
         return Bounds({}, "none", "left range", first.done + 1)
-    found = _held(run, first) if run.steps <= DIRECT_STEPS else _compensated(run, first)
+    # A compensated run has the same clock, whose rounding it would not see.
+    direct = run.steps <= DIRECT_STEPS or run.hamiltonian.time_dependent
+    found = _held(run, first) if direct else _compensated(run, first)
     values = dict(found.values)
     better = (known | values).get("lambda")
     if "lambda_plain" in first.values and "lambda_plain" not in values and better:

@@ -18,7 +18,7 @@ import flint
 
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import Enclosures
-from verify.arithmetic.arb import around, in_reach, middle_and_radius
+from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.exact import known_digits, text, whole
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError, bits_for
@@ -26,6 +26,7 @@ from verify.arithmetic.systems import ball, float64, mpfr
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import Note, Progress
+from verify.kernels.clock import clock_inputs
 from verify.kernels.computation import step_map_of
 from verify.kernels.kernel import kernel_for
 from verify.kernels.orbit import Orbit
@@ -66,9 +67,9 @@ def orbit_of(
     InputError where no digits of it can be confirmed.
     """
     whole("points", points, 1, MOST_POINTS)
-    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
-    step_size, q, p = (Fraction(x) for x in (result.step_size, result.q, result.p))
-    orbit = Orbit(hamiltonian, result.scheme, step_size, q, p)
+    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters, time=True)
+    step_size, q, p, t0 = map(Fraction, (result.step_size, result.q, result.p, result.t0))
+    orbit = Orbit(hamiltonian, result.scheme, step_size, q, p, t0=t0)
     binary = result.arithmetic == float64.NAME
     states = _states(orbit, result.steps, points, 0 if binary else result.digits, progress)
     rows = _Rows(orbit, float64.NUMBER_SYSTEM.digits or 17 if binary else result.digits)
@@ -83,7 +84,7 @@ def _states(
     orbit: Orbit, steps: int, points: int, digits: int, progress: Progress | None
 ) -> _States:
     """The states of the run; in float64 where no digits are asked for."""
-    start = {"p": orbit.p, "q": orbit.q, "h": orbit.step_size}
+    start = orbit.start
     whole_area = step_map_of(orbit.hamiltonian, orbit.scheme).preserves_area
     asked: frozenset[str] = frozenset() if whole_area else frozenset({"lambda"})
     while True:
@@ -163,23 +164,31 @@ class _Rows:
     def of(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:
         """The rows; in `binary` a number is written so that it is read back to the same double."""
         z_0 = {name: around(states.notes[0][name], _ZERO) for name in _STATE}
+        z_0 |= self._time(0)
         for k, note, radii in zip(states.at, states.notes, states.radii, strict=True):
             pairs = {n: (note.get(n, _ZERO), radii.get(n, _ZERO)) for n in (*_STATE, "lambda")}
             shown = {
                 n: repr(float(x)) if binary else self._known(x, r) for n, (x, r) in pairs.items()
             }
             box = {n: pairs[n] for n in _STATE}
-            energy = self._energy_error(box, z_0) if k else "0"
-            t = text(k * self.orbit.step_size)
-            yield t, shown["p"], shown["q"], energy, self._text(self.delta_j(box)), shown["lambda"]
+            energy = self._energy_error(box, z_0, k) if k else "0"
+            t, change = text(self._at(k)), self._text(self.delta_j(box, k))
+            yield t, shown["p"], shown["q"], energy, change, shown["lambda"]
 
-    def _energy_error(self, box: Box, start: Mapping[str, flint.arb]) -> str:
+    def _at(self, k: int) -> Fraction:
+        return self.orbit.t0 + k * self.orbit.step_size
+
+    def _time(self, k: int) -> dict[str, flint.arb]:
+        """The time of step k, for an H that depends on it."""
+        return {"t": rational_ball(self._at(k))} if self.orbit.hamiltonian.time_dependent else {}
+
+    def _energy_error(self, box: Box, start: Mapping[str, flint.arb], k: int) -> str:
         """H − H₀ in the box, with more bits as long as they give digits that are missing."""
         exact = not any(radius for _, radius in box.values())
         bits = 4 * self.digits + _GUARD
         for _ in range(_ATTEMPTS if exact else 1):
             with working_precision(bits):
-                at = {name: around(*pair) for name, pair in box.items()}
+                at = {name: around(*pair) for name, pair in box.items()} | self._time(k)
                 both = self.energy.over(at), self.energy.over(start)
                 if both[0] is None or both[1] is None:
                     return ""
@@ -203,19 +212,23 @@ class _DeltaJ:
         step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
         self.vanishes = step_map.preserves_area
         self.own = mpfr.make(2 * digits) if step_map.implicit else ball.make(digits + 25)
-        start = {"p": orbit.p, "q": orbit.q, "h": orbit.step_size}
-        run = KernelRun(orbit.hamiltonian, orbit.scheme, start, 1, frozenset({"lambda"}), 0)
+        run = KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, frozenset({"lambda"}), 0)
         self.kernel = kernel_for(run.hamiltonian, run.scheme, self.own, run.observables)
-        self.inputs = [self.own.number(x) for x in run.inputs(self.kernel, 0).values()]
+        given = run.inputs(self.kernel, 0)
+        if self.kernel.timed:
+            given |= clock_inputs(self.own, run.start)
+        self.inputs = [self.own.number(x) for x in given.values()]
 
-    def __call__(self, box: Box) -> flint.arb | None:
-        """A ball with the ΔJ of all states in the box; None where one may not be defined."""
+    def __call__(self, box: Box, k: int) -> flint.arb | None:
+        """A ball with the ΔJ of step k from all states in the box; None where one may not be
+        defined."""
         if self.vanishes:
             return flint.arb(0)
         own = self.own
         try:
             with own.context():
                 state = [_in(own, *box[name]) for name in _STATE]
+                state += [own.number(Fraction(k))] if self.kernel.timed else []
                 _, *after = self.kernel.function(1, *self.inputs, *state, own.number(_ZERO))
                 found: Any = after[-1]
                 return found if own.radius else around(own.exact(found), _ZERO)

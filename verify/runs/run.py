@@ -41,6 +41,7 @@ def run(
     p: Exact,
     step_size: Exact,
     steps: int,
+    t0: Exact = 0,
     arithmetic: str = float64.NAME,
     digits: int = 17,
     observables: Sequence[str] = CLOSED_FORM,
@@ -51,26 +52,28 @@ def run(
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
 
-    `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest with rigorous
-    bounds. `digits`: significant digits wanted (float64 gives what it knows). `points`: at most so
-    many points of a thinned series are kept. `progress` is called with the number of steps done.
-    `keeper` keeps checkpoints, from which an interrupted run goes on. `shares_kernel`: see
+    `t0`: when it starts, of an H that depends on time. `arithmetic`: one of
+    `verify.arithmetic.names()`, or `auto` for the fastest with rigorous bounds. `digits`:
+    significant digits wanted (float64 gives what it knows). `points`: at most so many points of a
+    thinned series are kept. `progress` is called with the number of steps done. `keeper` keeps
+    checkpoints, from which an interrupted run goes on. `shares_kernel`: see
     `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a parameter without a value,
     unknown names.
     """
     scheme = canonical(scheme)
-    start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
+    h = positive(step_size, "step_size")
+    z0 = rational(q, "q"), rational(p, "p")
+    orbit = Orbit(hamiltonian, scheme, h, *z0, t0=rational(t0, "t0"))
     check(hamiltonian, steps, digits, observables)
     whole("points", points, 0)
-    known = proved(step_map_of(hamiltonian, scheme), start["h"], steps, digits)
+    known = proved(step_map_of(hamiltonian, scheme), h, steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
     kernel_run = KernelRun(
-        hamiltonian, scheme, start, steps, needed, points, keeper, shares_kernel=shares_kernel
+        hamiltonian, scheme, orbit.start, steps, needed, points, keeper, shares_kernel=shares_kernel
     )
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits)
     done = _run(kernel_run, arithmetic, digits, known, progress)
-    orbit = Orbit(hamiltonian, scheme, start["h"], start["q"], start["p"])
     return _result(orbit, steps, digits, observables, known, done)
 
 
@@ -122,6 +125,7 @@ def _result(
         steps=steps,
         q=text(orbit.q),
         p=text(orbit.p),
+        t0=text(orbit.t0),
         status=found.status,
         failed_step=found.failed_step,
         values=values,
@@ -169,7 +173,7 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     if len(step_map.substeps) > 1:
         return {}
     step = step_map.substeps[0]
-    if any(step.ring.depends(step.delta_j, name) for name in ("p", "q")):
+    if any(step.ring.depends(step.delta_j, name) for name in ("p", "q", "t")):
         return {}
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()
     delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)

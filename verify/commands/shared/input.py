@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -115,8 +115,15 @@ def hamiltonian_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with these options, which it gets as one Hamiltonian, `exact`."""
+def with_hamiltonian(
+    command: Callable[..., Any] | None = None, *, time: bool = False
+) -> Callable[..., Any]:
+    """The command with these options, which it gets as one Hamiltonian, `exact`.
+
+    `time`: whether that may depend on t.
+    """
+    if command is None:
+        return partial(with_hamiltonian, time=time)
 
     @wraps(command)
     def given(
@@ -126,7 +133,8 @@ def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
         params: tuple[str, ...],
         **options: Any,
     ) -> Any:
-        return command(*args, exact=hamiltonian_of(system, hamiltonian, params), **options)
+        exact = hamiltonian_of(system, hamiltonian, params, time=time)
+        return command(*args, exact=exact, **options)
 
     return hamiltonian_options(given)
 

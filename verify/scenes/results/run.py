@@ -41,7 +41,8 @@ class RunResult(OfScheme):
     and where no digit could be confirmed ("unresolved"). `error_kind`
     is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
     says why another arithmetic was taken than the one that was asked for. `exact` names the
-    observables that a proof gave and no run was needed for. `source` is what of a paper the scene
+    observables that a proof gave and no run was needed for. `t0` is when it started, of an H that
+    depends on time. `source` is what of a paper the scene
     says that the run repeats.
     """
 
@@ -52,6 +53,7 @@ class RunResult(OfScheme):
     steps: int
     q: str
     p: str
+    t0: str = "0"
     status: Literal["finished", "left range", "unresolved"]
     failed_step: int | None
     values: dict[str, Value]
