@@ -54,6 +54,11 @@ class Domain:
         return (*(" ".join(_sides(r)) for r in self.requirements), *self.words)
 
     @property
+    def shown(self) -> list[str]:
+        """Each requirement in the signs of mathematics, such as q ≥ 0."""
+        return [str(_shown(r)) for r in self.requirements]
+
+    @property
     def prose(self) -> Prose:
         """The conditions in one line: q ≥ 0, δ ≠ 0."""
         shown = [_shown(r) for r in self.requirements]
@@ -88,7 +93,7 @@ class Domain:
         """
         ring, elements = self._elements
         answers = [
-            _holds(enclose(ring, x, point, _PRECISION), r.relation)
+            holds(enclose(ring, x, point, _PRECISION), r.relation)
             for x, r in zip(elements, self.requirements, strict=True)
         ]
         return False if False in answers else None if None in answers else True
@@ -130,7 +135,7 @@ class Domain:
 EVERYWHERE = Domain()
 
 
-def _holds(value: Ball | None, relation: Relation) -> bool | None:
+def holds(value: Ball | None, relation: Relation) -> bool | None:
     if value is None or not value.is_finite():
         return None
     if relation == "!=":
@@ -142,7 +147,7 @@ def _holds(value: Ball | None, relation: Relation) -> bool | None:
 
 def _holds_of_number(r: Requirement) -> bool | None:
     ring, (x,) = embed([r.expression], ())
-    return _holds(enclose(ring, x, {}, _PRECISION), r.relation)
+    return holds(enclose(ring, x, {}, _PRECISION), r.relation)
 
 
 def _simplified(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:

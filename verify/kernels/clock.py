@@ -65,7 +65,7 @@ def first_rest(arithmetic: Arithmetic, start: Mapping[str, Fraction]) -> dict[st
 def _cut(arithmetic: Arithmetic, x: Fraction) -> Fraction:
     """What the format cuts off from x, as it is carried."""
     cut: Fraction = x - arithmetic.exact(arithmetic.number(x))
-    return cut * 2**_PLACES
+    return cut * (1 << _PLACES)
 
 
 def error_of_time(arithmetic: Arithmetic, latest: Fraction) -> Fraction:

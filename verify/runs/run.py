@@ -19,6 +19,7 @@ from verify.arithmetic.systems import ball, float64
 from verify.errors import InputError, unknown
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.times_on_the_way import check_times
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.computation import step_map_of
 from verify.kernels.orbit import Orbit
@@ -65,6 +66,7 @@ def run(
     z0 = rational(q, "q"), rational(p, "p")
     orbit = Orbit(hamiltonian, scheme, h, *z0, t0=rational(t0, "t0"))
     check(hamiltonian, steps, digits, observables)
+    check_times(hamiltonian, orbit.t0, h, steps)
     whole("points", points, 0)
     known = proved(step_map_of(hamiltonian, scheme), h, steps, digits)
     needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
