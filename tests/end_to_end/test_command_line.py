@@ -140,7 +140,6 @@ FORMULAS = {
     "two-lines": ("p**2\nq**2", "not a formula"),
     "syntax": ("p**2/2 +", "not a formula"),
     "unicode": ("p² + δ", "ASCII"),
-    "time": ("p**2/2 + t*q", "t is not allowed"),
     "not-smooth": ("abs(q)", "not smooth"),
     "hidden-abs": ("sqrt(q**2)", "not smooth"),
     "unknown-function": ("gamma(q)", "unknown function"),

@@ -136,6 +136,7 @@ EVERYWHERE = Domain()
 
 
 def holds(value: Ball | None, relation: Relation) -> bool | None:
+    """Whether all numbers of a ball are ≠ 0, ≥ 0 or > 0; None where that is not decided."""
     if value is None or not value.is_finite():
         return None
     if relation == "!=":
