@@ -81,11 +81,13 @@ def test_a_formula(formula: str, words: str, capsys: pytest.CaptureFixture[str])
     told(capsys, typed, (f"hamiltonian={formula}: ", words))
 
 
-def test_an_h_that_depends_on_time_is_for_prove_and_run_alone(
+def test_an_h_that_depends_on_time_is_not_for_every_command(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     formula, run = "p**2/2 + q*t", "--steps 3 --step-size 0.1 --q 1 --p 0"
-    words = ("is not allowed: only `prove` and `run` take an H that depends on time as yet",)
+    words = (
+        "is not allowed: only `prove`, `run` and `check-integrator` take an H that depends on",
+    )
     for command in (f"separate {run}", "export"):
         name, *rest = command.split()
         told(capsys, [name, "--scheme", "lie2", "--hamiltonian", formula, *rest], words)

@@ -40,7 +40,8 @@ def check(
     Parameters
     ----------
     system, parameters: as in `verify.run`.
-    step: a function step(p, q, h) that returns p' and q', which is called; a scheme's name,
+    step: a function step(p, q, h), or step(p, q, t, h) for an H in t, that returns p' and q', and
+        is called; a scheme's name,
         'p_next = …; q_next = …', a Scheme or a StepMap is proved.
     order: the order of convergence that is claimed of it, at least; a scheme's own where left out.
     area_preserving: whether det J ≡ 1 is claimed of it.
@@ -54,7 +55,7 @@ def check(
     >>> str(found.verdict), found.area_preserving, found.order
     ('PROVED', False, 2)
     """
-    exact = hamiltonian_from(system, parameters)
+    exact = hamiltonian_from(system, parameters, time=True)
     if order is not None:
         order = whole("order", order, 1, MOST_CLAIMED)
     if not isinstance(area_preserving, bool):

@@ -56,7 +56,7 @@ def hamiltonian_from(
     if isinstance(system, Hamiltonian):
         if system.time_dependent and not time:
             raise InputError(
-                "hamiltonian", system.formula, "depends on t: only prove and run take that"
+                "hamiltonian", system.formula, "depends on t: only prove, run and check take that"
             )
         values = {**dict(system.values), **(parameters or {})}
         return system.with_values(values) if parameters else system

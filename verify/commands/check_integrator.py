@@ -19,12 +19,12 @@ _CLAIMED = click.IntRange(1, 12)
 
 @click.command("check-integrator")
 @click.argument("target", metavar="MODULE:FUNCTION")
-@with_hamiltonian
+@with_hamiltonian(time=True)
 @click.option(
     "--arguments",
     metavar="ORDER",
-    help="How it takes p, q and h, such as q,p,h; it returns p' and q' in that order too. Without "
-    "it the names of its arguments tell.",
+    help="How it takes p, q and h, such as q,p,h, or q,p,t,h; it returns p' and q' in that order "
+    "too. Without it the names of its arguments tell.",
 )
 @click.option("--q", "q", metavar="Q", help="An initial value to look at beside others.")
 @click.option("--p", "p", metavar="P", help="Its momentum.")
@@ -51,6 +51,8 @@ def check_integrator(
     time_limit: float,
 ) -> Answer:
     """Check a Python function step(p, q, h) → (p', q') of your own: its order and that of ΔJ.
+
+    Or step(p, q, t, h), for an H(p, q, t): then its order is that for the motion in time.
 
     THIS RUNS YOUR CODE, which no other command does: MODULE is imported, from the current folder
     too, or file.py:FUNCTION is loaded, and the function is called.
@@ -116,7 +118,7 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
 def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
     from verify.integrators.results import potential_of_finding
 
-    if found.proof is not None and found.counterexample is None:
+    if found.proof is not None and found.verdict is found.proof.verdict:
         show.print_proof(exact, target, found.proof, potential_of_finding(found))
     else:
         show.print_head(exact, target, found)

@@ -14,7 +14,7 @@ from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order, through
 from verify.prose import read_prose
 
-Lifted = Callable[[Dual, Dual, Dual], Sequence[Dual]]  # (p, q, h) ↦ p', q'
+Lifted = Callable[[Dual, Dual, Dual, Dual], Sequence[Dual]]  # (p, q, h, t) ↦ p', q'
 _SIZES = Fraction(1, 8), Fraction(1, 64)
 _AGREES = 1e-12
 _ROUNDED, _BEYOND = 2.0**-46, 8  # what is allowed at least, and times the bound to first order
@@ -25,8 +25,8 @@ _ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may w
 def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Lifted:
     nodes = in_order(p_next, q_next)
 
-    def at(p: Dual, q: Dual, h: Dual) -> tuple[Dual, Dual]:
-        start = {"p": p, "q": q, "h": h}
+    def at(p: Dual, q: Dual, h: Dual, t: Dual) -> tuple[Dual, Dual]:
+        start = {"p": p, "q": q, "h": h, "t": t}
 
         def number(node: Node, x: list[Dual]) -> Dual:
             match node.operation:
@@ -52,7 +52,7 @@ def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Lifted:
 def by_duals(step: Step) -> Callable[[Duals], Lifted]:
     def made(kind: Duals) -> Lifted:
         function = copied(step.function, kind)
-        return lambda p, q, h: dual_step(step, function, p, q, h)
+        return lambda p, q, h, t: dual_step(step, function, p, q, h, t)
 
     return made
 
@@ -109,10 +109,11 @@ def _hold_together(
                     mine = step.at(*floats)
                 except Exception:  # noqa: S112 - it fails there; other points may do
                     continue
-                p, q, size = (Fraction(x) for x in floats)
-                theirs = [x.value for x in at(*kind.state(p, q), kind.rational(size))]
+                clock = step.clock(*floats[:2])
+                p, q, *rest = (Fraction(x) for x in (*floats, clock))
+                theirs = [x.value for x in at(*kind.state(p, q), *map(kind.rational, rest))]
                 compared += 1
-                gaps = zip(mine, theirs, allowed(kind, mine, *floats), strict=True)
+                gaps = zip(mine, theirs, allowed(kind, mine, *floats, clock), strict=True)
                 if any(abs(x - y) > most for x, y, most in gaps):
                     where = f"p = `{point[0]}`, q = `{point[1]}`, h = `{h}`"
                     raise UntraceableError(

@@ -16,6 +16,7 @@ from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
+from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
@@ -51,6 +52,7 @@ def check_integrator(
             raise InputError(
                 name, decimal(x, 3), f"is beyond {_FARTHEST:.0e}, for a step in floats"
             )
+    step.moving = hamiltonian.time_dependent
     trial = Trial(step, hamiltonian, ((start,) if start else ()) + POINTS)
     faults, first = examined(step, trial.points)
     if not any(fault.fatal for fault in faults):
@@ -65,7 +67,7 @@ def check_integrator(
     if found.verdict is Verdict.REFUTED:
         found = found.noting(*_exchanged(trial, provable))
     found = replace(found, faults=tuple(fault.name for fault in faults))
-    found = found.noting(*(fault.text for fault in faults))
+    found = found.noting(*(fault.text for fault in faults), *_of_time(step))
     return _but_for(faults, with_claims(found, claims, trial))
 
 
@@ -76,6 +78,15 @@ def _but_for(faults: Sequence[Fault], found: Finding) -> Finding:
         return found
     reason = prose(in_the_way[0].text, " (", found.reason, ")")
     return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
+
+
+def _of_time(step: Step) -> list[str]:
+    """What is said where one of H and the step depends on time, and not the other."""
+    if step.timed and not step.moving:
+        return ["H does not depend on time: it is called with t = 0"]
+    if step.moving and not step.timed:
+        return ["it takes no t, and H depends on it: its force stands still"]
+    return []
 
 
 def _no_step(faults: Sequence[Fault]) -> Finding:
@@ -91,6 +102,10 @@ def _examine(trial: Trial, provable: bool) -> Finding:
                 return _proved(trial)
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", _why(error)))
+    if step.moving:
+        notes.append(prose("a step for an H that depends on time is proved, and not measured yet"))
+        neither = prose("it cannot be traced")
+        return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
     kept = _KEPT * max(step.left, 0)
     for how in ("duals", "floats"):
         step.left += -kept if how == "duals" else kept
@@ -107,12 +122,12 @@ def _examine(trial: Trial, provable: bool) -> Finding:
 
 def _exchanged(trial: Trial, provable: bool) -> list[str]:
     """Whether it is a scheme when p and q stand in each other's place."""
-    exchange = {"p": "q", "q": "p", "h": "h"}
-    a, b, c = (exchange[name] for name in trial.step.order)
-    other = replace(trial, step=replace(trial.step, order=(a, b, c)))
+    exchange = {"p": "q", "q": "p"}
+    order = tuple(exchange.get(name, name) for name in trial.step.order)
+    other = replace(trial, step=replace(trial.step, order=order))
     if not _examine(other, provable).verdict.holds:
         return []
-    return [f"with arguments in the order {a},{b},{c} it is a scheme for this H"]
+    return [f"with arguments in the order {','.join(order)} it is a scheme for this H"]
 
 
 def _why(error: Exception) -> Prose:
@@ -125,7 +140,8 @@ def _why(error: Exception) -> Prose:
 
 def _proved(trial: Trial) -> Finding:
     tape, step = Tape(), trial.step
-    symbols = [tape.symbol(name) for name in "pqh"]
+    symbols = [tape.symbol(name) for name in ("pqht" if step.moving else "pqh")]
+    symbols += [] if step.moving else [tape.rational(Fraction(0))]
     roots = dual_step(step, copied(step.function, tape), *symbols)
     if tape.refused:  # what is traced is then what it does where that fails
         raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
@@ -146,7 +162,11 @@ def _proved(trial: Trial) -> Finding:
         delta_j=proof.step_map.delta_j_text,
         proof=proof,
         domain=(proof.domain & domain_of(tape)).texts,
-    ).noting(f"traced with symbols; the map {traced.how}", *_readings(tape))
+    ).noting(
+        f"traced with symbols; the map {traced.how}",
+        *_readings(tape),
+        *clock_mistakes(trial.hamiltonian, p_next, q_next, proof.convergence_order),
+    )
     found = _but_for_rounding(found, traced, tape)
     return _measured_area(found, trial)
 
@@ -212,7 +232,8 @@ def _rounded_reason(found: Finding, better: Rounded, most: int) -> Prose:
 
 def _measured_area(found: Finding, trial: Trial) -> Finding:
     """What algebra leaves open of ΔJ is measured with dual numbers."""
-    if found.area_preserving is not None or found.verdict is Verdict.REFUTED:
+    decided = found.area_preserving is not None or found.verdict is Verdict.REFUTED
+    if decided or trial.step.moving:
         return found
     try:
         other = of_measured(measured(trial, "duals"), trial)

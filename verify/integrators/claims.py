@@ -40,6 +40,8 @@ def with_claims(found: Finding, claims: Claims, trial: Trial) -> Finding:
         found = replace(found, verdict=Verdict.REFUTED, reason=reason)
     else:
         name = prose("order 1")
+    if trial.step.moving:  # the exact flow is not followed with time as yet
+        return found
     return replace(found, counterexample=_counterexample(name, claims, trial))
 
 

@@ -124,7 +124,7 @@ def _with_arrays(step: Step, first: Mapping[State, State]) -> list[Fault]:
     p, q = (np.array([state[i] for state in first]) for i in (0, 1))
     kept = p.copy(), q.copy()
     try:
-        with step.timed():
+        with step.limited():
             step.raw(step.function, p, q, _STEPS[0])
     except Exception:  # it is for single numbers
         return []

@@ -18,9 +18,12 @@ from verify.integrators.step import TIME_LIMIT, Step, Theirs, last_line, quiet
 _NAMES = {
     **dict.fromkeys(("p", "v", "p0", "momentum", "velocity", "mom", "vel"), "p"),
     **dict.fromkeys(("q", "x", "q0", "position", "displacement", "pos"), "q"),
+    **dict.fromkeys(("t", "time", "t0"), "t"),
     **dict.fromkeys(("h", "dt", "tau", "step", "step_size", "stepsize", "delta_t"), "h"),
 }
 _USUAL = ("p", "q", "h")
+_COUNTS = {4: ["h", "p", "q", "t"], 3: ["h", "p", "q"]}  # arguments, sorted, t among them first
+_USUAL_IN_TIME = ("p", "q", "t", "h")
 _MOST_SECONDS = 86_400
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
@@ -105,29 +108,37 @@ def step_from(
     name = getattr(function, "__name__", "step")
     places = [x for x in named if x.kind in _POSITIONAL]
     variadic = any(x.kind is inspect.Parameter.VAR_POSITIONAL for x in named)
-    rest = [*places[3:], *(x for x in named if x.kind is inspect.Parameter.KEYWORD_ONLY)]
+    called = [_NAMES.get(x.name.lower().strip("_"), "") for x in places]
+    named_so = (
+        None
+        if order
+        else next((o for n in _COUNTS if (o := _as_order(called[:n])) is not None), None)
+    )
+    count = len(order or named_so or _USUAL)
+    rest = [*places[count:], *(x for x in named if x.kind is inspect.Parameter.KEYWORD_ONLY)]
     known = parameters or {}
     given = {x.name: float(known[x.name]) for x in rest if x.name in known}
     missing = [x.name for x in rest if x.default is x.empty and x.name not in given]
-    if (len(places) < 3 and not variadic) or missing:
+    if (len(places) < count and not variadic) or missing:
         shown = f"{name}({', '.join(str(x) for x in named)})"
-        raise InputError("integrator", shown, "wanted: step(p, q, h), which returns p', q'")
+        wanted = "wanted: step(p, q, h) or step(p, q, t, h), which returns p', q'"
+        raise InputError("integrator", shown, wanted)
     notes = []
     if order is None:
-        named_so = _as_order([_NAMES.get(x.name.lower().strip("_"), "") for x in places[:3]])
         order = named_so or _USUAL
-        if named_so != _USUAL:
-            first = ", ".join(x.name for x in places[:3])
+        if named_so not in (_USUAL, _USUAL_IN_TIME):
+            first = ", ".join(x.name for x in places[:count])
             notes.append(f"its arguments ({first}) are taken as ({', '.join(order)})")
     return Step(function, order, given, left=time_limit), notes
 
 
-def _order(arguments: str) -> tuple[str, str, str]:
+def _order(arguments: str) -> tuple[str, ...]:
     order = _as_order([name.strip() for name in arguments.split(",")])
     if order is None:
-        raise InputError("--arguments", arguments, "is no order of p, q and h, such as q,p,h")
+        problem = "is no order of p, q and h, such as q,p,h, nor of p, q, t and h"
+        raise InputError("--arguments", arguments, problem)
     return order
 
 
-def _as_order(names: Sequence[str]) -> tuple[str, str, str] | None:
-    return (names[0], names[1], names[2]) if sorted(names) == ["h", "p", "q"] else None
+def _as_order(names: Sequence[str]) -> tuple[str, ...] | None:
+    return tuple(names) if sorted(names) in _COUNTS.values() else None

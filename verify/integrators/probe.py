@@ -230,11 +230,16 @@ class _Duals:
 
 
 def dual_step(
-    step: Step, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs
+    step: Step,
+    function: Callable[..., Theirs],
+    p: Theirs,
+    q: Theirs,
+    h: Theirs,
+    t: Theirs = 0.0,
 ) -> Theirs:
     """p' and q' of a copied function at numbers of ours."""
-    with step.timed():
-        result = step.called(function, p, q, h)
+    with step.limited():
+        result = step.called(function, p, q, h, t)
     pair = step.pair(result)
     lifted = [p * 0 + x for x in pair]
     if any(type(x) is not type(p) for x in lifted):

@@ -47,38 +47,53 @@ def quiet() -> Iterator[None]:
 
 @dataclass
 class Step:
-    """The user's step(p, q, h) → (p', q').
+    """The user's step(p, q, h) → (p', q'), or step(p, q, t, h).
 
     `order`: its arguments by their names here, such as ("q", "p", "h"); what it returns stands in
-    that order too. `given`: parameters of H that it takes by name. `arrays`: it wants p and q as
+    that order too. `moving`: whether it is for an H that depends on time; else its t, where it
+    takes one, is 0. `given`: parameters of H that it takes by name. `arrays`: it wants p and q as
     arrays, and gets them with one entry each. `left`: seconds left for its calls.
     """
 
     function: Callable[..., Theirs]
-    order: tuple[str, str, str] = ("p", "q", "h")
+    order: tuple[str, ...] = ("p", "q", "h")
     given: Mapping[str, float] = field(default_factory=dict)
     arrays: bool = False
     left: float = TIME_LIMIT
+    moving: bool = False
 
-    def raw(self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs) -> Theirs:
+    @property
+    def timed(self) -> bool:
+        """Whether it takes t."""
+        return "t" in self.order
+
+    def clock(self, p: float, q: float) -> float:
+        """The t at which it is called with floats at a point: another one at every point."""
+        return (1 + 2 * p + q) / 4 if self.moving else 0.0
+
+    def raw(
+        self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs, t: Theirs = 0.0
+    ) -> Theirs:
         """What the function, or a copy of it, returns."""
-        by_name = {"p": p, "q": q, "h": h}
+        by_name = {"p": p, "q": q, "h": h, "t": t}
         return function(*(by_name[name] for name in self.order), **self.given)
 
-    def called(self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs) -> Theirs:
+    def called(
+        self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs, t: Theirs = 0.0
+    ) -> Theirs:
         """The same at one point; with arrays of one entry where it wants arrays."""
         if not self.arrays:
-            return self.raw(function, p, q, h)
+            return self.raw(function, p, q, h, t)
         import numpy as np
 
         boxes = [np.empty(1, dtype=float if isinstance(x, float) else object) for x in (p, q)]
         boxes[0][0], boxes[1][0] = p, q
-        return self.raw(function, boxes[0], boxes[1], h)
+        return self.raw(function, boxes[0], boxes[1], h, t)
 
     def at(self, p: float, q: float, h: float) -> State:
         """(p', q') as floats. Raises StepError, also for what is not finite."""
-        with self.timed():
-            result = self.called(self.function, p, q, h)
+        with self.limited():
+            result = self.called(self.function, p, q, h, self.clock(p, q))
         x, y = (_real(x) for x in self.pair(result))
         if x - x != 0 or y - y != 0:
             found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))
@@ -93,7 +108,7 @@ class Step:
         return _single(parts[0]), _single(parts[1])
 
     @contextlib.contextmanager
-    def timed(self) -> Iterator[None]:
+    def limited(self) -> Iterator[None]:
         """Around every call: what it prints, what it raises, and how long it takes."""
         if self.left <= 0:
             raise StepError("its calls took all the time that there is")

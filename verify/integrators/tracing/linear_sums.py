@@ -61,7 +61,7 @@ class Scalars:
         self.symbols = {n.value: n.number for n in nodes if n.operation == "symbol"}
         self.moving: set[int] = set()
         for node in nodes:
-            own = node.operation == "symbol" and node.value != "h"
+            own = node.operation == "symbol" and node.value in ("p", "q")
             if own or any(x.number in self.moving for x in node.inputs):
                 self.moving.add(node.number)
         still = [node for node in nodes if node.number not in self.moving]

@@ -1,0 +1,165 @@
+"""Steps of one's own for H(p, q, t): right clocks, wrong ones, and t where it is not looked for."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import verify
+from verify.errors import InputError
+from verify.integrators.results import Finding
+from verify.verdict import Verdict
+
+DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
+
+
+def force(q: Any, t: Any) -> Any:
+    return -(1 + math.cos(2 * t) / 2) * math.sin(q)
+
+
+def verlet_at(first: float, last: float) -> Callable[..., Any]:
+    def step(p: Any, q: Any, t: Any, h: Any) -> Any:
+        p = p + h / 2 * force(q, t + first * h)
+        q = q + h * p
+        return p + h / 2 * force(q, t + last * h), q
+
+    return step
+
+
+def rk4_at(middle: float, last: float) -> Callable[..., Any]:
+    def step(p: Any, q: Any, t: Any, h: Any) -> Any:
+        def slope(p: Any, q: Any, t: Any) -> Any:
+            return force(q, t), p
+
+        a = slope(p, q, t)
+        b = slope(p + h / 2 * a[0], q + h / 2 * a[1], t + middle * h)
+        c = slope(p + h / 2 * b[0], q + h / 2 * b[1], t + middle * h)
+        d = slope(p + h * c[0], q + h * c[1], t + last * h)
+        return tuple(x + h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]) for i, x in enumerate((p, q)))
+
+    return step
+
+
+def euler(p: Any, q: Any, t: Any, h: Any) -> Any:
+    p = p + h * force(q, t)
+    return p, q + h * p
+
+
+def four_stages_of_yoshida(late: float) -> Callable[..., Any]:
+    c = 2 ** (1 / 3)
+    w, v = 1 / (2 - c), -c / (2 - c)
+
+    def step(p: Any, q: Any, t: Any, h: Any) -> Any:
+        for size in (w, v, w):
+            q = q + size / 2 * h * p
+            t = t + size / 2 * h * late
+            p = p + size * h * force(q, t)
+            q = q + size / 2 * h * p
+            t = t + size / 2 * h * late
+        return p, q
+
+    return step
+
+
+def checked(step: Callable[..., Any], system: str = DRIVEN, **claims: Any) -> Finding:
+    found = verify.check(system, step, **claims)
+    assert isinstance(found, Finding)
+    return found
+
+
+RIGHT = {
+    "symplectic Euler": (euler, 1),
+    "Störmer–Verlet": (verlet_at(0, 1), 2),
+    "a midpoint's clock": (verlet_at(0.5, 0.5), 2),
+    "RK4": (rk4_at(0.5, 1), 4),
+}
+WRONG = {
+    "a frozen clock": (verlet_at(0, 0), 2, "read at t in every stage"),
+    "the end's time in both": (verlet_at(1, 1), 2, "read at t + h in every stage"),
+    "RK4, all at the start": (rk4_at(0, 0), 4, "read at t in every stage"),
+    "RK4, all at the end": (rk4_at(1, 1), 4, ""),
+    "the end's time at the middle": (rk4_at(0.5, 0.5), 4, ""),
+}
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_a_right_clock_is_proved_at_its_order(name: str) -> None:
+    step, order = RIGHT[name]
+    found = checked(step, order=order)
+    assert (found.verdict, found.how, found.convergence_order) == (Verdict.PROVED, "proof", order)
+    assert found.area_preserving is (name != "RK4")
+    assert not any("stands still" in str(note) for note in found.notes)
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_clock_is_refuted_at_its_order_and_named(name: str) -> None:
+    step, claimed, words = WRONG[name]
+    found = checked(step, order=claimed)
+    assert (found.verdict, found.convergence_order) == (Verdict.REFUTED, 1)
+    named = [str(note) for note in found.notes if "stands still" in str(note)]
+    assert len(named) == bool(words)
+    assert all(words in each and f"of order {claimed}" in each for each in named)
+
+
+@pytest.mark.parametrize(("late", "order"), [(1, 4), (0, 1)])
+def test_yoshidas_coefficients_are_floats_and_its_clock_is_judged(late: int, order: int) -> None:
+    found = checked(four_stages_of_yoshida(late))
+    assert found.convergence_order == order
+    assert found.verdict.holds
+
+
+def test_the_same_step_with_its_force_still_is_of_its_order_for_an_h_without_t() -> None:
+    """The control: what is wrong is the clock alone."""
+
+    def still(p: Any, q: Any, t: Any, h: Any) -> Any:
+        p = p - h / 2 * math.sin(q)
+        q = q + h * p
+        return p - h / 2 * math.sin(q), q
+
+    found = checked(still, "pendulum", order=2, area_preserving=True)
+    assert found.verdict is Verdict.PROVED
+    assert "called with t = 0" in " ".join(map(str, found.notes))
+
+
+def test_a_step_without_t_is_told_that_its_force_stands_still() -> None:
+    found = checked(lambda p, q, h: verlet_at(0, 0)(p, q, 0.0, h))
+    assert found.verdict is Verdict.REFUTED
+    assert "takes no t, and H depends on it" in " ".join(map(str, found.notes))
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_t_is_known_by_its_name_wherever_it_stands(swapped: bool) -> None:
+    right = verlet_at(0, 1)
+
+    def first(t: Any, q: Any, p: Any, dt: Any) -> Any:
+        return tuple(right(p, q, t, dt))[::-1]
+
+    def last(p: Any, q: Any, h: Any, time: Any) -> Any:
+        return right(p, q, time, h)
+
+    found = checked(first if swapped else last)
+    assert (found.verdict, found.convergence_order) == (Verdict.PROVED, 2)
+    named = verify.check(DRIVEN, lambda a, b, c, d: right(a, b, c, d), arguments="p,q,t,h")
+    assert isinstance(named, Finding)
+    assert named.convergence_order == 2
+    with pytest.raises(InputError, match="nor of p, q, t and h"):
+        verify.check(DRIVEN, right, arguments="p,q,t")
+
+
+def test_what_cannot_be_traced_is_undecided_and_not_called_wrong() -> None:
+    def branching(p: Any, q: Any, t: Any, h: Any) -> Any:
+        return verlet_at(0, 1)(p, q, t, h) if t > 0 else verlet_at(0, 0)(p, q, t, h)
+
+    found = checked(branching, order=2)
+    assert found.verdict is Verdict.UNDECIDED
+    assert "not measured yet" in " ".join(map(str, found.notes))
+
+
+def test_another_branch_with_floats_is_not_taken_for_what_is_traced() -> None:
+    """It does with floats what it does not with symbols."""
+
+    def sly(p: Any, q: Any, t: Any, h: Any) -> Any:
+        return verlet_at(0, 0 if type(t) is float else 1)(p, q, t, h)
+
+    assert checked(sly).verdict is Verdict.UNDECIDED

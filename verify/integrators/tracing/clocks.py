@@ -1,0 +1,46 @@
+"""Which mistake the clock of a traced step looks like.
+
+With t held still at a moment s of the step, H(p, q, s) is autonomous. A step that reads its force
+at one moment is a scheme for that H of an order that it may not have for the motion in time.
+"""
+
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.tracing.trace import Node, expressions, in_order, sizes
+from verify.proof.order import convergence_of
+from verify.schemes.step_map import StepMap
+
+_MOST_WRITTEN = 3000  # operations of p' and q' as trees
+_MOMENTS = {"t": 0, "t + h": 1, "t + h/2": sympy.Rational(1, 2)}
+_STILL = symbol("still")
+
+
+def clock_mistakes(
+    hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int | None
+) -> list[str]:
+    """One sentence, where the step has a higher order than `order` with the force held still."""
+    if order is None or not hamiltonian.time_dependent or "still" in hamiltonian.parameters:
+        return []
+    nodes = in_order(p_next, q_next)
+    size = sizes(nodes)
+    if size[p_next.number] + size[q_next.number] > _MOST_WRITTEN:
+        return []
+    t, h = symbol("t"), symbol("h")
+    still = Hamiltonian(hamiltonian.exact.subs(t, _STILL))
+    for words, part in _MOMENTS.items():
+        made = expressions(nodes, {"t": _STILL - part * h})
+        try:
+            step = StepMap.from_expressions(still, made[p_next.number], made[q_next.number])
+            found = convergence_of(step).order
+        except InputError:  # too long, or not smooth
+            continue
+        if found is None or found > order:
+            reached = "exact" if found is None else f"of order {found}"
+            return [
+                f"it is {reached} as if the force were read at {words} in every stage: its clock "
+                "stands still"
+            ]
+    return []
