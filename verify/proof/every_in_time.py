@@ -1,4 +1,4 @@
-"""Proofs for every smooth H(p, q, t), or every T(p, t) + V(q, t): of `lieη` and of splittings.
+"""Proofs for every smooth H(p, q, t), or every T(p, t) + V(q, t).
 
 `lieη`: as in `verify.proof.every`, in the jets of H(p, q, t), with D = ∂_t + X in place of X. Both
 arguments there hold for D: the two-forms [a, b] of Dᵃp and D^b q are taken at one t, and D, which
@@ -7,6 +7,9 @@ is X in the extended phase space, commutes with d and takes [a, b] to [a+1, b] +
 D·G is X·G.
 
 Splittings: by conditions on sizes and times, `verify.schemes.clock_conditions`.
+
+Runge–Kutta methods: by the conditions of all trees. What fails for an H without t fails; where a
+condition does not hold that such an H does not need, nothing is said.
 """
 
 import math
@@ -15,16 +18,19 @@ from verify.algebra.series.jets import shown
 from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
 from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.clock_conditions import ClockedSplitting
 from verify.schemes.clock_mistakes import mistake
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.every_hamiltonian import RungeKutta, StageEquations, TaylorSeries
+from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import all_times
 from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.tree_conditions import TreeConditions, TreeConditionsInTime
 from verify.verdict import Verdict
 
 _MOST_ETA = 8  # the terms triple with every order; lie8 takes 2 s
@@ -33,14 +39,18 @@ _MOST_ETA = 8  # the terms triple with every order; lie8 takes 2 s
 def prove_every_in_time(name: str) -> EveryProof:
     """The order of ΔJ and of the map of the scheme of that name, for every H in t that it takes.
 
-    Raises InputError for a scheme of another kind than lieη and splittings, and for η above 8.
+    Raises InputError for a scheme that is no lieη, no splitting and no Runge–Kutta method, and for
+    η above 8.
     """
     scheme = get(name)
     if isinstance(scheme.every_h, TaylorSeries):
         return _of_lie(scheme, scheme.every_h.eta)
     if isinstance(scheme.every_h, Splitting):
         return _of_splitting(scheme, scheme.every_h)
-    allowed = "lieη and splittings, for every H in t; for one such H any scheme"
+    tableau = _tableau_of(scheme.every_h)
+    if tableau is not None:
+        return _of_stages(scheme, tableau)
+    allowed = "lieη, splittings, Runge–Kutta methods, for every H in t; for one such H any scheme"
     raise InputError("scheme", name, f"is none of which that is proved; allowed: {allowed}")
 
 
@@ -108,3 +118,35 @@ def _of_splitting(scheme: Scheme, every_h: Splitting) -> EveryProof:
     named = mistake(every_h.parts, times) if found.verdict is Verdict.REFUTED else ""
     reason = prose(found.reason, f"; it is {named}") if named else found.reason
     return EveryProof(**vars(found) | {"reason": reason, "timed": True})
+
+
+def _tableau_of(every_h: object) -> ImplicitTableau | None:
+    """The coefficients of what is a Runge–Kutta method."""
+    if isinstance(every_h, RungeKutta):
+        return ImplicitTableau.of(*every_h.square)
+    if isinstance(every_h, TreeConditions):
+        return every_h.tableau
+    if isinstance(every_h, StageEquations) and len(every_h.stages) == 1:
+        (stage,) = every_h.stages
+        if stage.at_p == stage.at_q and stage.kick == stage.drift:
+            return ImplicitTableau.of(((stage.kick * stage.at_p,),), (stage.kick,))
+    return None
+
+
+def _of_stages(scheme: Scheme, tableau: ImplicitTableau) -> EveryProof:
+    found = prove_by_conditions(scheme, TreeConditionsInTime(tableau))
+    still = prove_every(scheme.name)  # for an H without t, which is one of these
+    agreed, needed = found.convergence_order or 0, still.convergence_order or 0
+    decided = found.convergence_decided and needed <= agreed
+    told = {"timed": True, "convergence_decided": decided, "separable": False}
+    if agreed < scheme.order:
+        verdict = Verdict.REFUTED if decided else Verdict.UNDECIDED
+        return EveryProof(**vars(found) | told | {"verdict": verdict})
+    if scheme.area_preserving or still.area_preserving is not False:
+        return EveryProof(**vars(found) | told)
+    reason = read_prose(
+        f"order {scheme.order}: every condition on the coefficients holds exactly; ΔJ is "
+        f"O(`h^{agreed + 1}`), and not 0 for an H without t"
+    )
+    more = {"verdict": Verdict.PROVED, "reason": reason, "area_preserving": False}
+    return EveryProof(**vars(found) | told | more)

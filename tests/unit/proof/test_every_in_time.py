@@ -8,6 +8,7 @@ from verify.algebra.generator import terms_of
 from verify.algebra.series.jets import JetRing, Jets, Poly
 from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
+from verify.proof.every import prove_every
 from verify.proof.every_in_time import prove_every_in_time
 from verify.schemes.clock_conditions import ClockedSplitting
 from verify.schemes.clock_mistakes import mistake
@@ -110,8 +111,32 @@ def test_right_clocks_are_each_advanced_by_the_other_flow() -> None:
     assert mistake(VERLET, right_times(VERLET)) == ""
 
 
+@pytest.mark.parametrize("name", ["rk4", "explicit-midpoint", "implicit-midpoint", "gauss4"])
+def test_stages_at_their_times_keep_the_order_for_every_h(name: str) -> None:
+    found, claims = prove_every_in_time(name), schemes.get(name)
+    assert (found.verdict, found.convergence_order) == (Verdict.PROVED, claims.order)
+    assert found.area_preserving is claims.area_preserving
+    assert found.quantifier == "every smooth H(p, q, t)"
+
+
+def test_a_condition_that_an_h_without_t_does_not_need_refutes_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A method of order 5 in the plane that fails one tree is not called wrong in time."""
+    from dataclasses import replace
+
+    from verify.proof import every_in_time
+
+    claimed = replace(schemes.get("gauss4"), order=5)
+    monkeypatch.setattr(every_in_time, "get", lambda _: claimed)
+    assert prove_every_in_time("gauss4").verdict is Verdict.REFUTED
+    higher = replace(prove_every("gauss4"), convergence_order=5)
+    monkeypatch.setattr(every_in_time, "prove_every", lambda _: higher)
+    assert prove_every_in_time("gauss4").verdict is Verdict.UNDECIDED
+
+
 def test_other_schemes_are_refused_in_one_line() -> None:
-    with pytest.raises(InputError, match="allowed: lieη and splittings"):
-        prove_every_in_time("rk4")
+    with pytest.raises(InputError, match="allowed: lieη, splittings, Runge–Kutta methods"):
+        prove_every_in_time("implicit-symplectic-euler")
     with pytest.raises(InputError, match="up to lie8"):
         prove_every_in_time("lie9")
