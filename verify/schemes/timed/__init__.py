@@ -1,0 +1,1 @@
+"""Order conditions with time: splittings and Runge–Kutta methods with their clocks."""

@@ -1,0 +1,45 @@
+"""The time at which each part of a splitting reads its force or its velocity.
+
+The right clock of a kick is advanced by the drifts, that of a drift by the kicks: a kick reads the
+force at t + h·(drifts before it), a drift the velocity at t + h·(kicks before it). For then the
+step is that of a splitting without time. With times x and y as further coordinates and X, Y their
+momenta, H = T(p, y) + X + V(q, x) + Y is a sum of A = V(q, x) + Y, whose flow is the kick and
+advances y, and of B = T(p, y) + X, whose flow is the drift and advances x. After the canonical
+change (y, Y) → (Y, −y) A is a function of coordinates and B one of momenta. The conditions for
+T(p) + V(q) hold in any number of degrees of freedom; so with right clocks every splitting keeps
+its order for every H = T(p, t) + V(q, t). Nyström methods, which have theirs for quadratic T alone,
+do not where T depends on t: that B is not quadratic in the momenta.
+
+Where the drifts do not add up to 1, the kicks' clock does not reach the step's end. That is no
+fault of the clock: the condition Σ drifts = 1 fails, of order 1.
+"""
+
+from collections.abc import Sequence
+
+import sympy
+
+from verify.schemes.splitting_conditions import Part
+
+Times = tuple[sympy.Expr | None, ...]  # of the parts, as parts of h; None where it is the right one
+
+
+def right_clocks(parts: Sequence[Part]) -> tuple[sympy.Expr, ...]:
+    """The times that keep the order: for each part the sum of the other kind's before it.
+
+    >>> half = sympy.S.Half
+    >>> right_clocks([("kick", half), ("drift", sympy.S.One), ("kick", half)])
+    (0, 1/2, 1)
+    """
+    return advanced(parts, {"kick": ("drift",), "drift": ("kick",)})
+
+
+def advanced(
+    parts: Sequence[Part], by: dict[str, tuple[str, ...]], *, after: bool = False
+) -> tuple[sympy.Expr, ...]:
+    """For each part the sum of those before it, with `after` also itself, that advance its clock:
+    for a kick those of the kinds `by["kick"]`."""
+    found = []
+    for k, (kind, _) in enumerate(parts):
+        seen = parts[: k + 1] if after else parts[:k]
+        found.append(sum((size for other, size in seen if other in by[kind]), sympy.S.Zero))
+    return tuple(found)

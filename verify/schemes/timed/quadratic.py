@@ -1,0 +1,125 @@
+"""Which combinations of Lyndon words count where T = p²/(2m).
+
+Then D_n is m_n p²/2, with 1/m = Σ m_n tⁿ, and the bracket of letters is a polynomial in p, in the
+m_n and in the derivatives of the functions V_n(q), which are all free. Some are 0, as
+{V, {V', {V'', p²}}}, and some are equal. A Lie polynomial is Σ y_b b over brackets b of which the
+leading words are the Lyndon words, and its Hamiltonian Σ y_b H_b: that vanishes where so many
+combinations of its coefficients of Lyndon words do as the H_b have rank. The letters of a word go
+with it everywhere, those of D as the powers of the m_n and those of K as the functions V_n; so that
+is linear algebra among the words of the same letters.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from math import lcm
+
+import flint
+
+from verify.schemes.timed.words import Letter, Word, joined, lyndon
+
+Combination = tuple[tuple[int, Word], ...]
+Hamiltonian = flint.fmpq_mpoly
+_MOST = 8  # functions V_n, and as many derivatives of each
+
+
+@cache
+def combinations(kinds: str, weight: int) -> tuple[Combination, ...]:
+    """Those of that weight that vanish exactly where a Lie polynomial's Hamiltonian does.
+
+    `kinds`: those whose time counts, "KD" where m depends on t, "K" where it does not.
+    """
+    of_letters: dict[Word, list[Word]] = defaultdict(list)
+    for word in lyndon(kinds, weight):
+        of_letters[tuple(sorted(word))].append(word)
+    return tuple(x for item in of_letters.items() for x in _of_letters(*item))
+
+
+def _of_letters(letters: Word, leading: list[Word]) -> Iterator[Combination]:
+    brackets = _brackets(letters)
+    hamiltonians = [dict(b.hamiltonian.to_dict()) for b in brackets]
+    monomials = sorted({m for h in hamiltonians for m in h})
+    if not monomials:
+        return
+    # With C the brackets' coefficients of the words, c = y C; what is to vanish is y M = c C⁻¹ M.
+    coefficients = flint.fmpq_mat([[b.words.get(w, 0) for w in leading] for b in brackets])
+    values = flint.fmpq_mat([[h.get(m, 0) for m in monomials] for h in hamiltonians])
+    reduced, rank = (coefficients.inv() * values).transpose().rref()
+    for i in range(rank):
+        row = [reduced[i, j] for j in range(len(leading))]
+        shared = lcm(*(int(x.q) for x in row))
+        yield tuple((int(x.p) * (shared // int(x.q)), w) for x, w in zip(row, leading, strict=True) if x)
+
+
+@dataclass(frozen=True)
+class _Bracket:
+    """Of letters: its words, each with its coefficient, and its Hamiltonian."""
+
+    words: Mapping[Word, int]
+    hamiltonian: Hamiltonian
+
+    def with_letter(self, letter: Letter) -> "_Bracket":
+        """[letter, this one]."""
+        words = Counter[Word]()
+        for word, n in self.words.items():
+            words[joined((letter,), word)] += n
+            words[joined(word, (letter,))] -= n
+        left = {word: n for word, n in words.items() if n}
+        return _Bracket(left, _field().bracket(letter, self.hamiltonian))
+
+
+@cache
+def _brackets(letters: Word) -> tuple[_Bracket, ...]:
+    """A basis of the brackets of these letters, each of them as often as it is there."""
+    if len(letters) == 1:
+        return (_Bracket({letters: 1}, _field().of_letter(letters[0])),)
+    spanning = []
+    for letter in dict.fromkeys(letters):
+        others = list(letters)
+        others.remove(letter)
+        spanning += [b.with_letter(letter) for b in _brackets(tuple(others))]
+    words = sorted({w for b in spanning for w in b.words})
+    if not words:
+        return ()
+    matrix = flint.fmpq_mat([[b.words.get(w, 0) for b in spanning] for w in words])
+    reduced, rank = matrix.rref()
+    columns = range(len(spanning))
+    return tuple(spanning[next(j for j in columns if reduced[i, j])] for i in range(rank))
+
+
+class _Field:
+    """Polynomials in p and in the derivatives V_n⁽ᵏ⁾ of functions of q."""
+
+    def __init__(self) -> None:
+        indices = [(n, k) for n in range(_MOST) for k in range(_MOST + 1)]
+        names = ["p", *(f"V{n}_{k}" for n, k in indices)]
+        self.context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.degrevlex)
+        self.p, *self.functions = self.context.gens()
+
+    def of_letter(self, letter: Letter) -> Hamiltonian:
+        kind, n = letter
+        return self.p**2 / 2 if kind == "D" else self.v(n, 0)
+
+    def v(self, n: int, k: int) -> Hamiltonian:
+        return self.functions[n * (_MOST + 1) + k]
+
+    def bracket(self, letter: Letter, x: Hamiltonian) -> Hamiltonian:
+        """{letter, x} with {a, b} = a_p b_q − a_q b_p."""
+        kind, n = letter
+        if kind == "K":
+            return -self.v(n, 1) * x.derivative(0)
+        return self.p * self._along_q(x)
+
+    def _along_q(self, x: Hamiltonian) -> Hamiltonian:
+        total = self.context.constant(0)
+        for at, degree in enumerate(x.degrees()[1:]):
+            if degree > 0:
+                n, k = divmod(at, _MOST + 1)
+                total += x.derivative(at + 1) * self.v(n, k + 1)
+        return total
+
+
+@cache
+def _field() -> _Field:
+    return _Field()

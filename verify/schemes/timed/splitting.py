@@ -1,0 +1,163 @@
+"""Order of a splitting for H = T(p, t) + V(q, t), by conditions on its parts and their times.
+
+The step's coefficient of each word in the letters K_n and D_n (`verify.schemes.timed.words`) is to
+be that of the exact flow. A product of exponentials of letters is group-like, so that where all
+coefficients of weights below n agree, the difference at weight n is a Lie polynomial: those of
+Lyndon words suffice, 2, 2, 4, 7, 15, 28, 62, 126 of weights 1 … 8 where T depends on p alone, and
+2, 3, 6, 12, 28, 61, 148, 345 where it depends on t. They are needed: the Hamiltonians of brackets
+of letters, K_n standing for any V_n(q) and D_n for any T_n(p), are independent in the plane up to
+weight 8 (a test has their rank). Without letters of n > 0 these are the conditions of
+`verify.schemes.splitting_conditions`; and where the clocks are right they are all that is asked
+(`verify.schemes.timed.clocks`).
+
+For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
+combinations of coefficients in the generator of the step (`verify.schemes.timed.step_words`) that
+count (`verify.schemes.timed.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6, 11,
+23, 45, 93, 182 for p²/(2m(t)).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import ClassVar
+
+from verify.algebra.conditions import Condition
+from verify.algebra.embedding import embed
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.schemes.residue import condition_of
+from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part, Splitting
+from verify.schemes.timed.clocks import Times
+from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.timed.quadratic import Combination, combinations
+from verify.schemes.timed.step_words import StepWords, TimedPart, factors
+from verify.schemes.timed.words import Word, lyndon, of_the_flow, text, weight
+
+_DIGITS = 12  # of a residue
+_PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
+
+
+@dataclass(frozen=True)
+class TimedSplitting:
+    """Kicks p − a h V_q(q, t + s h) and drifts q + a h T_p(p, t + s h), for every V and every T of
+    a class.
+
+    `times`: s of each part, None for the right one; ValueError unless there are as many as parts.
+    It is a `verify.algebra.conditions.ByConditions`.
+    """
+
+    parts: tuple[Part, ...]
+    times: Times
+    kinetic: Kinetic = Kinetic.GENERAL
+    separable: ClassVar[bool] = True
+    most_order: ClassVar[int] = MOST_ORDER
+
+    def __post_init__(self) -> None:
+        if len(self.parts) != len(self.times):
+            raise ValueError(f"{len(self.times)} times of {len(self.parts)} parts")
+
+    @classmethod
+    def of(cls, splitting: Splitting, kinetic: Kinetic = Kinetic.GENERAL) -> "TimedSplitting":
+        """The same parts at their right times."""
+        return cls(splitting.parts, (None,) * len(splitting.parts), kinetic)
+
+    @cached_property
+    def plain(self) -> Splitting:
+        """The same parts without time."""
+        return Splitting(self.parts)
+
+    @cached_property
+    def numbers(self) -> tuple[Ring, list[TimedPart]]:
+        """The parts, letters with sizes and times in one ring."""
+        told = [time for time in self.times if time is not None]
+        ring, numbers = embed([*(size for _, size in self.parts), *told], ())
+        sizes, rest = numbers[: len(self.parts)], iter(numbers[len(self.parts) :])
+        kinds = [LETTERS[kind] for kind, _ in self.parts]
+        right = _right_clocks(ring, list(zip(kinds, sizes, strict=True)))
+        times = [x if t is None else next(rest) for x, t in zip(right, self.times, strict=True)]
+        return ring, list(zip(kinds, sizes, times, strict=True))
+
+    @cached_property
+    def clocks_are_right(self) -> bool:
+        """Whether each part that reads a time has the right one, exactly; one of size 0 reads
+        none."""
+        ring, parts = self.numbers
+        right = _right_clocks(ring, [(kind, size) for kind, size, _ in parts])
+        return all(
+            kind not in self.kinetic.timed or size == 0 or ring.decide(time - clock).zero is True
+            for (kind, size, time), clock in zip(parts, right, strict=True)
+        )
+
+    def order_conditions(self, order: int) -> tuple[Condition, ...]:
+        """Those of weights 1 … `order`; InputError beyond order 8."""
+        if order > MOST_ORDER:
+            raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
+        if self.clocks_are_right and not self.kinetic.quadratic:
+            return self.plain.order_conditions(order)
+        return tuple(c for n in range(1, order + 1) for c in self._of_weight(n))
+
+    def area_conditions(self) -> tuple[Condition, ...]:
+        """At a fixed time a kick and a drift are shears: those of the same parts without time."""
+        return self.plain.area_conditions()
+
+    def _of_weight(self, n: int) -> tuple[Condition, ...]:
+        if n not in self._known:
+            if self.kinetic.quadratic and n > _PLAIN:
+                self._known[n] = tuple(self._of_generator(combinations(self.kinetic.timed, n)))
+            else:
+                words = lyndon(self.kinetic.timed, n)
+                self._words.prepare(words)
+                self._known[n] = tuple(self._of_word(word) for word in words)
+        return self._known[n]
+
+    @cached_property
+    def _words(self) -> StepWords:
+        return StepWords(*self.numbers)
+
+    @cached_property
+    def _known(self) -> dict[int, tuple[Condition, ...]]:
+        return {}
+
+    def _of_word(self, word: Word) -> Condition:
+        ring, flow = self._words.ring, of_the_flow(word)
+        residue = self._words.coefficient(word) - ring.constant(flow)
+        return condition_of(ring, _equation(word, flow), weight(word), residue, _DIGITS)
+
+    def _of_generator(self, rows: Sequence[Combination]) -> Iterator[Condition]:
+        self._words.prepare({x for row in rows for _, word in row for x in factors(word)})
+        ring = self._words.ring
+        for row in rows:
+            # Of the exact flow the generator has each letter once, and no longer word.
+            value = sum(n for n, word in row if len(word) == 1)
+            residue = ring.constant(Fraction(-value))
+            for n, word in row:
+                residue += self._words.generator(word) * n
+            name = " + ".join(text(w) if n == 1 else f"({n}) {text(w)}" for n, w in row)
+            name = f"coefficient of {name} in the generator = {value}"
+            yield condition_of(ring, name, weight(row[0][1]), residue, _DIGITS)
+
+
+def _right_clocks(ring: Ring, parts: Sequence[tuple[str, Poly]]) -> list[Poly]:
+    """See `verify.schemes.timed.clocks`."""
+    clocks, found = {"K": ring.zero, "D": ring.zero}, []
+    for kind, size in parts:
+        found.append(clocks[kind])
+        other = "D" if kind == "K" else "K"
+        clocks[other] = ring.reduce(clocks[other] + size)
+    return found
+
+
+def _equation(word: Word, flow: Fraction) -> str:
+    """The word's condition; of one letter also as a sum over the parts.
+
+    >>> _equation((("K", 1),), Fraction(1, 2))
+    'Σ kicks·time = 1/2, coefficient of K1 = 1/2'
+    """
+    name = f"coefficient of {text(word)} = {flow}"
+    if len(word) > 1:
+        return name
+    ((kind, n),) = word
+    parts = {"K": "kicks", "D": "drifts"}[kind]
+    time = "" if n == 0 else "·time" if n == 1 else f"·time^{n}"
+    return f"Σ {parts}{time} = {flow}, {name}"

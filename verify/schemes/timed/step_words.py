@@ -1,0 +1,99 @@
+"""A step's coefficients of words, and those of its generator.
+
+The step is S = Π exp(a Σ sⁿ X_n) over its parts, in the order in which they are made. As a function
+of h it is the flow of some field that depends on time: h dS/dh = S G, and G = S⁻¹ h dS/dh is a Lie
+series, of the exact flow the letters themselves, K_0 + K_1 + … + D_0 + …. So the step agrees with
+the flow up to h^r where G has no other terms of weights up to r; and where some brackets of letters
+vanish, where the others' coefficients in G do. Of a word G has
+
+    G(w) = weight(w) S(w) − Σ S(u) G(v), over w = u v with neither empty.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from functools import cache
+from math import factorial
+
+from verify.algebra.ring import Poly, Ring
+from verify.schemes.timed.words import Letter, Word, cuts, endings, weight
+
+TimedPart = tuple[str, Poly, Poly]  # "K" or "D", what part of h it takes, and at what part its time
+
+
+class StepWords:
+    """The coefficients of a step, each made once."""
+
+    def __init__(self, ring: Ring, parts: Sequence[TimedPart]) -> None:
+        self.ring, self.parts = ring, parts
+        self._known: dict[Word, Poly] = {}
+        self._generated: dict[Word, Poly] = {}
+
+    def coefficient(self, word: Word) -> Poly:
+        """The word's in the step; `prepare` makes those of many together."""
+        if word not in self._known:
+            self.prepare([word])
+        return self._known[word]
+
+    def prepare(self, words: Iterable[Word]) -> None:
+        """All of their heads are found in one passage over the parts."""
+        ring, needed = self.ring, sorted(_with_heads(words), key=len, reverse=True)
+        if all(word in self._known for word in needed):
+            return
+        reached = dict.fromkeys(needed, ring.zero)
+        reached[()] = ring.one
+        for kind, size, time in self.parts:
+            shares = _Shares(ring, size, time)
+            for word in needed:  # a head is shorter, and is not yet this part's
+                if word and word[-1][0] == kind:
+                    total = reached[word]
+                    for head, tail in endings(word):
+                        before = reached[head]
+                        if before != 0:
+                            total += shares.of(tail) * before
+                    reached[word] = ring.reduce(total)
+        self._known |= reached
+
+    def generator(self, word: Word) -> Poly:
+        """The word's in G."""
+        if word not in self._generated:
+            total = self.coefficient(word) * weight(word)
+            for head, tail in cuts(word):
+                total -= self.coefficient(head) * self.generator(tail)
+            self._generated[word] = self.ring.reduce(total)
+        return self._generated[word]
+
+
+def _with_heads(words: Iterable[Word]) -> set[Word]:
+    found = {(), *words}
+    left = list(found)
+    while left:
+        word = left.pop()
+        more = {head for head, _ in endings(word)} - found if word else set()
+        found |= more
+        left += more
+    return found
+
+
+@cache
+def factors(word: Word) -> frozenset[Word]:
+    """The heads of its tails, of which `StepWords.generator` takes the coefficients."""
+    tails = [word, *(tail for _, tail in cuts(word))]
+    return frozenset(x for tail in tails for x in (tail, *(head for head, _ in cuts(tail))))
+
+
+class _Shares:
+    """The coefficients of exp(a Σ sⁿ X_n): Π aᵐ s^(n m)/m! of letters X_n, m times each."""
+
+    def __init__(self, ring: Ring, size: Poly, time: Poly) -> None:
+        self.ring, self.size, self.time = ring, size, time
+        self._known: dict[tuple[Letter, ...], Poly] = {}
+
+    def of(self, run: Word) -> Poly:
+        if run not in self._known:
+            total = self.ring.one
+            for (_, n), many in Counter(run).items():
+                one = self.ring.reduce(self.size * self.ring.reduce(self.time**n))
+                for k in range(1, many + 1):
+                    total = self.ring.multiply(total, one) / k
+            self._known[run] = total
+        return self._known[run]

@@ -1,0 +1,128 @@
+"""Words in the letters of a splitting with time, of which those of one kind commute.
+
+A kick of a h at t + s h is the flow of a h V(q, t + s h). With K_n = ∂_tⁿ V/n! at t, as a Lie
+derivative, it is exp(a Σ sⁿ h^(n+1) K_n); so K_n has the weight n + 1 in h, and D_n of the drift
+likewise. All K_n are functions of q alone and commute, all D_n are of p alone; between kinds nothing
+is said. Products of such letters are words in which a run of letters of one kind has no order
+(Cartier and Foata). It is written with falling indices: the last of its orders in the dictionary.
+
+Those of them that are smaller than each of their proper ends, the Lyndon words, are a basis's leading
+words for Lie polynomials (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
+commutatives, Theor. Comput. Sci. 117 (1993); Krob and Lalonde, Partially commutative Lyndon words,
+STACS 1993). A Lie polynomial is known by its coefficients of them; a test has the ranks.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cache
+
+Letter = tuple[str, int]  # "K" or "D", and the power of time
+Word = tuple[Letter, ...]
+
+
+def weight(word: Word) -> int:
+    """The power of h that it comes with.
+
+    >>> weight((("K", 1), ("D", 0)))
+    3
+    """
+    return sum(n + 1 for _, n in word)
+
+
+def text(word: Word) -> str:
+    """As it is written; without indices where none depends on time.
+
+    >>> text((("D", 0), ("K", 1))), text((("D", 0), ("K", 0)))
+    ('D0 K1', 'DK')
+    """
+    if any(n for _, n in word):
+        return " ".join(f"{kind}{n}" for kind, n in word)
+    return "".join(kind for kind, _ in word)
+
+
+def joined(head: Word, tail: Word) -> Word:
+    """The product."""
+    if head and tail and head[-1][0] == tail[0][0]:
+        cut = len(head) - len(last_run(head))
+        end = next((k for k, x in enumerate(tail) if x[0] != tail[0][0]), len(tail))
+        run = sorted(head[cut:] + tail[:end], reverse=True)
+        return (*head[:cut], *run, *tail[end:])
+    return head + tail
+
+
+def last_run(word: Word) -> Word:
+    """The letters at its end that are of one kind."""
+    cut = len(word)
+    while cut and word[cut - 1][0] == word[-1][0]:
+        cut -= 1
+    return word[cut:]
+
+
+@cache
+def endings(word: Word) -> tuple[tuple[Word, Word], ...]:
+    """(head, tail) for each tail, not empty, that its last run contains: head · tail is the word.
+
+    >>> [text(tail) for _, tail in endings((("D", 0), ("K", 1), ("K", 0)))]
+    ['K', 'K1', 'K1 K0']
+    """
+    run = last_run(word)
+    rest = word[: len(word) - len(run)]
+    counts = sorted(Counter(run).items(), reverse=True)
+    found: list[tuple[Word, Word]] = [((), ())]
+    for letter, many in counts:
+        shares = range(many + 1)
+        found = [(a + (letter,) * (many - k), b + (letter,) * k) for a, b in found for k in shares]
+    return tuple((rest + a, b) for a, b in found if b)
+
+
+@cache
+def cuts(word: Word) -> tuple[tuple[Word, Word], ...]:
+    """(head, tail) with head · tail the word, each pair once; neither is empty."""
+    found = dict.fromkeys(_cuts(word))
+    return tuple((head, tail) for head, tail in found if head and tail)
+
+
+def _cuts(word: Word) -> Iterator[tuple[Word, Word]]:
+    yield word, ()
+    if word:
+        for head, tail in endings(word):
+            yield head, tail
+        run = last_run(word)
+        for head, tail in _cuts(word[: len(word) - len(run)]):
+            yield head, joined(tail, run)
+
+
+@cache
+def words(kinds: str, most: int) -> tuple[Word, ...]:
+    """All of that weight; `kinds`: those whose time counts, as "K" where only V depends on t."""
+    if most == 0:
+        return ((),)
+    letters = [(kind, n) for kind in "DK" for n in range(most) if n == 0 or kind in kinds]
+    found = {
+        joined(word, (x,)) for x in letters for word in words(kinds, most - 1 - x[1])
+    }
+    return tuple(sorted(found))
+
+
+@cache
+def lyndon(kinds: str, most: int) -> tuple[Word, ...]:
+    """The Lyndon words of that weight.
+
+    >>> [text(word) for word in lyndon("KD", 2)]
+    ['DK', 'D1', 'K1']
+    """
+    return tuple(w for w in words(kinds, most) if all(w < w[k:] for k in range(1, len(w))))
+
+
+@cache
+def of_the_flow(word: Word) -> Fraction:
+    """The word's coefficient in the exact flow over a step of 1.
+
+    That of letters in an order is ∫ τ_1^n_1 … τ_m^n_m over 0 < τ_1 < … < τ_m < 1, which is
+    Π 1/(weight of the first k letters); of a run all orders are added up.
+    """
+    if not word:
+        return Fraction(1)
+    heads = [head for head, tail in endings(word) if len(tail) == 1]
+    return sum(map(of_the_flow, heads), Fraction(0)) / weight(word)
