@@ -22,7 +22,7 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
     one of the former fails, with the first that does; UNDECIDED where one is not decided, or where
     det J is not; `order` (of ΔJ) is always None.
     """
-    agreed, wrong = _agreed(every_h, max(scheme.order, least))
+    agreed, wrong = agreed_order(every_h, max(scheme.order, least))
     asked = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
     area = every_h.area_conditions()
     preserved = bool(area) and all(condition.holds for condition in area)
@@ -41,8 +41,8 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
     )
 
 
-def _agreed(every_h: ByConditions, least: int) -> tuple[int, Condition | None]:
-    """The order of the map, as far as it is looked at, and what ends it."""
+def agreed_order(every_h: ByConditions, least: int) -> tuple[int, Condition | None]:
+    """The order of the map, as far as two beyond `least`, and the condition that ends it."""
     most = min(least + _MORE, every_h.most_order)
     for order in range(1, most + 1):
         here = [c for c in every_h.order_conditions(order) if c.order == order]

@@ -18,28 +18,17 @@ from collections.abc import Sequence
 
 import sympy
 
-from verify.schemes.splitting_conditions import Part
+from verify.algebra.ring import Poly, Ring
 
 Times = tuple[sympy.Expr | None, ...]  # of the parts, as parts of h; None where it is the right one
 
 
-def right_clocks(parts: Sequence[Part]) -> tuple[sympy.Expr, ...]:
-    """The times that keep the order: for each part the sum of the other kind's before it.
-
-    >>> half = sympy.S.Half
-    >>> right_clocks([("kick", half), ("drift", sympy.S.One), ("kick", half)])
-    (0, 1/2, 1)
-    """
-    return advanced(parts, {"kick": ("drift",), "drift": ("kick",)})
-
-
-def advanced(
-    parts: Sequence[Part], by: dict[str, tuple[str, ...]], *, after: bool = False
-) -> tuple[sympy.Expr, ...]:
-    """For each part the sum of those before it, with `after` also itself, that advance its clock:
-    for a kick those of the kinds `by["kick"]`."""
-    found = []
-    for k, (kind, _) in enumerate(parts):
-        seen = parts[: k + 1] if after else parts[:k]
-        found.append(sum((size for other, size in seen if other in by[kind]), sympy.S.Zero))
-    return tuple(found)
+def right_clocks(ring: Ring, parts: Sequence[tuple[str, Poly]]) -> list[Poly]:
+    """The times that keep the order, of letters K and D with sizes: for each part the sum of the
+    other kind's before it."""
+    clocks, found = {"K": ring.zero, "D": ring.zero}, []
+    for kind, size in parts:
+        found.append(clocks[kind])
+        other = "D" if kind == "K" else "K"
+        clocks[other] = ring.reduce(clocks[other] + size)
+    return found

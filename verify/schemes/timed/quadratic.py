@@ -49,7 +49,9 @@ def _of_letters(letters: Word, leading: list[Word]) -> Iterator[Combination]:
     for i in range(rank):
         row = [reduced[i, j] for j in range(len(leading))]
         shared = lcm(*(int(x.q) for x in row))
-        yield tuple((int(x.p) * (shared // int(x.q)), w) for x, w in zip(row, leading, strict=True) if x)
+        yield tuple(
+            (int(x.p) * (shared // int(x.q)), w) for x, w in zip(row, leading, strict=True) if x
+        )
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.schemes.residue import condition_of
 from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part, Splitting
-from verify.schemes.timed.clocks import Times
+from verify.schemes.timed.clocks import Times, right_clocks
 from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.quadratic import Combination, combinations
 from verify.schemes.timed.step_words import StepWords, TimedPart, factors
@@ -74,7 +74,7 @@ class TimedSplitting:
         ring, numbers = embed([*(size for _, size in self.parts), *told], ())
         sizes, rest = numbers[: len(self.parts)], iter(numbers[len(self.parts) :])
         kinds = [LETTERS[kind] for kind, _ in self.parts]
-        right = _right_clocks(ring, list(zip(kinds, sizes, strict=True)))
+        right = right_clocks(ring, list(zip(kinds, sizes, strict=True)))
         times = [x if t is None else next(rest) for x, t in zip(right, self.times, strict=True)]
         return ring, list(zip(kinds, sizes, times, strict=True))
 
@@ -83,11 +83,18 @@ class TimedSplitting:
         """Whether each part that reads a time has the right one, exactly; one of size 0 reads
         none."""
         ring, parts = self.numbers
-        right = _right_clocks(ring, [(kind, size) for kind, size, _ in parts])
         return all(
-            kind not in self.kinetic.timed or size == 0 or ring.decide(time - clock).zero is True
-            for (kind, size, time), clock in zip(parts, right, strict=True)
+            kind not in self.kinetic.timed
+            or size.is_zero()
+            or ring.decide(time - clock).zero is True
+            for (kind, size, time), clock in zip(parts, self.right, strict=True)
         )
+
+    @cached_property
+    def right(self) -> list[Poly]:
+        """The right time of each part, in the ring of `numbers`."""
+        ring, parts = self.numbers
+        return right_clocks(ring, [(kind, size) for kind, size, _ in parts])
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those of weights 1 … `order`; InputError beyond order 8."""
@@ -136,16 +143,6 @@ class TimedSplitting:
             name = " + ".join(text(w) if n == 1 else f"({n}) {text(w)}" for n, w in row)
             name = f"coefficient of {name} in the generator = {value}"
             yield condition_of(ring, name, weight(row[0][1]), residue, _DIGITS)
-
-
-def _right_clocks(ring: Ring, parts: Sequence[tuple[str, Poly]]) -> list[Poly]:
-    """See `verify.schemes.timed.clocks`."""
-    clocks, found = {"K": ring.zero, "D": ring.zero}, []
-    for kind, size in parts:
-        found.append(clocks[kind])
-        other = "D" if kind == "K" else "K"
-        clocks[other] = ring.reduce(clocks[other] + size)
-    return found
 
 
 def _equation(word: Word, flow: Fraction) -> str:

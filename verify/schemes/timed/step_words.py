@@ -12,7 +12,6 @@ vanish, where the others' coefficients in G do. Of a word G has
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import cache
-from math import factorial
 
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.timed.words import Letter, Word, cuts, endings, weight
@@ -48,7 +47,7 @@ class StepWords:
                     total = reached[word]
                     for head, tail in endings(word):
                         before = reached[head]
-                        if before != 0:
+                        if not before.is_zero():
                             total += shares.of(tail) * before
                     reached[word] = ring.reduce(total)
         self._known |= reached

@@ -2,14 +2,15 @@
 
 A kick of a h at t + s h is the flow of a h V(q, t + s h). With K_n = ∂_tⁿ V/n! at t, as a Lie
 derivative, it is exp(a Σ sⁿ h^(n+1) K_n); so K_n has the weight n + 1 in h, and D_n of the drift
-likewise. All K_n are functions of q alone and commute, all D_n are of p alone; between kinds nothing
-is said. Products of such letters are words in which a run of letters of one kind has no order
-(Cartier and Foata). It is written with falling indices: the last of its orders in the dictionary.
+likewise. All K_n are functions of q alone and commute, all D_n are of p alone; between the two
+kinds there is no relation. So a kick may be parted into neighbours at several times, in any order.
+Products of such letters are words in which a run of letters of one kind has no order (Cartier and
+Foata). It is written with falling indices, the last in the dictionary.
 
-Those of them that are smaller than each of their proper ends, the Lyndon words, are a basis's leading
-words for Lie polynomials (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
-commutatives, Theor. Comput. Sci. 117 (1993); Krob and Lalonde, Partially commutative Lyndon words,
-STACS 1993). A Lie polynomial is known by its coefficients of them; a test has the ranks.
+Those of them that are smaller than each of their proper ends, the Lyndon words, lead the Lie
+polynomials of a basis (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
+commutatives, Theor. Comput. Sci. 117 (1993)). So a Lie polynomial is known by its coefficients of
+them; a test has the ranks.
 """
 
 from collections import Counter
@@ -99,9 +100,7 @@ def words(kinds: str, most: int) -> tuple[Word, ...]:
     if most == 0:
         return ((),)
     letters = [(kind, n) for kind in "DK" for n in range(most) if n == 0 or kind in kinds]
-    found = {
-        joined(word, (x,)) for x in letters for word in words(kinds, most - 1 - x[1])
-    }
+    found = {joined(word, (x,)) for x in letters for word in words(kinds, most - 1 - x[1])}
     return tuple(sorted(found))
 
 

@@ -1,0 +1,65 @@
+"""The conditions on a scheme's coefficients for H that depend on time, whatever kind it is of.
+
+    conditions = conditions_for(scheme.every_h, Kinetic.MASS)
+    order, violated = agreed_order(conditions, scheme.order)  # of verify.proof.by_conditions
+
+Without times of its own a scheme has the right ones. A scheme that is a series, as `lieη`, has no
+coefficients of which to ask: its order is that of the series, with D = ∂_t + X for X.
+"""
+
+from collections.abc import Sequence
+from functools import singledispatch
+
+import sympy
+
+from verify.algebra.conditions import ByConditions
+from verify.errors import InputError
+from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
+from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.timed.runge_kutta import TimedTrees
+from verify.schemes.timed.splitting import TimedSplitting
+from verify.schemes.timed.tableau import TimedTableau
+from verify.schemes.tree_conditions import TreeConditions
+
+Times = Sequence[sympy.Expr | None] | None
+
+
+@singledispatch
+def conditions_for(
+    every_h: object, kinetic: Kinetic | None = None, times: Times = None
+) -> ByConditions:
+    """Of `Scheme.every_h`, for every H = T + V(q, t) with T of the class.
+
+    `kinetic` None: for every H(p, q, t) that the scheme takes. `times`: of each part, or of each
+    stage, as parts of h; None for the right one, and without them those of the scheme itself.
+    Raises InputError for what has no coefficients.
+    """
+    raise InputError("scheme", type(every_h).__name__, "is not given by coefficients")
+
+
+@conditions_for.register
+def _(every_h: Splitting, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+    own = times or every_h.times or (None,) * len(every_h.parts)
+    return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL)
+
+
+@conditions_for.register
+def _(every_h: TreeConditions, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+    return TimedTrees(TimedTableau.of(every_h.tableau, times), _class(every_h.separable, kinetic))
+
+
+@conditions_for.register
+def _(every_h: RungeKutta, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+    tableau = TimedTableau.of_explicit(every_h, times)
+    return TimedTrees(tableau, _class(every_h.separable, kinetic))
+
+
+@conditions_for.register
+def _(every_h: StageEquations, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+    tableau = TimedTableau.of_stages(every_h, times)
+    return TimedTrees(tableau, _class(every_h.separable, kinetic))
+
+
+def _class(separable: bool, kinetic: Kinetic | None) -> Kinetic | None:
+    return kinetic or (Kinetic.GENERAL if separable else None)

@@ -1,0 +1,202 @@
+"""Order conditions of Runge–Kutta methods for z' = f(z, t), from coefficients and stage times.
+
+Map and exact flow agree up to h^p for every smooth f exactly where Σ_i b_i Φ_i(t) = 1/γ(t) for
+every tree t of at most p vertices, some of whose leaves are of time: Butcher's theorem for the
+system with t' = 1 beside it (`verify.schemes.timed.trees`). A branch puts into Φ_i(t) the factor
+Σ_j a_ij Φ_j, a leaf of time the stage's time c_i. Where c = A 1, a leaf of time has the factor of
+any leaf, and the densities know no colours: each condition is one without time.
+
+So with right clocks the conditions are those of `verify.schemes.tree_conditions`, as long as each
+tree's own holds. Combinations that count in the plane alone do not carry over: f'f' is −det Hess H
+there, but with time the field's derivative has a column f_t more. So where conditions of n vertices
+fail, what is left at hⁿ, Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) over all trees, is looked at as a polynomial
+in the derivatives of H by p, q and t; first for H without time, which are among them.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
+
+from verify.algebra.conditions import Condition
+from verify.algebra.generator import terms_of
+from verify.algebra.ring import Poly
+from verify.errors import InputError
+from verify.schemes.residue import condition_of
+from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.timed.tableau import TimedNumbers, TimedTableau
+from verify.schemes.timed.trees import (
+    TIME,
+    Differentials,
+    Tree,
+    TreeJets,
+    density,
+    equation_text,
+    has_time,
+    symmetry,
+    trees,
+)
+from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions
+from verify.schemes.tree_conditions import trees as plain_trees
+
+Vector = tuple[Poly, ...]
+_MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
+_DIGITS = 5  # of a residue
+
+
+@dataclass(frozen=True)
+class TimedTrees:
+    """A Runge–Kutta method for every H(p, q, t) (`kinetic`: for every H = T + V(q, t) with T of
+    that class). It is a `verify.algebra.conditions.ByConditions`."""
+
+    tableau: TimedTableau
+    kinetic: Kinetic | None = None
+
+    @property
+    def most_order(self) -> int:
+        """The highest of which there are conditions."""
+        return MOST_ORDER if self.clocks_are_right else _MOST_TIMED
+
+    @property
+    def separable(self) -> bool:
+        """Whether it is for H = T + V alone."""
+        return self.kinetic is not None
+
+    @property
+    def clocks_are_right(self) -> bool:
+        """Whether every stage has the time that is right for it, exactly."""
+        return self.tableau.numbers.right
+
+    def order_conditions(self, order: int) -> tuple[Condition, ...]:
+        """Those of trees of 1 … `order` vertices.
+
+        InputError beyond order 10, or 8 where a clock is not right.
+        """
+        if order > self.most_order:
+            problem = f"of a Runge–Kutta method with these times is proved up to {self.most_order}"
+            raise InputError("order", order, problem)
+        orders = range(1, order + 1)
+        return tuple(c for n in orders for c in _of_order(self.tableau, n, self.kinetic))
+
+    def area_conditions(self) -> tuple[Condition, ...]:
+        """At each stage's time those of one part without time; of two parts
+        b_p,i a_q,ij + b_q,j a_p,ji = b_p,i b_q,j and b_p = b_q, which suffice (Hairer, Lubich,
+        Wanner, theorem VI.4.6)."""
+        if len(self.tableau.parts) == 1:
+            return self.tableau.parts[0].area_conditions()
+        return tuple(_area_of_two(self.tableau.numbers))
+
+
+@lru_cache(maxsize=256)
+def _of_order(tableau: TimedTableau, order: int, kinetic: Kinetic | None) -> tuple[Condition, ...]:
+    numbers, parts = tableau.numbers, len(tableau.parts)
+    plain = _without_time(tableau, order, kinetic)
+    if plain is not None:
+        return plain
+    if order > _MOST_TIMED:
+        return (Condition(f"b·Φ(t) = 1/γ(t) over trees of {order}", order, "unknown", None),)
+    weights, every = _Weights(numbers), trees(parts, order)
+    # With right clocks a leaf of time is as any other.
+    known = [tree for tree in every if not (numbers.right and has_time(tree))]
+    found = {
+        tree: condition_of(
+            numbers.ring, equation_text(tree, parts), order, weights.gap(tree), _DIGITS
+        )
+        for tree in known
+    }
+    wrong = [tree for tree in known if found[tree].holds is False]
+    if not wrong:
+        return tuple(found.values())
+    cancel = _cancel(numbers, {tree: weights.gap(tree) for tree in every}, order, kinetic)
+    if cancel is False:
+        return tuple(found.values())
+    left = tuple(c for tree, c in found.items() if tree not in wrong)
+    name = f"Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) = 0 over the {len(wrong)} other trees"
+    return *left, Condition(name, order, "0", cancel)
+
+
+def _without_time(
+    tableau: TimedTableau, order: int, kinetic: Kinetic | None
+) -> tuple[Condition, ...] | None:
+    """Those without time, where they are all that is asked: each holds with right clocks, or one
+    fails for an H without time. None where that is not known of them."""
+    if not tableau.numbers.right or len(tableau.parts) == 2:
+        return None
+    generic = TreeConditions(tableau.parts[0], kinetic is not None)
+    plain = tuple(c for c in generic.order_conditions(order) if c.order == order)
+    if len(plain) < len(plain_trees(order)):  # a combination, in the plane, in place of some
+        return None
+    fewer = kinetic is not None and kinetic.quadratic  # than for every T
+    return plain if not fewer or all(c.holds for c in plain) else None
+
+
+def _cancel(
+    numbers: TimedNumbers, gaps: Mapping[Tree, Poly], order: int, kinetic: Kinetic | None
+) -> bool | None:
+    """Whether Σ gap F(t)/σ(t) is 0 for every H; None where it is not decided."""
+    plain = {tree: gap for tree, gap in gaps.items() if not has_time(tree)}
+    if _vanishes(numbers, plain, TreeJets(order, kinetic, timed=False)) is False:
+        return False
+    return _vanishes(numbers, gaps, TreeJets(order, kinetic))
+
+
+def _vanishes(numbers: TimedNumbers, gaps: Mapping[Tree, Poly], jets: TreeJets) -> bool | None:
+    ring, differentials = numbers.ring, Differentials(jets, len(numbers.matrices))
+    found: dict[tuple[int, tuple[int, ...]], Poly] = {}
+    for tree, gap in gaps.items():
+        if gap.is_zero():
+            continue
+        share = gap / symmetry(tree)
+        for part, x in enumerate(differentials.of(tree)):
+            for monomial, coefficient in terms_of(x):
+                at = part, monomial
+                found[at] = found.get(at, ring.zero) + share * coefficient
+    zeros = {ring.decide(x).zero for x in found.values()}
+    return False if False in zeros else None if None in zeros else True
+
+
+class _Weights:
+    """b·Φ(t) of trees, each vector made once."""
+
+    def __init__(self, numbers: TimedNumbers) -> None:
+        self.numbers, self.ring = numbers, numbers.ring
+        self._summed: dict[Tree, Vector] = {TIME: numbers.clock}
+
+    def gap(self, tree: Tree) -> Poly:
+        """b·Φ(t) − 1/γ(t)."""
+        root, branches = tree
+        weight = self._dot(self.numbers.weights[root], self._vector(branches))
+        return self.ring.reduce(weight - self.ring.one / density(tree))
+
+    def _vector(self, branches: Sequence[Tree]) -> Vector:
+        """Φ_i."""
+        product = (self.ring.one,) * len(self.numbers.clock)
+        for branch in branches:
+            pairs = zip(product, self._sums(branch), strict=True)
+            product = tuple(self.ring.multiply(x, y) for x, y in pairs)
+        return product
+
+    def _sums(self, tree: Tree) -> Vector:
+        """A branch's factor: Σ_j a_ij Φ_j, of time c_i."""
+        if tree not in self._summed:
+            root, branches = tree
+            inner, matrix = self._vector(branches), self.numbers.matrices[root]
+            self._summed[tree] = tuple(self._dot(row, inner) for row in matrix)
+        return self._summed[tree]
+
+    def _dot(self, x: Vector, y: Vector) -> Poly:
+        pairs = zip(x, y, strict=True)
+        return self.ring.reduce(sum((a * b for a, b in pairs), self.ring.zero))
+
+
+def _area_of_two(numbers: TimedNumbers) -> Iterator[Condition]:
+    (a, b), (u, v) = numbers.matrices, numbers.weights
+    stages = range(len(numbers.clock))
+    for i, j in product(stages, repeat=2):
+        m, n = i + 1, j + 1
+        name = f"b_p{m} a_q{m}{n} + b_q{n} a_p{n}{m} = b_p{m} b_q{n}"
+        gap = u[i] * b[i][j] + v[j] * a[j][i] - u[i] * v[j]
+        yield condition_of(numbers.ring, name, 0, gap, _DIGITS)
+    for i in stages:
+        name = f"b_p{i + 1} = b_q{i + 1}"
+        yield condition_of(numbers.ring, name, 0, u[i] - v[i], _DIGITS)
