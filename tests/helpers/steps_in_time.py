@@ -12,6 +12,7 @@ F = Fraction
 Series = list[Fraction]
 Polynomial = dict[tuple[int, int, int], Fraction]  # of powers of p, q and t
 _DEGREE = 7
+_ONE = F(1)
 
 
 def times(x: Series, y: Series) -> Series:
@@ -64,9 +65,9 @@ class Problem:
 
 
 def problem(seed: int, kind: str) -> Problem:
-    """A random polynomial H: "general" T(p, t) + V(q, t), "autonomous" T(p) + V, "mass" m(t) p² + V,
-    "quadratic" p²/2 + V, or "any" H(p, q, t)."""
-    drawn = random.Random(seed)
+    """A random polynomial H: "general" T(p, t) + V(q, t), "autonomous" T(p) + V, "mass" m(t) p²
+    + V, "quadratic" 3 p²/2 + V, or "any" H(p, q, t)."""
+    drawn = random.Random(seed)  # noqa: S311
 
     def some(powers: Sequence[tuple[int, int, int]]) -> Polynomial:
         return {x: F(drawn.choice((-5, -3, -2, -1, 1, 2, 3, 4))) for x in powers}
@@ -88,7 +89,7 @@ def constant(x: Fraction, most: int) -> Series:
     return [x, *[F(0)] * most]
 
 
-def moved(x: Series, slope: Series, share: Fraction = F(1)) -> Series:
+def moved(x: Series, slope: Series, share: Fraction = _ONE) -> Series:
     """x + share h slope."""
     return [a + share * b for a, b in zip(x, [F(0), *slope[:-1]], strict=True)]
 

@@ -20,9 +20,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
 from verify.schemes.implicit_tableau import ImplicitTableau
 
-Clock = tuple[
-    sympy.Expr | None, ...
-]  # of the stages, as parts of h; None where it is right
+Clock = tuple[sympy.Expr | None, ...]  # of the stages, as parts of h; None where it is right
 Given = Sequence[sympy.Expr | int | None] | None  # None where all are right
 Matrix = tuple[tuple[Poly, ...], ...]
 

@@ -62,7 +62,7 @@ OTHER = [("drift", F(1, 4)), ("kick", F(1, 2)), ("drift", F(1, 2)), ("kick", F(1
 
 def drawn(seed: int) -> list[tuple[str, Fraction, Fraction]]:
     """Parts with some clocks right and some not, some of whose moments are those of right ones."""
-    dice = random.Random(seed)
+    dice = random.Random(seed)  # noqa: S311
     parts = dice.choice((RUTH, VERLET, OTHER))
     clock = right_times(parts)
     for kind in dice.choice((("kick",), ("drift",), ("kick", "drift"), ())):
@@ -152,7 +152,8 @@ def test_a_frozen_clock_leaves_order_1(name: str) -> None:
 def test_a_drifts_time_is_judged_only_where_t_depends_on_time() -> None:
     parts = tuple((kind, R(str(size))) for kind, size in OTHER)
     clock = [R(str(s)) for s in right_times(OTHER)]
-    wrong = tuple(s + 3 if kind == "drift" else s for (kind, _), s in zip(parts, clock, strict=True))
+    both = zip(parts, clock, strict=True)
+    wrong = tuple(s + 3 if kind == "drift" else s for (kind, _), s in both)
     orders = {k: agreed_order(TimedSplitting(parts, wrong, k), 2)[0] for k in Kinetic}
     assert orders == {
         Kinetic.GENERAL: 1, Kinetic.MASS: 1, Kinetic.AUTONOMOUS: 2, Kinetic.QUADRATIC: 2,
@@ -257,7 +258,7 @@ def test_for_quadratic_t_as_many_count_as_hamiltonians_have_rank(kinds, counts) 
 
 def test_without_time_the_words_are_those_of_kicks_and_drifts() -> None:
     for n in range(1, 9):
-        own = [w for w in lyndon("", n)]
+        own = list(lyndon("", n))
         assert [c.name.split("coefficient of ")[1].split(" =")[0] for c in
                 Splitting((("kick", R(1)),)).order_conditions(n) if c.order == n] == list(
             map(text, own))  # fmt: skip
