@@ -6,31 +6,31 @@ is X in the extended phase space, commutes with d and takes [a, b] to [a+1, b] +
 η the leading coefficient is D·G for no G in the jets: an H without t is one of these H, for which
 D·G is X·G.
 
-Splittings: by conditions on sizes and times, `verify.schemes.clock_conditions`.
-
-Runge–Kutta methods: by the conditions of all trees. What fails for an H without t fails; where a
-condition does not hold that such an H does not need, nothing is said.
+Splittings and stages: by conditions on sizes, coefficients and times, `verify.schemes.timed`, which
+are necessary, too.
 """
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 
+from verify.algebra.conditions import ByConditions
 from verify.algebra.series.jets import shown
 from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
-from verify.proof.by_conditions import prove_by_conditions
+from verify.proof.by_conditions import agreed_order, prove_by_conditions
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import Prose, prose, read_prose
 from verify.schemes import get
-from verify.schemes.clock_conditions import ClockedSplitting
-from verify.schemes.clock_mistakes import mistake
-from verify.schemes.every_hamiltonian import RungeKutta, StageEquations, TaylorSeries
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import all_times
 from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.tree_conditions import TreeConditions, TreeConditionsInTime
+from verify.schemes.timed.for_scheme import conditions_for
+from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.timed.mistakes import mistakes_of_splitting
+from verify.schemes.timed.splitting import TimedSplitting
 from verify.verdict import Verdict
 
 _MOST_ETA = 8  # the terms triple with every order; lie8 takes 2 s
@@ -39,19 +39,16 @@ _MOST_ETA = 8  # the terms triple with every order; lie8 takes 2 s
 def prove_every_in_time(name: str) -> EveryProof:
     """The order of ΔJ and of the map of the scheme of that name, for every H in t that it takes.
 
-    Raises InputError for a scheme that is no lieη, no splitting and no Runge–Kutta method, and for
-    η above 8.
+    Raises InputError for a scheme that is known for one H at a time only, and for η above 8.
     """
     scheme = get(name)
     if isinstance(scheme.every_h, TaylorSeries):
         return _of_lie(scheme, scheme.every_h.eta)
     if isinstance(scheme.every_h, Splitting):
         return _of_splitting(scheme, scheme.every_h)
-    tableau = _tableau_of(scheme.every_h)
-    if tableau is not None:
-        return _of_stages(scheme, tableau)
-    allowed = "lieη, splittings, Runge–Kutta methods, for every H in t; for one such H any scheme"
-    raise InputError("scheme", name, f"is none of which that is proved; allowed: {allowed}")
+    if scheme.every_h is None:
+        raise InputError("scheme", name, "is given for one H; it cannot be proved for every H in t")
+    return _of_stages(scheme, conditions_for(scheme.every_h))
 
 
 def _of_lie(scheme: Scheme, eta: int) -> EveryProof:
@@ -113,40 +110,31 @@ def _why(eta: int, holds: bool) -> Prose:
 
 
 def _of_splitting(scheme: Scheme, every_h: Splitting) -> EveryProof:
-    times = all_times(every_h.parts, every_h.times)
-    found = prove_by_conditions(scheme, ClockedSplitting(every_h.parts, times))
-    named = mistake(every_h.parts, times) if found.verdict is Verdict.REFUTED else ""
-    reason = prose(found.reason, f"; it is {named}") if named else found.reason
-    return EveryProof(**vars(found) | {"reason": reason, "timed": True})
+    timed = TimedSplitting(every_h.parts, every_h.times or (None,) * len(every_h.parts))
+    found = prove_by_conditions(scheme, timed)
+    named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
+    reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
+    checked = (*found.checked, *_of_fewer(scheme, timed, found.convergence_order or 0))
+    return replace(found, reason=reason, checked=checked, timed=True)
 
 
-def _tableau_of(every_h: object) -> ImplicitTableau | None:
-    """The coefficients of what is a Runge–Kutta method."""
-    if isinstance(every_h, RungeKutta):
-        return ImplicitTableau.of(*every_h.square)
-    if isinstance(every_h, TreeConditions):
-        return every_h.tableau
-    if isinstance(every_h, StageEquations) and len(every_h.stages) == 1:
-        (stage,) = every_h.stages
-        if stage.at_p == stage.at_q and stage.kick == stage.drift:
-            return ImplicitTableau.of(((stage.kick * stage.at_p,),), (stage.kick,))
-    return None
+def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[Prose]:
+    """The order where fewer H are asked for, where it is a higher one."""
+    for kinetic in Kinetic:
+        order, _ = agreed_order(replace(timed, kinetic=kinetic), scheme.order)
+        if order > general:
+            yield prose(f"for every H = {kinetic.value} + V(q, t) the map has order {order}")
 
 
-def _of_stages(scheme: Scheme, tableau: ImplicitTableau) -> EveryProof:
-    found = prove_by_conditions(scheme, TreeConditionsInTime(tableau))
-    still = prove_every(scheme.name)  # for an H without t, which is one of these
-    agreed, needed = found.convergence_order or 0, still.convergence_order or 0
-    decided = found.convergence_decided and needed <= agreed
-    told = {"timed": True, "convergence_decided": decided, "separable": False}
-    if agreed < scheme.order:
-        verdict = Verdict.REFUTED if decided else Verdict.UNDECIDED
-        return EveryProof(**vars(found) | told | {"verdict": verdict})
-    if scheme.area_preserving or still.area_preserving is not False:
-        return EveryProof(**vars(found) | told)
+def _of_stages(scheme: Scheme, timed: ByConditions) -> EveryProof:
+    found = replace(prove_by_conditions(scheme, timed), timed=True)
+    agreed = found.convergence_order or 0
+    if agreed < scheme.order or found.verdict is not Verdict.UNDECIDED:
+        return found
+    if prove_every(scheme.name).area_preserving is not False:  # without t, which is one of these
+        return found
     reason = read_prose(
         f"order {scheme.order}: every condition on the coefficients holds exactly; ΔJ is "
         f"O(`h^{agreed + 1}`), and not 0 for an H without t"
     )
-    more = {"verdict": Verdict.PROVED, "reason": reason, "area_preserving": False}
-    return EveryProof(**vars(found) | told | more)
+    return replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=False)

@@ -150,35 +150,6 @@ class TreeConditions:
         return self.tableau.symmetry_conditions()
 
 
-@dataclass(frozen=True)
-class TreeConditionsInTime:
-    """A Runge–Kutta method for every H(p, q, t), its stages at t + c_i h with c_i = Σ_j a_ij.
-
-    Then t is one more coordinate of an autonomous system, of slope 1, for which the conditions of
-    all trees suffice. That of one tree may not be needed: what cancels in the plane is not looked
-    for.
-    """
-
-    tableau: ImplicitTableau
-    separable: bool = False
-    most_order: ClassVar[int] = MOST_ORDER
-
-    def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """One for each tree of 1 … `order` vertices. InputError beyond order 10."""
-        if order > MOST_ORDER:
-            raise InputError("order", order, f"in time is proved up to {MOST_ORDER}")
-        weights = Weights(self.tableau.numbers)
-        return tuple(
-            weights.condition(tree, gap)
-            for n in range(1, order + 1)
-            for tree, gap in gaps_of(self.tableau, n).items()
-        )
-
-    def area_conditions(self) -> tuple[Condition, ...]:
-        """See `ImplicitTableau.area_conditions`: at each stage's time they are the same."""
-        return self.tableau.area_conditions()
-
-
 @lru_cache(maxsize=256)
 def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Condition, ...]:
     gaps, weights = gaps_of(tableau, order), Weights(tableau.numbers)

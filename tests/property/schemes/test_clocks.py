@@ -14,8 +14,8 @@ import sympy
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import convergence_of
-from verify.schemes.clock_conditions import ClockedSplitting
 from verify.schemes.splitting import all_times, right_times, shears
+from verify.schemes.timed.splitting import TimedSplitting
 
 Polynomial = dict[tuple[int, int, int], Fraction]  # by the powers of p, q, t
 MOST = 4
@@ -117,13 +117,30 @@ def order_by_hand(parts: list[tuple[str, Fraction]], clock: list[Fraction]) -> i
 
 
 def order_by_conditions(parts: list[tuple[str, Fraction]], clock: list[Fraction]) -> int:
-    own = ClockedSplitting(
+    own = TimedSplitting(
         tuple((kind, sympy.Rational(x)) for kind, x in parts), tuple(map(sympy.Rational, clock))
     )
     for order in range(1, MOST + 1):
         if not all(c.holds for c in own.order_conditions(order)):
             return order - 1
     return MOST
+
+
+def _neighbours(
+    rng: random.Random,
+) -> tuple[list[tuple[str, Fraction]], list[Fraction]]:
+    """Kicks side by side at times of their own, whose moments are those of one kick and of its
+    neighbours: of order 2, though no clock is right."""
+    size = Fraction(rng.randint(1, 5), 7)
+    apart = Fraction(rng.randint(1, 3), 5)
+    parts = [
+        ("drift", Fraction(1, 2)),
+        ("kick", size),
+        ("kick", 1 - size),
+        ("drift", Fraction(1, 2)),
+    ]
+    middle = Fraction(1, 2)
+    return parts, [Fraction(0), middle - apart * (1 - size), middle + apart * size, Fraction(1)]
 
 
 def drawn(seed: int) -> tuple[list[tuple[str, Fraction]], list[Fraction]]:
@@ -141,9 +158,16 @@ def drawn(seed: int) -> tuple[list[tuple[str, Fraction]], list[Fraction]]:
         kicks[-1] += 1 - sum(kicks)
         drifts[-1] += 1 - sum(drifts)
         parts = [x for k, d in zip(kicks, drifts, strict=True) for x in (("kick", k), ("drift", d))]
+    if seed % 5 == 4:  # a part is cut in two, which stand at different times or at one
+        at = rng.randrange(len(parts))
+        kind, size = parts[at]
+        cut = Fraction(rng.randint(1, 3), 4)
+        parts[at : at + 1] = [(kind, size * cut), (kind, size - size * cut)]
     exact = right_times([(kind, sympy.Rational(x)) for kind, x in parts])
     clock = [Fraction(int(x.p), int(x.q)) for x in exact]
-    if seed % 2:
+    if seed % 10 == 4:  # times that are wrong and make up for each other
+        parts, clock = _neighbours(rng)
+    elif seed % 2:
         clock[rng.randrange(len(clock))] += Fraction(rng.choice([-1, 1]), rng.randint(1, 4))
     return parts, clock
 
@@ -174,3 +198,15 @@ def test_a_coefficient_that_is_a_little_off_is_seen() -> None:
     assert order_by_conditions(verlet, clock) == order_by_hand(verlet, clock) == 2
     for wrong in ([*clock[:2], 1 + little], [clock[0], clock[1] + little, clock[2]]):
         assert order_by_conditions(verlet, wrong) == order_by_hand(verlet, wrong) == 1
+
+
+def test_kicks_side_by_side_commute() -> None:
+    """Of order 3, though no sum over kicks alone asks for these times in this order."""
+    sizes = ["7/24", "2/3", "-1/12", "2/3", "1/6", "-2/3", "-1/24", "1"]
+    kinds = ["kick", "drift", "kick", "kick", "kick", "drift", "kick", "drift"]
+    parts = list(zip(kinds, map(Fraction, sizes), strict=True))
+    exact = right_times([(kind, sympy.Rational(x)) for kind, x in parts])
+    clock = [Fraction(int(x.p), int(x.q)) for x in exact]
+    for at, time in zip((0, 2, 3, 4, 6), ("0", "0", "1/2", "1", "0"), strict=True):
+        clock[at] = Fraction(time)
+    assert order_by_conditions(parts, clock) == order_by_hand(parts, clock) == 3
