@@ -43,19 +43,19 @@ class FormulaClaim(Claim):
         """The claim's formulas by the keys under which they stand."""
 
     def check_scene(self, scene: Scene) -> None:
-        self.read_formulas(scene.exact_hamiltonian().parameters)
+        self.read_formulas(_names(scene.exact_hamiltonian()))
 
     def read_formulas(
-        self, parameters: Sequence[str]
+        self, others: Sequence[str]
     ) -> tuple[dict[str, sympy.Expr], list[Requirement]]:
-        """The formulas as expressions in p, q, h and the parameters, and what they ask for.
+        """The formulas as expressions in p, q, h and these names, and what they ask for.
 
         InputError names which is none.
         """
         found, asked = {}, list[Requirement]()
         for key, written in self.formulas().items():
             more = ["p_next"] if key == "q_next" else []
-            names = ("p", "q", "h", *parameters, *more)
+            names = ("p", "q", "h", *others, *more)
             found[key], required = read(written, names, source=f"claim {self.id}: {key}")
             asked += required
         return found, asked
@@ -63,7 +63,7 @@ class FormulaClaim(Claim):
     def read(self, findings: Findings) -> "Printed":
         """The scheme's exact map, and the formulas with the same parameters as symbols."""
         given = findings.scene_of(self).exact_hamiltonian()
-        formulas, asked = self.read_formulas(given.parameters)
+        formulas, asked = self.read_formulas(_names(given))
         named = set(re.findall(r"[A-Za-z]\w*", " ".join(self.formulas().values())))
         values = tuple((name, value) for name, value in given.values if name not in named)
         try:
@@ -111,6 +111,11 @@ class FormulaClaim(Claim):
             return self.result(Verdict.UNDECIDED, doubt, domain=domain)
         refuted = begun + ", not zero" + witness_of(decision, "it is")
         return self.result(Verdict.REFUTED, refuted, domain=domain)
+
+
+def _names(hamiltonian: Hamiltonian) -> tuple[str, ...]:
+    """What its formulas may name beside p, q and h."""
+    return (*hamiltonian.parameters, *(("t",) if hamiltonian.time_dependent else ()))
 
 
 class Printed(NamedTuple):

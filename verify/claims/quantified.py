@@ -1,5 +1,7 @@
 """A claim that may be made of every H, or of every H = T(p) + V(q); then it has no scene.
 
+Either may depend on time.
+
 "For every H" means: whatever H is. ΔJ = c h^r + … then has a c made of derivatives of H, and c is
 not zero for some H; det J ≡ 1 is false where some H has another det J.
 """
@@ -18,13 +20,20 @@ if TYPE_CHECKING:
     from verify.proof.every import EveryProof
 
 EVERY_SEPARABLE = "separable hamiltonian"
+_IN_TIME = " in time"
+Every = Literal[
+    "hamiltonian",
+    "separable hamiltonian",
+    "hamiltonian in time",
+    "separable hamiltonian in time",
+]
 
 
 class QuantifiedClaim(Claim):
     """The base of the kinds that have `every`."""
 
-    every: Literal["hamiltonian", "separable hamiltonian"] | None = None
-    """Of which H, all of them, in place of one."""
+    every: Every | None = None
+    """Of which H, all of them, in place of one; `in time`: of all that depend on t, too."""
 
     @property
     def looked_at(self) -> int:
@@ -32,12 +41,26 @@ class QuantifiedClaim(Claim):
         return 0
 
     def judge(self, findings: Findings) -> ClaimResult:
+        """By the proof for every H that it is made of, or for the scene's."""
         if self.every is None:
             return self.judge_one(findings)
+        if self.in_time:
+            from verify.proof.every_in_time import prove_every_in_time
+
+            return self.judge_every(prove_every_in_time(self.scheme, self.looked_at))
         from verify.proof.every import prove_every
 
-        separable = self.every == EVERY_SEPARABLE
-        return self.judge_every(prove_every(self.scheme, separable, self.looked_at))
+        return self.judge_every(prove_every(self.scheme, self.of_separable, self.looked_at))
+
+    @property
+    def of_separable(self) -> bool:
+        """Whether it is made of every H = T + V."""
+        return self.every is not None and self.every.startswith(EVERY_SEPARABLE)
+
+    @property
+    def in_time(self) -> bool:
+        """Whether it is made of every H that depends on time."""
+        return self.every is not None and self.every.endswith(_IN_TIME)
 
     @abstractmethod
     def judge_one(self, findings: Findings) -> ClaimResult:
@@ -52,8 +75,12 @@ class QuantifiedClaim(Claim):
         every_h = get(self.scheme).every_h
         if every_h is None:
             raise InputError("scheme", self.scheme, "is given for one H, not for every H")
-        if every_h.separable and self.every != EVERY_SEPARABLE:
-            problem = f"{self.scheme} takes H = T(p) + V(q) only; say {EVERY_SEPARABLE!r}"
+        own = EVERY_SEPARABLE + _IN_TIME * self.in_time
+        if every_h.separable and not self.of_separable:
+            problem = f"{self.scheme} takes H = T(p) + V(q) only; say {own!r}"
+            raise InputError("every", self.every, problem)
+        if self.in_time and self.of_separable and not every_h.separable:
+            problem = f"{self.scheme} takes more than that; say 'hamiltonian in time'"
             raise InputError("every", self.every, problem)
 
     def why_only_here(self) -> str:

@@ -5,6 +5,7 @@ Keys that say of which H: one of `scene`, `system`, `hamiltonian`, `every`, with
 """
 
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from typing import Any
 
 from pydantic import Field
@@ -16,7 +17,7 @@ from verify.scenes.scene import Scene
 from verify.scenes.values import Number, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
-HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters")
+HAMILTONIAN_KEYS = (*HAMILTONIAN_SOURCES, "parameters", "t0")
 
 
 class ClaimedHamiltonian(Frozen):
@@ -28,9 +29,24 @@ class ClaimedHamiltonian(Frozen):
     """H as a formula in p, q and parameters."""
     parameters: dict[str, Number] = Field(default_factory=dict)
     """The values of H's parameters; those without one stay symbols."""
+    t0: Number = Fraction(0)
+    """When its runs start, where H depends on t."""
 
 
 def scene_for(
+    claim: Claim,
+    hamiltonian_keys: Mapping[str, Any],
+    runs: Mapping[str, Any],
+    named: Callable[[str], Scene],
+) -> tuple[str, Scene]:
+    """As `_scene_for`, and InputError where the claim speaks of no H that depends on time."""
+    name, scene = _scene_for(claim, hamiltonian_keys, runs, named)
+    if claim.autonomous and scene.exact_hamiltonian().time_dependent:
+        raise InputError("kind", claim.kind, "speaks of no H that depends on t as yet")
+    return name, scene
+
+
+def _scene_for(
     claim: Claim,
     hamiltonian_keys: Mapping[str, Any],
     runs: Mapping[str, Any],
@@ -50,8 +66,9 @@ def scene_for(
         own = ClaimedHamiltonian.model_validate(hamiltonian_keys)
         scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
         return claim.scene_of_its_own(own.system or "own", scene, runs)
-    if "parameters" in hamiltonian_keys:
-        raise InputError("parameters", NOT_GIVEN, "stand in the scene's own file")
+    for key in ("parameters", "t0"):
+        if key in hamiltonian_keys:
+            raise InputError(key, NOT_GIVEN, "stands in the scene's own file")
     name = hamiltonian_keys["scene"]
     return claim.scene_on(name, named(name), runs)
 

@@ -56,7 +56,8 @@ _UNITS = ((2 * 86400, 86400, "days"), (3600, 3600, "h"), (120, 60, "min"), (1, 1
 
 def _run(task: Task) -> str:
     start = f"q = {task['q']}, p = {task['p']}"
-    return f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from {start}"
+    late = f", t = {task['t0']}" if task.get("t0", "0") != "0" else ""
+    return f"{task['scheme']}, {task['steps']} steps of {task['step_size']} from {start}{late}"
 
 
 def _growth(task: Task) -> str:
@@ -81,7 +82,7 @@ def _flow(task: Task) -> str:
 
 _LINES: Mapping[str, Callable[[Task], str]] = {
     "proof": lambda task: f"prove {task['scheme']} for H = {task['hamiltonian']}",
-    "every": lambda task: f"prove {task['scheme']} for every H",
+    "every": lambda task: f"prove {task['scheme']} for every H{' in time' * task['timed']}",
     "growth": _growth,
     "work_precision": _work_precision,
     "separation": lambda task: f"separate truncation from rounding in {_run(task)}",

@@ -15,7 +15,7 @@ from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.claims.plan import add_claims
-from verify.claims.quantified import EVERY_SEPARABLE
+from verify.claims.quantified import QuantifiedClaim
 from verify.claims.scenes import scene_for
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
@@ -74,7 +74,7 @@ def claim_property(text: str) -> Property:
 
 def _check(claim: Claim, sample: Sample) -> None:
     """Raises Violation where the claim is refuted for the sample's H and run."""
-    separable = getattr(claim, "every", None) == EVERY_SEPARABLE
+    separable = isinstance(claim, QuantifiedClaim) and claim.of_separable
     only_if(not separable or sample.field.separable())
     asked = _of_scheme(sample, claim.scheme)
     only_if(asked.ordinary)

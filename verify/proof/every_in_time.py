@@ -36,8 +36,10 @@ from verify.verdict import Verdict
 _MOST_ETA = 8  # the terms triple with every order; lie8 takes 2 s
 
 
-def prove_every_in_time(name: str) -> EveryProof:
+def prove_every_in_time(name: str, least: int = 0) -> EveryProof:
     """The order of ΔJ and of the map of the scheme of that name, for every H in t that it takes.
+
+    `least`: as for `verify.proof.every.prove_every`.
 
     Raises InputError for a scheme that is known for one H at a time only, and for η above 8.
     """
@@ -45,10 +47,10 @@ def prove_every_in_time(name: str) -> EveryProof:
     if isinstance(scheme.every_h, TaylorSeries):
         return _of_lie(scheme, scheme.every_h.eta)
     if isinstance(scheme.every_h, Splitting):
-        return _of_splitting(scheme, scheme.every_h)
+        return _of_splitting(scheme, scheme.every_h, least)
     if scheme.every_h is None:
         raise InputError("scheme", name, "is given for one H; it cannot be proved for every H in t")
-    return _of_stages(scheme, conditions_for(scheme.every_h))
+    return _of_stages(scheme, conditions_for(scheme.every_h), least)
 
 
 def _of_lie(scheme: Scheme, eta: int) -> EveryProof:
@@ -109,9 +111,9 @@ def _why(eta: int, holds: bool) -> Prose:
     )
 
 
-def _of_splitting(scheme: Scheme, every_h: Splitting) -> EveryProof:
+def _of_splitting(scheme: Scheme, every_h: Splitting, least: int) -> EveryProof:
     timed = TimedSplitting(every_h.parts, every_h.times or (None,) * len(every_h.parts))
-    found = prove_by_conditions(scheme, timed)
+    found = prove_by_conditions(scheme, timed, least)
     named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
     reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
     checked = (*found.checked, *_of_fewer(scheme, timed, found.convergence_order or 0))
@@ -126,8 +128,8 @@ def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[P
             yield prose(f"for every H = {kinetic.value} + V(q, t) the map has order {order}")
 
 
-def _of_stages(scheme: Scheme, timed: ByConditions) -> EveryProof:
-    found = replace(prove_by_conditions(scheme, timed), timed=True)
+def _of_stages(scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
+    found = replace(prove_by_conditions(scheme, timed, least), timed=True)
     agreed = found.convergence_order or 0
     if agreed < scheme.order or found.verdict is not Verdict.UNDECIDED:
         return found

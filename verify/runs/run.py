@@ -87,6 +87,7 @@ def proved_run(
     p: Fraction,
     step_size: Fraction,
     steps: int,
+    t0: Fraction,
     digits: int,
     observables: Sequence[str],
 ) -> RunResult | None:
@@ -97,7 +98,7 @@ def proved_run(
         return None
     found = Bounds({}, "a proof, and no run", rigorous=True)
     done = Measured(found, ball.NAME, Outcome())
-    orbit = Orbit(hamiltonian, scheme, step_size, q, p)
+    orbit = Orbit(hamiltonian, scheme, step_size, q, p, t0=t0)
     return _result(orbit, steps, digits, observables, known, done)
 
 

@@ -1,5 +1,6 @@
 """The task of one run."""
 
+from fractions import Fraction
 from typing import Literal
 
 from verify.arithmetic import AUTO, in_lanes, step_cost
@@ -9,7 +10,7 @@ from verify.execution.task import InitialValueTask
 from verify.runs.float64 import DIRECT_STEPS
 from verify.runs.run import proved_run, run
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import StepSize
+from verify.scenes.values import Number, StepSize
 
 # About what a run costs however short, and one that is too long to be held against a certified one.
 _RUN_COST, _LONG_RUN_COST = 1_000_000, 50_000_000
@@ -22,6 +23,7 @@ class RunTask(InitialValueTask):
     kind: Literal["run"] = "run"
     step_size: StepSize
     steps: int
+    t0: Number = Fraction(0)
     arithmetic: str
     digits: int
     observables: tuple[str, ...]

@@ -24,7 +24,7 @@ from pydantic import Field, model_validator
 
 from verify.arithmetic.exact import text
 from verify.errors import NOT_GIVEN, InputError
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import Frozen, Section
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
 from verify.scenes.values import (
@@ -113,7 +113,7 @@ def _reach(*key: Any) -> Any:
     return max(abs(x) for point in points for x in point)
 
 
-class Flow(PlacedShape):
+class Flow(PlacedShape, Section):
     """See the module's text for the keys."""
 
     step_size: StepSize

@@ -7,7 +7,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from verify.errors import NOT_GIVEN, InputError, unknown
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import Section
 from verify.scenes.values import (
     CLOSED_FORM,
     OBSERVABLES,
@@ -23,7 +23,7 @@ from verify.scenes.values import (
 )
 
 
-class Grid(Frozen):
+class Grid(Section):
     """Runs of every scheme for every step size and initial value, over `time` or `steps`."""
 
     time: Time | None = None
@@ -72,6 +72,11 @@ class Grid(Frozen):
         return steps_of(self.time, self.steps, h)
 
     @property
+    def without_time(self) -> str | None:
+        """What is made of the runs beside their values, where that is asked for."""
+        return "separate" if self.separate else "growth" if self.growth else None
+
+    @property
     def runs(self) -> int:
         """Those of one scheme."""
         return len(self.step_sizes) * len(self.initial_values)
@@ -82,7 +87,7 @@ class Grid(Frozen):
         return sum(map(self.steps_for, self.step_sizes)) * len(self.initial_values)
 
 
-class SeparationOver(Frozen):
+class SeparationOver(Section):
     """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
@@ -109,7 +114,7 @@ class SeparationOver(Frozen):
         )
 
 
-class Series(Frozen):
+class Series(Section):
     """One run kept as a thinned series of at most `points` points; `time` or `steps` long.
 
     `source`: what of a paper it repeats; a caption says so, and nothing computed depends on it.
@@ -140,6 +145,10 @@ class Series(Frozen):
             raise InputError("time, steps", NOT_GIVEN, "give one of the two")
         steps_of(self.time, self.steps, self.step_size)
         return self
+
+    @property
+    def without_time(self) -> None:
+        """It takes every H."""
 
     @property
     def count(self) -> int:

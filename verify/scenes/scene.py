@@ -5,6 +5,7 @@
     parameters = { delta = "7/3" }
     schemes = ["lie2", "symplectic-euler"] # or "p_next = …; q_next = …"
     criteria = [1, 2, 3, 4]
+    t0 = 0                                 # when its runs start, where H depends on t
     every_hamiltonian = true               # and what holds of the schemes for every H
 
     [grid]                                 # runs: every step size with every initial value
@@ -48,6 +49,7 @@ Numbers are exact: `0.001` in the file is 1/1000.
 
 import tomllib
 from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -59,7 +61,7 @@ from verify.errors import CONTROL, NOT_GIVEN, InputError, without_controls
 from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import Frozen, Section
 from verify.scenes.mistakes.syntax import toml_mistake
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.region_sections import Flow
@@ -75,7 +77,7 @@ from verify.scenes.values import (
 _MAX_DEPTH = 12
 
 
-_IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "schemes")
+_IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
 
 
 @drawn_by("scenes")
@@ -92,6 +94,8 @@ class Scene(Frozen):
     """H as a formula in p, q and parameters; or `system`."""
     parameters: dict[str, Number] = Field(default_factory=dict)
     """The values of H's parameters; a section that runs needs all of them."""
+    t0: Number = Fraction(0)
+    """When its runs start, where H depends on t."""
     schemes: Annotated[tuple[SchemeName, ...], Field(min_length=1, max_length=100)]
     """Names of schemes, or formulas `p_next = …; q_next = …` of your own."""
     every_hamiltonian: bool = False
@@ -126,6 +130,8 @@ class Scene(Frozen):
         also = (name for section in sections for name in getattr(section, "schemes", ()))
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
+        if exact.time_dependent:
+            self._check_takes_time(exact)
         free = set(exact.symbols)
         if all(isinstance(section, StabilityMap) for section in sections):
             free -= {over.parameter for over in self.stability_map}
@@ -139,11 +145,22 @@ class Scene(Frozen):
                 raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
         return self
 
-    def sections(self) -> list[Frozen]:
+    def _check_takes_time(self, exact: Hamiltonian) -> None:
+        for key, section in self._by_key():
+            within = section.without_time
+            if within is not None:
+                where = f"[{key}]{f' with {within} = true' if within else ''}"
+                problem = f"depends on t, which {where} does not take as yet"
+                raise InputError("hamiltonian", exact.formula, problem)
+
+    def sections(self) -> list[Section]:
         """Every [section] and [[section]] of the scene, whatever it asks for."""
-        given = (getattr(self, name) for name in Scene.model_fields)
-        each = (x for value in given for x in (value if isinstance(value, tuple) else (value,)))
-        return [x for x in each if isinstance(x, Frozen)]
+        return [section for _, section in self._by_key()]
+
+    def _by_key(self) -> list[tuple[str, Section]]:
+        given = ((name, getattr(self, name)) for name in Scene.model_fields)
+        each = ((n, x) for n, v in given for x in (v if isinstance(v, tuple) else (v,)))
+        return [(name, x) for name, x in each if isinstance(x, Section)]
 
     def with_only(self, **sections: Any) -> "Scene":
         """The same H and schemes with these sections, and no others."""
@@ -161,7 +178,7 @@ class Scene(Frozen):
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
         systems.check_is_formula(self.hamiltonian or "")
-        return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
+        return Hamiltonian.parse(self.hamiltonian or "", self.parameters, time=True)
 
 
 def load_scene(path: Path) -> Scene:

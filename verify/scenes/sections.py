@@ -28,7 +28,7 @@ from pydantic import Field, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.errors import NOT_GIVEN, InputError
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import Section
 from verify.scenes.values import (
     AUTO,
     ArithmeticName,
@@ -44,7 +44,7 @@ from verify.scenes.values import (
 MOST_STEPS = 10**8  # of a run that is repeated
 
 
-class WorkPrecision(Frozen):
+class WorkPrecision(Section):
     """See the module's text for the keys."""
 
     time: Time
@@ -94,7 +94,7 @@ _MOST_DIGITS = 1000
 Chosen = Annotated[int, Field(ge=0, le=_MOST_STEPS, strict=True)]
 
 
-class Reference(Frozen):
+class Reference(Section):
     """See the module's text for the keys."""
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]

@@ -29,7 +29,7 @@ from verify import schemes as scheme_catalogue
 from verify.arithmetic.exact import decimal, positive, whole
 from verify.arithmetic.systems import mpfr
 from verify.errors import NOT_GIVEN, InputError
-from verify.scenes.frozen import Frozen
+from verify.scenes.frozen import Section
 from verify.scenes.values import (
     InitialValue,
     Number,
@@ -80,7 +80,7 @@ StepSizes = Annotated[
 Schemes = Annotated[tuple[SchemeName, ...], Field(max_length=100)]
 
 
-class OfSchemes(Frozen):
+class OfSchemes(Section):
     """A section that may name schemes of its own."""
 
     schemes: Schemes = ()

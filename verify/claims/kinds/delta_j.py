@@ -16,7 +16,7 @@ from verify.claims import every_formula
 from verify.claims.findings import Findings
 from verify.claims.formulas import FormulaClaim, gaps, within
 from verify.claims.orders import Order
-from verify.claims.quantified import EVERY_SEPARABLE, QuantifiedClaim
+from verify.claims.quantified import QuantifiedClaim
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Formula, prose
@@ -81,6 +81,9 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     # -- of every H -------------------------------------------------------------------------------
 
     def check_every(self) -> None:
+        if self.in_time:
+            problem = "is of orders and areas; a printed ΔJ has no derivatives by t"
+            raise InputError("every", self.every, problem)
         super().check_every()
         if self.up_to is None:
             raise InputError(
@@ -114,8 +117,8 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         return self.result(Verdict.PROVED, holds, domain=domain)
 
     def _every(self, formula: str) -> tuple[sympy.Expr, Domain]:
-        separable = self.every == EVERY_SEPARABLE
-        return every_formula.normal(*every_formula.read(formula, self.id), separable=separable)
+        read = every_formula.read(formula, self.id)
+        return every_formula.normal(*read, separable=self.of_separable)
 
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         if self.every is None:

@@ -71,7 +71,8 @@ def draw_over_time(rows: Sequence[Along]) -> Figure:
 def _panel(axes: Any, run: RunResult, quantity: Quantity, label: str) -> None:
     points = merged(run.series)
     h = float(Fraction(run.step_size))
-    edges = [(points[0].first - 1) * h, *(point.last * h for point in points)]
+    steps = (points[0].first - 1, *(point.last for point in points))
+    edges = [float(Fraction(run.t0)) + n * h for n in steps]
     name, colour = _SHOWN[quantity]
     _draw_band(axes, edges, [_band(getattr(point, quantity)) for point in points], colour)
     axes.set_xlim(edges[0], edges[-1])

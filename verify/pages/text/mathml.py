@@ -90,6 +90,8 @@ def matrix(left: str, rows: Sequence[Sequence[str]]) -> Markup | None:
 NAMED = {
     "H": "<mi>H</mi>",
     "H(p, q)": f"<mrow><mi>H</mi>{_OPEN}<mi>p</mi><mo>,</mo><mi>q</mi>{_CLOSE}</mrow>",
+    "H(p, q, t)": f"<mrow><mi>H</mi>{_OPEN}<mi>p</mi><mo>,</mo><mi>q</mi><mo>,</mo><mi>t</mi>"
+    f"{_CLOSE}</mrow>",
     # A text font's prime is raised already; math fonts differ in theirs.
     "p′": '<mrow><mi>p</mi><mtext class="prime">′</mtext></mrow>',
     "q′": '<mrow><mi>q</mi><mtext class="prime">′</mtext></mrow>',

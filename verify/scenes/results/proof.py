@@ -48,10 +48,14 @@ class ProofResult(OfScheme, WithProse):
 
 
 class EveryResult(WithProse):
-    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it."""
+    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it.
+
+    `timed`: it is for every H that depends on time.
+    """
 
     scheme: str
     quantifier: str
+    timed: bool = False
     verdict: Verdict
     reason: Said
     order: int | None

@@ -27,7 +27,8 @@ FORMAT: ReportFormat = "areaproof report 1"
 
 
 class SceneResult(Frozen):
-    """Everything found for one scene; `time` is the length of its runs where it has a grid.
+    """Everything found for one scene; `time` is the length of its runs where it has a grid, and
+    `t0` when they start.
 
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
     scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
@@ -43,6 +44,7 @@ class SceneResult(Frozen):
     parameters: dict[str, str]
     source: str
     time: str | None
+    t0: str = "0"
     proofs: tuple[ProofResult, ...]
     criteria: tuple[CriterionResult, ...]
     runs: tuple[RunResult, ...]

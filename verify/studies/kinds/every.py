@@ -16,11 +16,15 @@ def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
     if get(scheme).every_h is None:
         plan.leave_out(f"{called(scene)}: {scheme} for every H", "it is given for one H")
     else:
-        plan.need(EveryTask(scheme=scheme), f"{called(scene)}: what holds for every H")
+        plan.need(_task(scene, scheme), f"{called(scene)}: what holds for every H")
+
+
+def _task(scene: Scene, scheme: str) -> EveryTask:
+    return EveryTask(scheme=scheme, timed=scene.exact_hamiltonian().time_dependent)
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    tasks = [EveryTask(scheme=name) for name in scene.schemes if scene.every_hamiltonian]
+    tasks = [_task(scene, name) for name in scene.schemes if scene.every_hamiltonian]
     return {"every": tuple(known_results(EveryResult, tasks, results))}
 
 

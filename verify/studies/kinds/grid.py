@@ -18,8 +18,8 @@ def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
     grid, at = scene.grid, scene.grid.initial_values[start]
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
-        step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, arithmetic=grid.arithmetic,
-        digits=grid.digits, observables=grid.observables, points=0,
+        step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, t0=scene.t0,
+        arithmetic=grid.arithmetic, digits=grid.digits, observables=grid.observables, points=0,
         shares_kernel=grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
     )  # fmt: skip
 

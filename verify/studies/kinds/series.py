@@ -16,7 +16,7 @@ def _task(scene: Scene, scheme: str, series: Series) -> RunTask:
     at = series.initial_value
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
-        step_size=series.step_size, steps=series.count, q=at.q, p=at.p,
+        step_size=series.step_size, steps=series.count, q=at.q, p=at.p, t0=scene.t0,
         arithmetic=series.arithmetic, digits=series.digits, observables=CLOSED_FORM,
         points=series.points,
     )  # fmt: skip

@@ -10,12 +10,13 @@ _COST = 20_000_000  # of a proof, about
 
 
 class EveryTask(Task):
-    """What is proved of a scheme for every H."""
+    """What is proved of a scheme for every H; `timed`: for every H that depends on time."""
 
     result = EveryResult
     imports = ("verify.proof.every",)
     kind: Literal["every"] = "every"
     scheme: str
+    timed: bool = False
 
     @property
     def cost(self) -> int:
@@ -25,6 +26,7 @@ class EveryTask(Task):
     def compute(self, keeper: Keeper) -> EveryResult:
         """The proof for every H, as a result."""
         from verify.proof.every import prove_every
+        from verify.proof.every_in_time import prove_every_in_time
 
-        proof = prove_every(self.scheme)
+        proof = prove_every_in_time(self.scheme) if self.timed else prove_every(self.scheme)
         return EveryResult(**{name: getattr(proof, name) for name in EveryResult.model_fields})

@@ -45,6 +45,7 @@ class SolutionErrorClaim(RunClaim):
     """
 
     only_here = "an error at one time is that of its own runs"
+    autonomous = True
     kind: Literal["solution_error"]
     step_size: StepSize | None = None
     """That of the grid's runs which is spoken of; all, where it is left out."""

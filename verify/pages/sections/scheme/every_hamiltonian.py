@@ -31,7 +31,8 @@ def _finding(every: EveryResult) -> Markup:
     if every.formula:
         found.append(sentence(Prose("It is ", Formula(every.formula))))
     if every.telescopes:
-        found.append(Markup("Along an orbit it telescopes, for it is X·G with"))
+        by = "D" if every.timed else "X"
+        found.append(Markup("Along an orbit it telescopes, for it is {}·G with").format(by))
         if every.potential and len(every.potential) < _LONGEST_POTENTIAL:
             found.append(prose(Prose("G = ", Formula(every.potential))) + ":")
         found.append(sentence(every.why))
