@@ -26,12 +26,14 @@ def separate(
     step_size: Exact,
     steps: int | None = None,
     time: Exact | None = None,
+    t0: Exact = 0,
     parameters: GivenParameters = None,
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress = None,
 ) -> SeparationResult:
-    """Λ of a float64 run from (q, p), split into truncation and four kinds of rounding.
+    """Λ of a float64 run from (q, p), split into truncation and four kinds of rounding, of an
+    H in time five.
 
     The arguments are those of `verify.run`; `digits`: significant digits wanted of every part;
     `arithmetic` stands for exact arithmetic, and is not float64. Raises InputError, one line.
@@ -40,7 +42,7 @@ def separate(
     >>> found.plain.parts.truncation > found.plain.parts.total
     True
     """
-    exact = hamiltonian_from(system, parameters)
+    exact = hamiltonian_from(system, parameters, time=True)
     name, count = scheme_name(scheme, exact), steps_from(steps, time, step_size)
     with progress_of(progress, "separating, steps", study.RUNS * count, adding=True) as tell:
         return study.separate(
@@ -50,6 +52,7 @@ def separate(
             p=p,
             step_size=step_size,
             steps=count,
+            t0=t0,
             digits=whole("digits", digits, 1),
             arithmetic=arithmetic,
             progress=tell,
@@ -65,6 +68,7 @@ def separate_grid(
     step_sizes: Sequence[Exact],
     steps: int | None = None,
     time: Exact | None = None,
+    t0: Exact = 0,
     parameters: GivenParameters = None,
     digits: int = 17,
     arithmetic: str = AUTO,
@@ -75,7 +79,7 @@ def separate_grid(
     N = `steps` steps, or N = ⌊time / h⌋ of each h. Raises InputError as `separate` does, and where
     a step size is given twice.
     """
-    exact = hamiltonian_from(system, parameters)
+    exact = hamiltonian_from(system, parameters, time=True)
     name, sizes = scheme_name(scheme, exact), listed("step_sizes", step_sizes)
     steps = None if steps is None else whole("steps", steps, 1)
     total = study.RUNS * sum(count for _, count in study.grid(sizes, steps, time))
@@ -88,6 +92,7 @@ def separate_grid(
             step_sizes=sizes,
             steps=steps,
             time=time,
+            t0=t0,
             digits=whole("digits", digits, 1),
             arithmetic=arithmetic,
             progress=tell,

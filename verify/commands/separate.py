@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@with_hamiltonian
+@with_hamiltonian(time=True)
 @scheme_option
 @answering
 @cache_option
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 )
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
 @click.option("--time", metavar="T", help="N is T/H rounded down, for each H.")
+@click.option("--t0", default="0", metavar="T", help="When it starts, of an H(p, q, t).")
 @click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
 @click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
 @click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
@@ -38,6 +39,8 @@ def separate(
     exact: "Hamiltonian", scheme: str, step_sizes: tuple[str, ...], **options: Any
 ) -> Answer:
     """Split Λ of a float64 run into truncation and four kinds of rounding, which add up exactly.
+
+    Of an H(p, q, t) float64's clock, t + h + h + …, is a kind of its own.
 
     With several step sizes also the one below which rounding is the larger part.
     """

@@ -73,8 +73,8 @@ class Grid(Section):
 
     @property
     def without_time(self) -> str | None:
-        """What is made of the runs beside their values, where that is asked for."""
-        return "separate" if self.separate else "growth" if self.growth else None
+        """Growth laws, where they are asked for."""
+        return "growth" if self.growth else None
 
     @property
     def runs(self) -> int:
@@ -103,6 +103,10 @@ class SeparationOver(Section):
     def _check(self) -> Self:
         self.as_grid()
         return self
+
+    @property
+    def without_time(self) -> None:
+        """It takes every H."""
 
     def as_grid(self) -> Grid:
         """The same as a grid, which checks it."""

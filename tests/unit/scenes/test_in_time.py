@@ -84,9 +84,7 @@ def test_a_scene_in_time_comes_back_from_its_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("section", "named"),
     [
-        (GRID + "separate = true\n", "[grid] with separate = true"),
         (GRID + "growth = true\n", "[grid] with growth = true"),
-        (f"[[separation]]\nsteps = 9\nstep_sizes = [0.1, 0.2]\n{AT}\n", "[separation]"),
         (f"[work_precision]\ntime = 1\nstep_sizes = [0.1, 0.2]\n{AT}\n", "[work_precision]"),
         ('[[flow]]\nshape = "circle"\ncentre = { q = 1, p = 0 }\nscale = 0.1\nstep_size = 0.1\n'
          "steps = [5]\n", "[flow]"),

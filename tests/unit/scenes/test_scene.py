@@ -292,6 +292,19 @@ def test_the_scenes_of_the_paper_survive_json_too(name: str) -> None:
     assert Scene.model_validate_json(scene.model_dump_json()) == scene
 
 
+DRIVEN = """
+name = "driven"
+hamiltonian = "p**2/2 - cos(t)*cos(q)"
+schemes = ["lie2"]
+
+[grid]
+steps = 9
+step_sizes = [0.1]
+initial_values = [{ q = 1, p = 0 }]
+separate = true
+"""
+
+
 @pytest.fixture(scope="module")
 def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     folder = tmp_path_factory.mktemp("full")
@@ -300,9 +313,11 @@ def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     file = load_claims(folder / "claims.toml")
     store, figures = execute.Store(None), file.figures
     made = make_report(
-        "All", [scene], file.claims, store, figures=figures, command="test", where=THIS_PROCESS
-    )
-    scenes = tuple(_with_symbols(_with_ratio(each)) for each in made.scenes)
+        "All", [scene, load(folder, DRIVEN)], file.claims, store, figures=figures, command="test",
+        where=THIS_PROCESS,
+    )  # fmt: skip
+    first, driven = made.scenes
+    scenes = (_with_symbols(_with_ratio(first)), driven)
     return made.model_copy(update={"gallery": gallery(shown()), "scenes": scenes})
 
 

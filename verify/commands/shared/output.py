@@ -175,7 +175,8 @@ def _separated(point: "SeparationResult") -> dict[str, Any]:
 def _evaluated(way: "EvaluationResult | None") -> dict[str, Any]:
     from verify.scenes.results.separation import Parts
 
-    values = {n: getattr(way.parts, n) if way else None for n in Parts.model_fields}
+    names = (type(way.parts) if way else Parts).model_fields
+    values = {n: getattr(way.parts, n) if way else None for n in names}
     shown = {n: value.value if value else None for n, value in values.items()}
     return {
         "lambda_working": shown.pop("lambda_working"),
@@ -203,11 +204,12 @@ def print_separation(found: "SeparationGrid") -> None:
 
 
 def _print_parts(point: "SeparationResult") -> None:
-    from verify.scenes.results.separation import ROUNDING, SHOWN
+    from verify.scenes.results.separation import SHOWN
 
     ways = [way for way in (point.plain, point.closed_form) if way]
+    parts = {name: f"  {name}" for name in ways[0].parts.of_rounding}
     click.echo(f"  {'':16}{'plain':26}{'closed form' if len(ways) > 1 else ''}")
-    for name, label in (SHOWN | {name: f"  {name}" for name in ROUNDING}).items():
+    for name, label in (SHOWN | parts).items():
         values = [getattr(way.parts, name) for way in ways]
         click.echo(f"  {label:16}" + "".join(f"{value.value:26}" for value in values).rstrip())
     for label, way in zip(("plain", "closed form"), ways, strict=False):

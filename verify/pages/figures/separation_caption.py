@@ -67,6 +67,9 @@ def short(step_size: str) -> str:
 
 
 def end_of(points: Sequence[SeparationResult]) -> str:
-    """`, t from 0 to T` where all runs end at one time."""
-    ends = {Fraction(point.step_size) * point.steps for point in points}
-    return f", over [0, {number(text(max(ends)))}]" if len(ends) == 1 else ""
+    """`, over [t₀, t₀ + T]` where all runs end at one time."""
+    lengths = {Fraction(point.step_size) * point.steps for point in points}
+    if len(lengths) != 1:
+        return ""
+    start = points[0].t0
+    return f", over [{number(start)}, {number(text(Fraction(start) + max(lengths)))}]"

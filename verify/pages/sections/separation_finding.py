@@ -14,7 +14,7 @@ from markupsafe import Markup
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.separation_caption import PLAIN
 from verify.pages.text.typography import between, counted, every, listed, whole
-from verify.scenes.results.separation import ROUNDING, WAYS, EvaluationResult, SeparationResult
+from verify.scenes.results.separation import WAYS, EvaluationResult, SeparationResult
 
 
 def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:
@@ -117,6 +117,9 @@ def decades_below(evaluation: EvaluationResult) -> float | None:
 
 
 def greatest_part(evaluation: EvaluationResult) -> str:
-    sizes = {name: abs(Decimal(getattr(evaluation.parts, name).value)) for name in ROUNDING}
+    sizes = {
+        name: abs(Decimal(getattr(evaluation.parts, name).value))
+        for name in evaluation.parts.of_rounding
+    }
     greatest = max(sizes, key=lambda name: sizes[name])
     return greatest if sizes[greatest] else ""

@@ -29,6 +29,10 @@ SEPARATION = (
     "rounding stands by how many decades its greatest size along the run is below, or above, that "
     "of truncation. “|·| ≤” stands where no digit is known."
 )
+CLOCK = (
+    "H depends on time, so float64’s clock, t ← t + h, is a part of its own, between input and "
+    "trajectory: what its errors do to the motion in exact arithmetic."
+)
 ROUNDING_GROWTH = (
     "The exponent is the slope of the greatest |rounding| so far over N, in logarithms, with its "
     "standard error. Errors of both signs make a random walk, N to the ½; errors of one sign "

@@ -29,6 +29,24 @@ class Parts(Frozen):
     determinant: Value
     product: Value
 
+    @property
+    def of_rounding(self) -> tuple[str, ...]:
+        """The names of the parts of rounding, in the chain's order."""
+        return ROUNDING
+
+
+class PartsInTime(Parts):
+    """Of an H that depends on time: what float64's clock does stands between input and
+    trajectory."""
+
+    clock: Value
+
+    @property
+    def of_rounding(self) -> tuple[str, ...]:
+        """The names of the parts of rounding, in the chain's order."""
+        first, *others = ROUNDING
+        return first, "clock", *others
+
 
 class PartsAt(Frozen):
     """The parts after `steps` steps, as decimals of a few digits, for a figure."""
@@ -40,6 +58,12 @@ class PartsAt(Frozen):
     trajectory: str
     determinant: str
     product: str
+
+
+class PartsInTimeAt(PartsAt):
+    """The same of an H that depends on time."""
+
+    clock: str
 
 
 class GrowthResult(WithProse):
@@ -60,10 +84,10 @@ class EvaluationResult(Frozen):
     `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
     """
 
-    parts: Parts
+    parts: PartsInTime | Parts
     largest: dict[str, str]
     growth: dict[str, GrowthResult]
-    series: tuple[PartsAt, ...]
+    series: tuple[PartsInTimeAt | PartsAt, ...]
     error_kind: Literal["enclosed", "estimated"]
 
 
@@ -81,6 +105,7 @@ class SeparationResult(OfScheme):
     steps: int
     q: str
     p: str
+    t0: str = "0"
     status: Literal["finished", "left range", "unresolved"]
     failed_step: int | None
     reason: str
@@ -102,7 +127,7 @@ class SeparationResult(OfScheme):
         if self.plain is None:
             return html_table(caption, (), [(self.status, self.reason)])
         ways = {way: label for way, label in WAYS.items() if getattr(self, way)}
-        parts = SHOWN | {name: f"– {name}" for name in ROUNDING}
+        parts = SHOWN | {name: f"– {name}" for name in self.plain.parts.of_rounding}
         rows = [
             (label, *(_bounded(getattr(getattr(self, way).parts, name)) for way in ways))
             for name, label in parts.items()
@@ -166,7 +191,7 @@ class SeparationGrid(Frozen):
 
 
 def _texts(way: EvaluationResult) -> dict[str, str]:
-    parts = {name: getattr(way.parts, name) for name in Parts.model_fields}
+    parts = {name: getattr(way.parts, name) for name in type(way.parts).model_fields}
     bounds = {f"{name}_bound": value.bound for name, value in parts.items()}
     return {name: value.value for name, value in parts.items()} | bounds
 

@@ -21,7 +21,7 @@ def _rows(scene: Scene, scheme: str, grid: Grid) -> list[list[SeparationTask]]:
         [
             SeparationTask(
                 **given, scheme=scheme, step_size=h, steps=grid.steps_for(h),
-                q=at.q, p=at.p, digits=_DIGITS,
+                q=at.q, p=at.p, t0=scene.t0, digits=_DIGITS,
             )
             for h in grid.step_sizes
         ]

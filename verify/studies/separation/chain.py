@@ -40,29 +40,35 @@ from verify.studies.separation.working import (
 )
 
 PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the chain's order
-_ENDS: dict[str, tuple[int | None, int]] = {  # between which links a quantity lies
-    "lambda_working": (None, 4),
-    "truncation": (None, 0),
-    "total": (0, 4),
-    **{name: (k, k + 1) for k, name in enumerate(PARTS)},
-}
-QUANTITIES = tuple(_ENDS)
+PARTS_IN_TIME = ("input", "clock", "trajectory", "determinant", "product")
+_WHOLES = ("lambda_working", "truncation", "total")
+QUANTITIES = (*_WHOLES, *PARTS)
 _CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
 _ATTEMPTS = 4
+_MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Λ₀ … Λ₄ of one way to evaluate Λ in float64, at the numbers of steps in `marks`."""
+    """Λ₀ … Λ₄ of one way to evaluate Λ in float64, at the numbers of steps in `marks`.
+
+    `parts`: of rounding, one between each link and the next.
+    """
 
     marks: tuple[int, ...]
-    links: tuple[Link, Link, Link, Link, Link]
+    links: tuple[Link, ...]
+    parts: tuple[str, ...] = PARTS
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Λ, truncation, rounding, and its parts."""
+        return *_WHOLES, *self.parts
 
     def trail(self, name: str) -> tuple[tuple[Fraction, ...], Fraction]:
-        """A quantity of `QUANTITIES` at every checkpoint, and a bound of its error at all of them.
+        """A quantity of `quantities` at every checkpoint, and a bound of its error at all of them.
 
-        truncation + input + trajectory + determinant + product = lambda_working, exactly.
+        truncation + all parts = lambda_working, exactly.
         """
         first, last = self._between(name)
         if first is None:
@@ -82,8 +88,16 @@ class Chain:
         return last.trail[-1] - first.trail[-1], first.bound + last.bound
 
     def _between(self, name: str) -> tuple[Link | None, Link]:
-        before, after = _ENDS[name]
+        before, after = self._ends(name)
         return None if before is None else self.links[before], self.links[after]
+
+    def _ends(self, name: str) -> tuple[int | None, int]:
+        """Between which links a quantity lies; None: nothing is before it."""
+        if name in self.parts:
+            k = self.parts.index(name)
+            return k, k + 1
+        last = len(self.parts)
+        return {"lambda_working": (None, last), "truncation": (None, 0), "total": (0, last)}[name]
 
     def lacking(self, digits: int) -> list[int]:
         """How many digits each link lacks for those wanted of the parts at its ends.
@@ -91,12 +105,12 @@ class Chain:
         A part of 0 may stay unknown.
         """
         lacking = [0] * len(self.links)
-        for name, ends in _ENDS.items():
+        for name in self.quantities:
             value, bound = self.final(name)
             if not (value and bound):
                 continue
             allowed = abs(value) / (4 * Fraction(10) ** digits)
-            for k in (end for end in ends if end is not None):
+            for k in (end for end in self._ends(name) if end is not None):
                 own = self.links[k].bound
                 if own > allowed:
                     lacking[k] = max(lacking[k], magnitude(own / allowed) + 1)
@@ -109,8 +123,8 @@ class Chain:
 
     @property
     def methods(self) -> tuple[str, ...]:
-        """How the errors of the links were bounded, Λ₄'s apart, each way once."""
-        return tuple(dict.fromkeys(link.method for link in self.links[:4]))
+        """How the errors of the links were bounded, the last one's apart, each way once."""
+        return tuple(dict.fromkeys(link.method for link in self.links[:-1]))
 
 
 @dataclass(frozen=True)
@@ -188,16 +202,21 @@ class _Links:
         working = self.working = self.working or self._beside()
         first = self.proved or self._reference(self.kernel_run, "first")
         second = first if self.same else self.constant or self._reference(self.rounded, "second")
-        third = working.trajectory or second
-        plain = Chain(self.marks, (first, second, third, working.determinant, working.plain))
-        # Both chains share Λ₀ … Λ₂: only how Λ is evaluated in float64 differs.
+        # Both chains share these: only how Λ is evaluated in float64 differs.
+        shared = [first, second]
+        if self.kernel_run.hamiltonian.time_dependent:
+            known = clock_is_exact(self.rounded)
+            shared.append(second if known or working.clock is None else working.clock)
+        shared.append(working.trajectory or second)
+        parts = PARTS_IN_TIME if len(shared) > 3 else PARTS
+        plain = Chain(self.marks, (*shared, working.determinant, working.plain), parts)
         fourth, fifth = working.closed_delta_j, working.closed_form
         if fourth is None or fifth is None:
             return plain, None
-        return plain, Chain(self.marks, (first, second, third, fourth, fifth))
+        return plain, Chain(self.marks, (*shared, fourth, fifth), parts)
 
     def refine(self, lacking: Sequence[int]) -> bool:
-        """Asks for so many more digits of Λ₀ … Λ₄; False where no run lacks any."""
+        """Asks for so many more digits of the links; False where no run lacks any."""
         first, second, *beside = lacking
         # One run that serves as two links is made once, with the digits of the one that lacks more.
         if self.same:
@@ -244,6 +263,14 @@ class _Links:
 def _last() -> NumberSystem:
     """The number system that has every range and function."""
     return number_systems.automatic()[-1]
+
+
+def clock_is_exact(rounded: KernelRun) -> bool:
+    """Whether t ← t + h rounds nothing in any step: all times are few multiples of one 2^−k."""
+    first, h = rounded.start["t"], rounded.start["h"]
+    unit = Fraction(1, max(first.denominator, h.denominator))  # of float64s, powers of 2
+    latest = max(abs(first), abs(first + rounded.steps * h))
+    return latest / unit <= _MANTISSAS
 
 
 def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Link | None:

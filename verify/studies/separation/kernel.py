@@ -12,6 +12,10 @@ high precision, evaluate what the chain of `verify.studies.separation.separate` 
     f_sum, f_rest  Σ log1p of float64's ΔJ, in float64, with Knuth's two-sum: the plain additions'
                    errors are summed apart, and Λ = expm1(f_sum + f_rest)
 
+Where H depends on time, float64 has a clock, f_t ← f_t + f_h, which the wide lines at z̃_k read,
+too. Beside them a wide state of its own steps at these times (names that begin with `w_at_`), of
+which w_clock is the product.
+
 The source is in the language of `verify.arithmetic.wide.translate`: names begin with `f_` where
 their value is a float64 and with `w_` where it is wide, but for functions of wide numbers, which
 have their own name; `wide(x)` is the exact value of a float64. Python runs it with its own floats
@@ -38,6 +42,7 @@ from verify.kernels.lowering import Lowering
 from verify.schemes.step_map import StepMap
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
+AT = "w_at_"  # before names of the wide state that steps by float64's clock
 LIMITS = ("f_reach_p", "f_reach_q", "w_reach_part")  # of an arithmetic of limited range
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _BARE = {*keyword.kwlist, "abs", "range"}  # where equations are solved there is a loop in the loop
@@ -79,7 +84,9 @@ def mixed_kernel(
 
     Raises UnsupportedError where the arithmetic lacks a function.
     """
-    step_map = step_map_of(hamiltonian, scheme)
+    step_map, timed = step_map_of(hamiltonian, scheme), hamiltonian.time_dependent
+    if timed and arithmetic.absolute:
+        raise UnsupportedError(f"{arithmetic.name} follows no float64 clock")
     working = float64.make(17)
     narrow = _uncompiled(step_map, working, WORKING)
     if arithmetic.absolute and narrow.lowering.solves(narrow.roots):
@@ -95,8 +102,11 @@ def mixed_kernel(
         _check(wide, arithmetic)
         static, dynamic = _lines(wide, ["dj"], arithmetic, "w_")
         before += static
-        inside += ["w_p = wide(f_p)", "w_q = wide(f_q)", *dynamic]
+        inside += [f"w_{n} = wide(f_{n})" for n in ("p", "q", *("t" * timed))] + dynamic
         inside += _accumulate("trajectory", f"w_v{wide.outputs['dj']}", totals)
+    if follow and timed:
+        static, dynamic = _clocked(wide, arithmetic, narrow.parameters, totals)
+        before, inside = before + static, inside + dynamic
     inside += ["w_own = wide(f_det) - w_one", *_accumulate("determinant", "w_own", totals)]
     totals["f_plain"] = 1
     inside.append("f_plain = f_plain * f_det")
@@ -108,12 +118,30 @@ def mixed_kernel(
         inside += _box("f_p") + _box("f_q")
         sides = [f"{n}_{side}" for n in ("f_p", "f_q") for side in ("low", "high")]
     inside += [f"f_p = f_p + ({value['dp']})", f"f_q = f_q + ({value['dq']})"]
+    inside += ["f_t = f_t + f_h"] * timed
 
-    names = ("f_p", "f_q", *sides, *totals)
+    moved = (*(AT + n for n in "pq"),) if follow and timed else ()
+    names = ("f_p", "f_q", *(["f_t"] * timed), *moved, *sides, *totals)
     limits = LIMITS if arithmetic.absolute else ()
     source = _assemble(len(narrow.parameters), limits, names, before, inside)
     function = _compiled(source, arithmetic, _scope(narrow, working, wide, arithmetic))
     return MixedKernel(function, narrow.parameters, limits, names, totals, wide, closed, source)
+
+
+def _clocked(
+    wide: Kernel, arithmetic: Arithmetic, parameters: Sequence[str], totals: dict[str, int]
+) -> tuple[list[str], list[str]]:
+    """The lines of the wide state that steps by float64's clock."""
+    given = ("h", *(f"x{k}" for k in range(len(parameters))))
+    static, dynamic = _lines(wide, ["dj", "dp", "dq"], arithmetic, AT)
+    value = {name: f"{AT}v{wide.outputs[name]}" for name in ("dj", "dp", "dq")}
+    return (
+        [*(f"{AT}{name} = w_{name}" for name in given), *static],
+        [
+            f"{AT}t = w_t", *dynamic, *_accumulate("clock", value["dj"], totals),
+            f"{AT}p = {AT}p + ({value['dp']})", f"{AT}q = {AT}q + ({value['dq']})",
+        ],
+    )  # fmt: skip
 
 
 def _uncompiled(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
@@ -158,7 +186,7 @@ def _scope(
         "wide": lambda x: arithmetic.number(Fraction(x)),
         **arithmetic.functions,
         **{f"f_{name}": x for name, x in floats.items()},
-        **{f"w_{name}": x for name, x in constants.items()},
+        **{f"{prefix}{name}": x for prefix in ("w_", AT) for name, x in constants.items()},
         "f_log1p": _log1p,
         "w_one": arithmetic.number(Fraction(1)),
     }

@@ -15,6 +15,10 @@ each later link adds is rounding of one kind, and the sum telescopes:
     Λ₄ = Λ₀ + (Λ₁ − Λ₀) + (Λ₂ − Λ₁) + (Λ₃ − Λ₂) + (Λ₄ − Λ₃)
        = truncation + input + trajectory + determinant + product
 
+Where H depends on time a link `clock` stands after Λ₁: exact arithmetic at the rounded inputs, but
+each step at the time that a float64 program's clock has, t ← t + h, which is off t₀ + k h by what
+was rounded so far. The clock is read by Λ₂ and all links after it.
+
 That is one equation of rationals (`verify.studies.separation.chain`), and holds exactly whatever
 error is left in Λ₀ … Λ₃, which is bounded. The order of the links is a choice, as effects interact:
 a part is what its rounding adds to those before it. Constants in H's formula, such as the 0.1 of
@@ -41,6 +45,7 @@ from verify.arithmetic.systems import float64
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.times_on_the_way import check_times
 from verify.runs.run import check
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
@@ -49,11 +54,13 @@ from verify.scenes.results.separation import (
     GrowthResult,
     Parts,
     PartsAt,
+    PartsInTime,
+    PartsInTimeAt,
     SeparationGrid,
     SeparationResult,
 )
 from verify.schemes import canonical
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
+from verify.studies.separation.chain import Chain, Chains, separated_chains
 from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
 from verify.studies.separation.working import Stopped
 
@@ -71,6 +78,7 @@ def separate(
     p: Exact,
     step_size: Exact,
     steps: int,
+    t0: Exact = 0,
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress | None = None,
@@ -78,12 +86,16 @@ def separate(
 ) -> SeparationResult:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
 
-    `digits`: significant digits wanted of every part. `arithmetic` stands for exact arithmetic;
+    `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
+    part. `arithmetic` stands for exact arithmetic;
     `auto` takes the fastest that can. Raises InputError for h ≤ 0, N < 1, a parameter without a
     value, unknown names, and for float64, which is what is examined.
     """
     scheme = canonical(scheme)
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
+    if hamiltonian.time_dependent:
+        start["t"] = rational(t0, "t0")
+        check_times(hamiltonian, start["t"], start["h"], steps)
     check(hamiltonian, steps, digits, ())
     _check_reference(arithmetic)
     found: Chains | None = None
@@ -104,6 +116,7 @@ def separate(
         steps=steps,
         q=text(start["q"]),
         p=text(start["p"]),
+        t0=text(start.get("t", Fraction(0))),
         status=stopped.status if stopped else "finished",
         failed_step=stopped.step if stopped else None,
         reason=stopped.reason if stopped else "",
@@ -125,6 +138,7 @@ def separate_grid(
     step_sizes: Sequence[Exact],
     steps: int | None = None,
     time: Exact | None = None,
+    t0: Exact = 0,
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress | None = None,
@@ -145,6 +159,7 @@ def separate_grid(
             p=p,
             step_size=h,
             steps=count,
+            t0=t0,
             digits=digits,
             arithmetic=arithmetic,
             progress=progress,
@@ -204,22 +219,24 @@ def _check_reference(arithmetic: str) -> None:
 
 
 def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
-    trails = {name: chain.trail(name) for name in QUANTITIES}
+    trails = {name: chain.trail(name) for name in chain.quantities}
+    parts = {name: Value.of(*chain.final(name), digits) for name in chain.quantities}
     tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
     shown = log_spaced(range(len(chain.marks)), chain.marks, _CHECKPOINTS)
     return EvaluationResult(
-        parts=Parts(**{name: Value.of(*chain.final(name), digits) for name in QUANTITIES}),
+        parts=PartsInTime(**parts) if "clock" in parts else Parts(**parts),
         largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
-        growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *PARTS)},
+        growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *chain.parts)},
         series=tuple(_at(chain, trails, k) for k in shown),
         error_kind=chain.kind,
     )
 
 
 def _at(chain: Chain, trails: dict[str, tuple[tuple[Fraction, ...], Fraction]], k: int) -> PartsAt:
-    names = (n for n in QUANTITIES if n != "lambda_working")
+    names = (n for n in chain.quantities if n != "lambda_working")
     shown = {n: known_digits(trails[n][0][k], trails[n][1], _SHOWN)[0] for n in names}
-    return PartsAt(steps=chain.marks[k], **shown)
+    model = PartsInTimeAt if "clock" in shown else PartsAt
+    return model(steps=chain.marks[k], **shown)
 
 
 def _growth(found: Growth) -> GrowthResult:

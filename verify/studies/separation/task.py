@@ -1,12 +1,13 @@
 """The task of splitting Λ of one run into truncation and rounding."""
 
+from fractions import Fraction
 from typing import Literal
 
 from verify.arithmetic import AUTO, step_cost
 from verify.execution.keeping import Keeper
 from verify.execution.task import InitialValueTask
 from verify.scenes.results.separation import SeparationResult
-from verify.scenes.values import StepSize
+from verify.scenes.values import Number, StepSize
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import POINTS
 
@@ -21,6 +22,7 @@ class SeparationTask(InitialValueTask):
     kind: Literal["separation"] = "separation"
     step_size: StepSize
     steps: int
+    t0: Number = Fraction(0)
     digits: int
 
     @property

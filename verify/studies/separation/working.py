@@ -33,14 +33,14 @@ from verify.kernels.reach import limits
 from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun
 from verify.runs.estimated import digits_of
-from verify.studies.separation.kernel import MixedKernel, mixed_kernel
+from verify.studies.separation.kernel import AT, MixedKernel, mixed_kernel
 from verify.studies.separation.stepper import State, Stepper
 
 Kind = Literal["enclosed", "estimated"]
 Advance = Callable[[int], None]  # called with the number of steps just done
 POINTS = 2048  # checkpoints of a run
 _MORE_DIGITS = 15
-_WIDE = ("trajectory", "determinant", "closed")
+_WIDE = ("clock", "trajectory", "determinant", "closed")
 
 
 class Stopped(Exception):  # noqa: N818 - no error, an answer
@@ -70,6 +70,7 @@ class Link:
 class Working:
     """What one run of the mixed kernel found; a link is None where it was not followed."""
 
+    clock: Link | None
     trajectory: Link | None
     determinant: Link
     plain: Link
@@ -102,20 +103,21 @@ class WorkingRun:
         kernel = self._kernel(arithmetic)
         states = self._states(kernel, arithmetic, advance)
         bound_of = self._bounds(kernel, arithmetic, states[-1])
-        kind: Kind = "enclosed"
-        method = "rounding counted"
-        if None in bound_of.values():
+        unknown = {name for name, bound in bound_of.items() if bound is None}
+        if unknown:
+            unknown = unknown if unknown == {"clock"} else set(bound_of)
             finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE_DIGITS)
             again = self._states(self._kernel(finer), finer, lambda _: None)
-            bound_of = {n: _apart(n, states, again, arithmetic, finer) for n in bound_of}
-            kind, method = "estimated", f"rerun with {_MORE_DIGITS} more digits"
+            bound_of |= {n: _apart(n, states, again, arithmetic, finer) for n in unknown}
 
         def link(name: str) -> Link | None:
             bound = bound_of.get(name)
             if bound is None:
                 return None
             trail = tuple(arithmetic.exact(state[f"w_{name}"]) for state in states)
-            return Link(trail, bound, kind, method)
+            if name in unknown:
+                return Link(trail, bound, "estimated", f"rerun with {_MORE_DIGITS} more digits")
+            return Link(trail, bound, "enclosed", "rounding counted")
 
         determinant = link("determinant")
         assert determinant is not None  # noqa: S101 - every kernel has it
@@ -127,7 +129,7 @@ class WorkingRun:
             finite = all(map(math.isfinite, sums))
             delta_j = link("closed") if finite else None
             closed = exact_link([Fraction(x) for x in sums], "a float64") if finite else None
-        return Working(link("trajectory"), determinant, plain, delta_j, closed)
+        return Working(link("clock"), link("trajectory"), determinant, plain, delta_j, closed)
 
     def _kernel(self, arithmetic: Arithmetic) -> MixedKernel:
         return mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
@@ -175,9 +177,13 @@ class WorkingRun:
         return min(chunk, left), 1
 
     def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
-        state: dict[str, Any] = {"f_p": self.inputs["p"], "f_q": self.inputs["q"]}
+        state: dict[str, Any] = {
+            f"f_{n}": x for n, x in self.inputs.items() if n in ("p", "q", "t")
+        }
         for name in kernel.state_names:
-            if name not in kernel.start:  # p, q and the region that they visit
+            if name.startswith(AT):
+                state[name] = arithmetic.number(Fraction(self.inputs[name.removeprefix(AT)]))
+            elif name not in kernel.start:  # p, q and the region that they visit
                 state[name] = state[name[:3]]
             else:
                 state[name] = _number(arithmetic, name, Fraction(kernel.start[name]))
@@ -216,7 +222,8 @@ class WorkingRun:
         found: dict[str, Fraction | None] = {}
         for name in _WIDE:
             if f"w_{name}" in last:
-                own: Fraction | None = Fraction(0)
+                # What a wide state does to the steps after it is not counted.
+                own: Fraction | None = None if name == "clock" else Fraction(0)
                 if name == "trajectory":
                     own = self._of_delta_j(kernel, arithmetic, last)
                 top = arithmetic.exact(last[f"w_{name}_top"])
@@ -237,6 +244,9 @@ class WorkingRun:
             for n in ("p", "q"):
                 low, high = (rational_ball(Fraction(last[f"f_{n}_{x}"])) for x in ("low", "high"))
                 inputs[n] = Rounded(low.union(high), cut)
+            if "f_t" in last:
+                first, end = (rational_ball(Fraction(x)) for x in (self.inputs["t"], last["f_t"]))
+                inputs["t"] = Rounded(first.union(end), cut)
             live, rounding = lowering.live([root]), rounding_of(arithmetic)
             found = analyse(lowering.program, live, inputs, rounding)
             error = None if found is None else found[root].error
@@ -253,7 +263,7 @@ def _exact(arithmetic: Arithmetic, x: Number) -> Fraction:
 
 
 def rounded_inputs(run: KernelRun) -> dict[str, float]:
-    """h, p, q and the parameters that the kernel takes, as float64; Stopped where one is not."""
+    """The start and the parameters that the kernel takes, as float64; Stopped where one is not."""
     exact = {**run.start, **{n: run.parameters[n] for n in run.hamiltonian.parameters}}
     number = float64.make(17).number
     found: dict[str, float] = {name: number(value) for name, value in exact.items()}

@@ -37,6 +37,7 @@ from verify.scenes.results.separation import (
 class SeparationView:
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
+    kinds: tuple[str, ...]  # of rounding
     parts: tuple[Group, ...]
     growths: tuple[Group, ...]
     count: int
@@ -58,6 +59,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
     return SeparationView(
         finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
         plots=tuple(_plots(wide, anchor)),
+        kinds=next((x.plain.parts.of_rounding for x in rows if x.plain), ROUNDING),
         parts=tuple(_groups([*own, *wide], _parts_row)),
         growths=tuple(_groups([*own, *wide], _growth_row)),
         count=len(rows),
@@ -111,7 +113,7 @@ def _parts_row(point: SeparationResult) -> Row:
         return Row(h, (steps,), point.reason or point.status)
     parts, closed = point.plain.parts, point.closed_form
     greatest = greatest_part(point.plain)
-    own = (few_digits(getattr(parts, name), strong=name == greatest) for name in ROUNDING)
+    own = (few_digits(getattr(parts, name), strong=name == greatest) for name in parts.of_rounding)
     last = _compared(closed) if closed else Markup("–")
     truncation = few_digits(parts.truncation)
     return Row(h, (steps, truncation, _compared(point.plain), *own, last))
