@@ -15,6 +15,7 @@ from verify.algebra.generator import Generator, Poly, System
 from verify.algebra.identities.polynomials import occurring, split
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
+_LONG = 64  # terms of what has no p and q in it, beyond which it may have a name
 
 
 class RingFullError(Exception):
@@ -210,12 +211,20 @@ class DifferentialRing:
         self._rules[index] = rule
         return self.generators[at]
 
+    def _has_state(self, x: Poly) -> bool:
+        return any(self.depends(x, name) for name in ("p", "q"))
+
+    def _is_long_in_time(self, x: Poly) -> bool:
+        """Where the motion is linear no derivative has p and q, and each factor cos(t + c h)
+        doubles what is written out."""
+        return "t" in self.places and len(x) > _LONG
+
     def named(self, x: Poly) -> Poly:
         """x as a generator of its own; x itself where that is as short, or there is no room.
 
         What is made from named parts is evaluated, and differentiated, part by part.
         """
-        if len(x) < 2 or not any(self.depends(x, name) for name in ("p", "q")):
+        if len(x) < 2 or not (self._is_long_in_time(x) or self._has_state(x)):
             return x
         known = self.find("stage", x)
         if known is not None:

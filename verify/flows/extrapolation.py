@@ -4,6 +4,9 @@ The modified midpoint rule has an expansion in even powers of its step, so that 
 2, 4, 6, … steps extrapolate to any order (Hairer, Nørsett, Wanner, Solving Ordinary Differential
 Equations I, section II.9). It asks only for H_p and H_q at points. Its error is estimated, by the
 last two extrapolated values; who relies on a result computes it again with more digits.
+
+Where H depends on time a state is (p, q, t): with t' = 1 the system is autonomous, and Gragg's rule
+takes its midpoints at t, t + h, t + 2h, …
 """
 
 from collections.abc import Callable, Sequence
@@ -19,7 +22,7 @@ from verify.kernels.program import Evaluator, Program
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
-State = tuple[Number, Number]  # p, q
+State = tuple[Number, ...]  # p, q, and t where H depends on it
 
 _GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
 _LOST = 8
@@ -43,19 +46,21 @@ class NoFlowError(Exception):
 
 
 def functions_at(
-    arithmetic: Arithmetic, elements: Sequence[tuple[Ring, Poly]]
-) -> Callable[[Number, Number], tuple[Number, ...]]:
-    """(p, q) ↦ the values of ring elements in p and q alone; call it inside the context."""
+    arithmetic: Arithmetic,
+    elements: Sequence[tuple[Ring, Poly]],
+    names: Sequence[str] = ("p", "q"),
+) -> Callable[..., tuple[Number, ...]]:
+    """(p, q) ↦ the values of ring elements in these names alone; call it inside the context."""
     program = Program()
-    inputs = {name: program.input(name, static=False) for name in ("p", "q")}
+    inputs = {name: program.input(name, static=False) for name in names}
     roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
     lowering = Lowering(program, arithmetic.functions)
     static, dynamic = lowering.lines(roots)
     values = ", ".join(lowering.name(root) for root in roots)
-    lines = ["def at(p, q):", *(f"    {line}" for line in [*static, *dynamic])]
+    lines = [f"def at({', '.join(names)}):", *(f"    {line}" for line in [*static, *dynamic])]
     source = "\n".join([*lines, f"    return ({values},)", ""])
     constants = lowering.named_constants(arithmetic.number)
-    at: Callable[[Number, Number], tuple[Number, ...]] = arithmetic.compile(
+    at: Callable[..., tuple[Number, ...]] = arithmetic.compile(
         source, "at", {**arithmetic.functions, **constants}
     )
     return at
@@ -66,8 +71,11 @@ class Flow:
 
     def __init__(self, field: VectorField, digits: int) -> None:
         self.arithmetic = mpfr.make(digits + _GUARD)
-        ring = field.ring
-        self._slopes = functions_at(self.arithmetic, [(ring, -field.h_q), (ring, field.h_p)])
+        ring, self.timed = field.ring, field.timed
+        names = ("p", "q", "t") if self.timed else ("p", "q")
+        elements = [(ring, -field.h_q), (ring, field.h_p)]
+        self._slopes = functions_at(self.arithmetic, elements, names)
+        self._midpoint = self._midpoint_in_time if self.timed else self._midpoint_still
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + _GUARD - _LOST)))
         self._columns = 6 + digits // 3  # more of them gain less than a shorter step does
 
@@ -156,11 +164,11 @@ class Flow:
                 moved = abs(p - z[0]) + abs(q - z[1])
                 size = moved + (abs(p) + abs(q)) / _STILL
                 if abs(p - p0) + abs(q - q0) <= self._tolerance * size:
-                    return p, q
+                    return (p, q, z[2] + time) if self.timed else (p, q)
             above = row
         return None
 
-    def _midpoint(self, z: State, time: Number, count: int) -> State:
+    def _midpoint_still(self, z: State, time: Number, count: int) -> State:
         """Gragg's rule with so many steps, smoothed at its end."""
         h = time / count
         slopes = self._slopes
@@ -172,4 +180,18 @@ class Flow:
             dp, dq = slopes(p1, q1)
             p0, q0, p1, q1 = p1, q1, p0 + twice * dp, q0 + twice * dq
         dp, dq = slopes(p1, q1)
+        return (p1 + p0 + h * dp) / 2, (q1 + q0 + h * dq) / 2
+
+    def _midpoint_in_time(self, z: State, time: Number, count: int) -> State:
+        """The same, each slope at its own time."""
+        h = time / count
+        slopes = self._slopes
+        p0, q0, t = z
+        dp, dq = slopes(p0, q0, t)
+        p1, q1 = p0 + h * dp, q0 + h * dq
+        twice = 2 * h
+        for k in range(1, count):
+            dp, dq = slopes(p1, q1, t + k * h)
+            p0, q0, p1, q1 = p1, q1, p0 + twice * dp, q0 + twice * dq
+        dp, dq = slopes(p1, q1, t + time)
         return (p1 + p0 + h * dp) / 2, (q1 + q0 + h * dq) / 2

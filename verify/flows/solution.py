@@ -28,6 +28,7 @@ _TOLD = 12  # digits of a time at which a solution ends
 _ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked for
 NOT_KNOWN = "not known"
 
+_FROM_START = Fraction(0)
 State = tuple[Fraction, Fraction]  # p, q
 
 
@@ -47,18 +48,29 @@ class Solution:
 
 
 def exact_solution(
-    hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction, digits: int
+    hamiltonian: Hamiltonian,
+    *,
+    p: Fraction,
+    q: Fraction,
+    time: Fraction,
+    digits: int,
+    t0: Fraction = _FROM_START,
 ) -> Solution:
     """φ_time(p, q), whose bound is at most 10^−digits times the orbit's scale.
 
+    Where H depends on time the orbit begins at t0, and `time` is how long it lasts.
     The orbit's scale is the largest of |p| and |q| at its two ends. Time may be negative. Raises
     InputError for a parameter without a value, and NoFlowError, saying why, where no solution
     reaches that time or where it could not be followed so far.
     """
     _check(hamiltonian, digits)
+    if time == 0:
+        return Solution(p, q, Fraction(0), "the initial value itself")
+    if hamiltonian.time_dependent:
+        return _numerical_solution(hamiltonian, (p, q, t0), time, digits)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
-    if rest or time == 0:
+    if rest:
         return Solution(p, q, Fraction(0), "the initial value itself")
     if known is not None:
         found = closed_form.evaluate(known, (p, q), time, digits)
@@ -86,6 +98,8 @@ def leaves_by_algebra(
     _check(hamiltonian, _TOLD)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
+    if hamiltonian.time_dependent:
+        raise InputError("hamiltonian", hamiltonian.formula, "depends on t; allowed: one without")
     known = known_flows.closed_form(hamiltonian, p, q)
     if known is not None:
         end = closed_form.blow_up(known, 1, _TOLD)
@@ -118,21 +132,24 @@ def _reason_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
 
 
 def _numerical_solution(
-    hamiltonian: Hamiltonian, start: State, time: Fraction, digits: int
+    hamiltonian: Hamiltonian, start: tuple[Fraction, ...], time: Fraction, digits: int
 ) -> Solution:
-    """By the numerical flow with more and more digits, until two of them agree."""
+    """By the numerical flow with more and more digits, until two of them agree.
+
+    `start`: p, q, and t where H depends on it.
+    """
     field, _ = hamiltonian.field()
     before: State | None = None
     for k in range(_TRIES):
         flow = Flow(field, digits + _GUARD + k * _MORE)
         number, exact = flow.arithmetic.number, flow.arithmetic.exact
-        z = flow.follow((number(start[0]), number(start[1])), time)
+        z = flow.follow(tuple(map(number, start)), time)
         after = exact(z[0]), exact(z[1])
         if before is not None:
             bound = _SAFETY * max(abs(after[0] - before[0]), abs(after[1] - before[1]))
-            scale = max(map(abs, (*start, *after)))
+            scale = max(map(abs, (*start[:2], *after)))
             if bound * 10**digits <= scale:
                 method = "numerical flow: Gragg's method, extrapolated"
-                return Solution(*after, bound, method, enclosed=False)
+                return Solution(after[0], after[1], bound, method, enclosed=False)
         before = after
     raise NoFlowError("the digits asked for are lost along the orbit")

@@ -36,7 +36,7 @@ class Named:
 
 def closed_form(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> Motion | None:
     """The motion from (p, q) in closed form; None where none is known."""
-    if hamiltonian.symbols:
+    if hamiltonian.symbols or hamiltonian.time_dependent:
         return None
     found = potential(hamiltonian)
     if found is not None:

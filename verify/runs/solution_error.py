@@ -16,6 +16,7 @@ from verify.scenes.results.run import RunResult
 _DIGITS = 7  # of an error, at most
 _MORE = 25  # digits of the exact solution, of the orbit's size
 _BITS = 256  # of a square root
+_State = tuple[Fraction, Fraction]  # p, q
 _Point = tuple[Fraction, Fraction, Fraction]  # p, q, and the bound of both
 
 
@@ -28,13 +29,14 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
     Raises InputError where it cannot be followed so far.
     """
     table = orbit_of(result, points)
-    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
+    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters, time=True)
+    t0 = Fraction(result.t0)
     times = [Fraction(t) for t in table.texts("t")]
     states = zip(table.texts("p"), table.texts("q"), strict=True)
     start = Fraction(result.p), Fraction(result.q)
     digits = max(_MORE, result.digits + _DIGITS)
     try:
-        exact = list(_solution(hamiltonian, start, times, digits))
+        exact = list(_solution(hamiltonian, start, t0, times, digits))
     except NoFlowError as error:
         problem = f"no exact solution to hold it to: {error}"
         raise InputError("run", result.scheme, problem) from None
@@ -45,31 +47,33 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
 
 
 def _solution(
-    hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction], times: list[Fraction], digits: int
+    hamiltonian: Hamiltonian, start: _State, t0: Fraction, times: list[Fraction], digits: int
 ) -> Iterator[_Point]:
-    """p, q and the bound of each at the times."""
+    """p, q and the bound of each at the times, of an orbit that begins at t0."""
     if known_flows.closed_form(hamiltonian, *start) is None:
-        yield from _followed(hamiltonian, start, times, digits)
+        yield from _followed(hamiltonian, start, t0, times, digits)
         return
     for t in times:
-        found = exact_solution(hamiltonian, p=start[0], q=start[1], time=t, digits=digits)
+        found = exact_solution(hamiltonian, p=start[0], q=start[1], time=t - t0, digits=digits)
         yield found.p, found.q, found.bound
 
 
 def _followed(
-    hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction], times: list[Fraction], digits: int
+    hamiltonian: Hamiltonian, start: _State, t0: Fraction, times: list[Fraction], digits: int
 ) -> Iterator[_Point]:
     """The solution from one time to the next, held at its end to the one of a single piece.
 
     What errors grow by on the way is seen there: it is least at first and most at the end.
     """
     made: list[_Point] = []
-    (p, q), before, total = start, Fraction(0), Fraction(0)
+    (p, q), before, total = start, t0, Fraction(0)
     for t in times:
-        found = exact_solution(hamiltonian, p=p, q=q, time=t - before, digits=digits)
+        found = exact_solution(hamiltonian, p=p, q=q, time=t - before, digits=digits, t0=before)
         p, q, before, total = found.p, found.q, t, total + found.bound
         made.append((p, q, total))
-    whole = exact_solution(hamiltonian, p=start[0], q=start[1], time=before, digits=digits)
+    whole = exact_solution(
+        hamiltonian, p=start[0], q=start[1], time=before - t0, digits=digits, t0=t0
+    )
     missed = max(abs(whole.p - p), abs(whole.q - q)) + whole.bound
     for p, q, bound in made:
         yield p, q, max(bound, missed)

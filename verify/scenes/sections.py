@@ -68,6 +68,11 @@ class WorkPrecision(Section):
     peers: bool | None = None
     """Whether others' solvers stand beside; where it is left out, those installed do."""
 
+    @property
+    def without_time(self) -> str | None:
+        """Others' solvers, where they are asked for."""
+        return "peers" if self.peers else None
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "schemes", "number_systems", "digits"):

@@ -5,11 +5,13 @@ The drawing, and with it matplotlib, is imported only where something is drawn.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from math import isfinite, log10
 from statistics import median
 from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
+from verify.arithmetic.exact import text
 from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.figures.logarithm import lg
 from verify.pages.text.typography import listed
@@ -43,7 +45,7 @@ def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
     yield plotted(
         lambda: draw_panels(lettered),
         name=f"work-of-{name}",
-        lead=f"Over [0, {found.time}]: {what}",
+        lead=f"Over [{found.t0}, {text(Fraction(found.t0) + Fraction(found.time))}]: {what}",
         caption=" ".join(caption for own_panels, caption in told if own_panels and caption),
     )
 

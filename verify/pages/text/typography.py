@@ -126,9 +126,11 @@ def grouped(text: str) -> Markup:
 
 
 def start(run: RunResult | SeparationResult | AverageResult | WorkPrecisionResult) -> str:
-    """A run's initial value."""
-    q, p = number(run.q), number(run.p)
-    return f"q₀{NBSP}={NBSP}{q}, p₀{NBSP}={NBSP}{p}"
+    """A run's initial value, and when it starts, where that is not 0."""
+    at = {"q₀": run.q, "p₀": run.p, "t₀": getattr(run, "t0", "0")}
+    return ", ".join(
+        f"{name}{NBSP}={NBSP}{number(x)}" for name, x in at.items() if name != "t₀" or x != "0"
+    )
 
 
 def listed(items: Iterable[str]) -> str:

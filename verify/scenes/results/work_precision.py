@@ -149,6 +149,7 @@ class WorkPrecisionResult(Frozen):
     hamiltonian: str
     parameters: dict[str, str]
     time: str
+    t0: str = "0"
     q: str
     p: str
     repeats: int

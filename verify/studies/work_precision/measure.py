@@ -55,6 +55,7 @@ def work_precision(
     q: Fraction,
     p: Fraction,
     time: Fraction,
+    t0: Fraction,
     schemes: Sequence[str],
     step_sizes: Sequence[Fraction],
     repeats: int,
@@ -66,13 +67,13 @@ def work_precision(
     peers_left_out: Sequence[tuple[str, str]],
     advance: Advance,
 ) -> WorkPrecisionResult:
-    """Errors and run times over [0, time] from (q, p): of each scheme with each step size, of
+    """Errors and run times over [t0, t0 + time] from (q, p): of each scheme with each step size, of
     peers, and of number systems with so many digits, on one scheme at one step size.
 
     Raises InputError where the exact solution does not reach the time.
     """
     begun = perf_counter()
-    problem = _problem(hamiltonian, p, q, time)
+    problem = _problem(hamiltonian, p, q, time, t0)
     _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
     own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
@@ -94,6 +95,7 @@ def work_precision(
     return WorkPrecisionResult(
         **hamiltonian.texts,
         time=text(time),
+        t0=text(t0),
         q=text(q),
         p=text(p),
         repeats=repeats,
@@ -114,12 +116,14 @@ def work_precision(
     )
 
 
-def _problem(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> Problem:
+def _problem(
+    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction
+) -> Problem:
     try:
-        exact = reference(hamiltonian, p, q, time)
+        exact = reference(hamiltonian, p, q, time, t0)
     except NoFlowError as error:
         raise InputError("work_precision.time", text(time), str(error)) from None
-    return Problem(hamiltonian, p, q, time, exact)
+    return Problem(hamiltonian, p, q, time, t0, exact)
 
 
 def _wake_compiler() -> None:
@@ -206,7 +210,7 @@ def _system_points(
 
     def go(name: str, digits: int) -> RunResult:
         return run(
-            problem.hamiltonian, scheme, q=problem.q, p=problem.p, step_size=h,
+            problem.hamiltonian, scheme, q=problem.q, p=problem.p, step_size=h, t0=problem.t0,
             steps=problem.time // h, arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 

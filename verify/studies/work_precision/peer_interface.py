@@ -13,12 +13,13 @@ class PeerError(Exception):
 
 @dataclass(frozen=True)
 class InitialValueProblem:
-    """p' = −H_q, q' = H_p from (p, q) at t = 0 to `time`."""
+    """p' = −H_q, q' = H_p from (p, q) at t0, for the length `time`."""
 
     hamiltonian: Hamiltonian
     p: Fraction
     q: Fraction
     time: Fraction
+    t0: Fraction
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,13 @@ from verify.studies.work_precision.task import WorkPrecisionTask
 def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTask:
     """Error against run time. Raises InputError where peers are wanted and not installed."""
     schemes, sizes = section.schemes or scene.schemes, sorted(section.step_sizes, reverse=True)
-    peers, left_out = _peers(section.peers)
+    timed = scene.exact_hamiltonian().time_dependent
+    peers, left_out = _peers(section.peers, timed)
     return WorkPrecisionTask(
         **scene.hamiltonian_fields(),
         schemes=schemes,
         time=section.time,
+        t0=scene.t0,
         step_sizes=tuple(sizes),
         q=section.initial_value.q,
         p=section.initial_value.p,
@@ -29,7 +31,7 @@ def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTa
     )
 
 
-def _peers(asked: bool | None) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
+def _peers(asked: bool | None, timed: bool) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
     """Those that are drawn, and the others with the reason why not."""
     from verify.studies.work_precision import peers
 
@@ -38,6 +40,11 @@ def _peers(asked: bool | None) -> tuple[tuple[str, ...], tuple[tuple[str, str], 
     for name, library in peers.libraries().items():
         if asked is False:
             left_out.append((name, "the scene says `peers = false`"))
+        elif timed and asked:
+            problem = "is given no H that depends on time as yet"
+            raise InputError("work_precision.peers", "true", problem)
+        elif timed:
+            left_out.append((name, "it is given no H that depends on time as yet"))
         elif find_spec(library) is not None:
             drawn.append(name)
         elif asked:

@@ -25,6 +25,7 @@ from verify.flows.solution import Solution, exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
+from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
@@ -44,9 +45,11 @@ _ROOT_BITS = 160
 State = tuple[Fraction, Fraction]  # p, q
 
 
-def reference(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> Solution:
+def reference(
+    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction
+) -> Solution:
     """The exact solution that errors are held against; NoFlowError where it is not reached."""
-    return exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS)
+    return exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS, t0=t0)
 
 
 @dataclass(frozen=True)
@@ -60,10 +63,10 @@ class Problem(InitialValueProblem):
         return {self.time: self.solution}
 
     def solution_after(self, h: Fraction) -> Solution:
-        """The exact solution at t = N·h, N = T/h rounded down, where the steps end."""
+        """The exact solution after N·h, N = T/h rounded down, where the steps end."""
         end = self.time // h * h
         if end not in self._ends:
-            self._ends[end] = reference(self.hamiltonian, self.p, self.q, end)
+            self._ends[end] = reference(self.hamiltonian, self.p, self.q, end, self.t0)
         return self._ends[end]
 
     @property
@@ -88,7 +91,10 @@ class Problem(InitialValueProblem):
         return size, own + 2 * exact.bound  # of each of p and q
 
     def energy_error(self, state: State) -> Value | None:
-        """|H(state) − H(z₀)|; None where H is not defined there, or out of reach."""
+        """|H(state) − H(z₀)|; None where H is not defined there, or out of reach, or not kept by
+        the motion as it depends on time."""
+        if self.hamiltonian.time_dependent:
+            return None
         ring, energy = self._energy
         ends = [
             enclose(ring, energy, dict(zip("pq", at, strict=True)), _BITS)
@@ -121,7 +127,8 @@ class Ladder:
 
     def _kernel_run(self, h: Fraction, observables: frozenset[str]) -> KernelRun:
         of = self.problem
-        start, steps = {"p": of.p, "q": of.q, "h": h}, of.time // h
+        orbit = Orbit(of.hamiltonian, self.name, h, of.q, of.p, t0=of.t0)
+        start, steps = orbit.start, of.time // h
         return KernelRun(of.hamiltonian, self.name, start, steps, observables, points=0)
 
     def _loop(self, h: Fraction) -> ChunkedLoop:

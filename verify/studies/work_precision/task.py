@@ -1,6 +1,7 @@
 """The task of error against run time."""
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import ClassVar, Literal
 
 from verify.execution.keeping import Keeper
@@ -22,6 +23,7 @@ class WorkPrecisionTask(HamiltonianTask):
     kind: Literal["work_precision"] = "work_precision"
     schemes: tuple[str, ...]
     time: Number
+    t0: Number = Fraction(0)
     step_sizes: tuple[StepSize, ...]
     q: Number
     p: Number

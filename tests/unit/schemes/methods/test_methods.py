@@ -20,7 +20,11 @@ FILES = schemes._FILES
 NAMES = schemes.names()
 SYSTEMS = sorted(systems.all_systems())
 NONLINEAR = "p**2/2 - cos(q)"  # a linear problem may flatter an order
-USERS_OWN = ("p_next = p - h*q; q_next = q + h*p_next", "kick 1/2; drift 1; kick 1/2")
+USERS_OWN = (
+    "p_next = p - h*q; q_next = q + h*p_next",
+    "kick 1/2; drift 1; kick 1/2",
+    "verlet, clock frozen",
+)
 
 
 def proof_of(scheme_name: str, hamiltonian: Hamiltonian) -> Proof:

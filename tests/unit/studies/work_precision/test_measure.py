@@ -30,7 +30,7 @@ PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 def problem(hamiltonian: Hamiltonian, q: str = "1", time: Fraction | int = 1) -> Problem:
     start = Fraction(0), Fraction(q)
     exact = exact_solution(hamiltonian, p=start[0], q=start[1], time=Fraction(time), digits=33)
-    return Problem(hamiltonian, *start, Fraction(time), exact)
+    return Problem(hamiltonian, *start, Fraction(time), Fraction(0), exact)
 
 
 def points(of: Problem, scheme: str, steps: Sequence[int]) -> list[WorkPoint]:

@@ -60,7 +60,8 @@ def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
 
 def _finding(found: WorkPrecisionResult) -> Iterator[str]:
     yield (
-        f"The error is that of the float64 state at T = {number(found.time)} from {start(found)}, "
+        f"The error is that of the float64 state after T = {number(found.time)} from "
+        f"{start(found)}, "
         "against the exact solution, which is known to within "
         f"{number(found.reference_bound)}."
     )

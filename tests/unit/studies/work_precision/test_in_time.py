@@ -1,0 +1,72 @@
+"""Error against run time of an H that depends on time; the scenes that the manual shows."""
+
+from fractions import Fraction
+from math import log2
+
+import pytest
+
+from tests.paths import ROOT
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.scene import Scene, load_scene
+from verify.studies.work_precision.measure import work_precision
+from verify.studies.work_precision.plan import work_precision_task
+from verify.studies.work_precision.runs import Ladder, Problem, reference
+
+DRIVEN = ROOT / "reports" / "driven"
+SCENES = {path.stem: load_scene(path) for path in sorted(DRIVEN.glob("*.toml"))}
+SLOPES = {"stormer-verlet": 2, "forest-ruth": 4, "triple-jump6": 6, "gauss4": 4, "rk4": 4}
+
+
+def problem(scene: Scene) -> Problem:
+    assert scene.work_precision is not None
+    exact, time = scene.exact_hamiltonian(), Fraction(scene.work_precision.time)
+    start = Fraction(0), Fraction(1)
+    return Problem(exact, *start, time, scene.t0, reference(exact, *start, time, scene.t0))
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("scheme", [*SLOPES, *(x for x in SCENES["duffing"].schemes if "," in x)])
+def test_right_clocks_keep_the_order_and_wrong_ones_leave_1(name: str, scheme: str) -> None:
+    ladder = Ladder(problem(SCENES[name]), scheme)
+    coarse, fine = (ladder.point(Fraction(1, n)) for n in (40, 80))
+    assert coarse.error is not None
+    assert fine.error is not None
+    slope = log2(float(coarse.error.value) / float(fine.error.value))
+    assert abs(slope - SLOPES.get(scheme, 1)) < 0.25
+
+
+def test_there_are_two_scenes_of_thirteen_methods() -> None:
+    assert sorted(SCENES) == ["duffing", "mathieu"]
+    for scene in SCENES.values():
+        assert scene.exact_hamiltonian().time_dependent
+        assert len(scene.schemes) == 13
+        assert sum(", clock" in name for name in scene.schemes) == 3
+
+
+def test_energy_is_none_and_t0_counts() -> None:
+    hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 - q*cos(t)", time=True)
+    asked = {
+        "q": Fraction(1), "p": Fraction(0), "time": Fraction(1), "schemes": ["stormer-verlet"],
+        "step_sizes": [Fraction(1, 5), Fraction(1, 10)], "repeats": 1, "number_systems": (),
+        "digits": (), "number_systems_scheme": "stormer-verlet",
+        "number_systems_step_size": Fraction(1, 10), "peers": (), "peers_left_out": (),
+        "advance": lambda _: None,
+    }  # fmt: skip
+    early, late = (work_precision(hamiltonian, t0=Fraction(t), **asked) for t in (0, 2))  # type: ignore[arg-type]
+    points = [point for found in (early, late) for line in found.lines for point in line.points]
+    assert all(point.energy is None for point in points)
+    errors = [point.error for point in points]
+    assert errors[0] != errors[2]
+    assert (early.t0, late.t0) == ("0", "2")
+
+
+def test_peers_are_left_out_and_refused_where_they_are_asked_for() -> None:
+    scene = SCENES["duffing"]
+    assert scene.work_precision is not None
+    task = work_precision_task(scene, scene.work_precision)
+    assert not task.peers
+    assert all("no H that depends on time" in why or "not installed" in why
+               for _, why in task.peers_left_out)  # fmt: skip
+    with pytest.raises(InputError, match="no H that depends on time"):
+        work_precision_task(scene, scene.work_precision.model_copy(update={"peers": True}))
