@@ -41,7 +41,10 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
-_NO_TIME = "only `prove`, `run` and `check-integrator` take an H that depends on time as yet"
+_NO_TIME = (
+    "only `prove`, `run`, `separate`, `check-integrator` and scenes take an H that depends on time "
+    "as yet"
+)
 _SHORT = 18  # digits of a number that is surely within the limits
 _DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")

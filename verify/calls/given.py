@@ -54,22 +54,25 @@ def hamiltonian_from(
     if parameters is not None and not isinstance(parameters, Mapping):
         raise InputError("parameters", parameters, "is not a mapping of names to values")
     if isinstance(system, Hamiltonian):
-        if system.time_dependent and not time:
-            raise InputError(
-                "hamiltonian", system.formula, "depends on t: only prove, run and check take that"
-            )
         values = {**dict(system.values), **(parameters or {})}
-        return system.with_values(values) if parameters else system
+        return _allowed(system.with_values(values) if parameters else system, time)
     if isinstance(system, System):
-        return system.hamiltonian(parameters)
+        return _allowed(system.hamiltonian(parameters), time)
     if not isinstance(system, str):
         raise InputError("system", system, _SYSTEM)
     name = systems.canonical(system)
     if name in systems.names():
-        return systems.get(name).hamiltonian(parameters)
+        return _allowed(systems.get(name).hamiltonian(parameters), time)
     if len(system.strip()) >= _LEAST and _NAME.fullmatch(system.strip()):
         raise unknown("system", system, systems.names(), "; or a formula in p and q")
     return Hamiltonian.parse(system, parameters, time=time)
+
+
+def _allowed(hamiltonian: Hamiltonian, time: bool) -> Hamiltonian:
+    if hamiltonian.time_dependent and not time:
+        problem = "depends on t, which is taken by prove, run, separate and check alone"
+        raise InputError("hamiltonian", hamiltonian.formula, problem)
+    return hamiltonian
 
 
 def scheme_from(scheme: GivenScheme) -> Scheme | StepMap:

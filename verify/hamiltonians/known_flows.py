@@ -69,13 +69,25 @@ def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
 @lru_cache(maxsize=64)
 def named(hamiltonian: Hamiltonian) -> tuple[Named, ...]:
     """The named systems that this Hamiltonian is, with their parameters' values."""
-    return tuple(_matches(hamiltonian))
+    return () if hamiltonian.time_dependent else tuple(_matches(hamiltonian))
+
+
+def named_in_time(hamiltonian: Hamiltonian) -> Named | None:
+    """The named system that this H(p, q, t) is, as it is written there, with all its values."""
+    if hamiltonian.symbols or not hamiltonian.time_dependent:
+        return None
+    for system in all_systems().values():
+        if system.hamiltonian().expression == hamiltonian.expression:
+            return Named(system, dict(hamiltonian.values))
+    return None
 
 
 def _matches(hamiltonian: Hamiltonian) -> Iterator[Named]:
     exact = hamiltonian.exact
     terms = _terms(exact)
     for system in all_systems().values():
+        if system.time_dependent:
+            continue
         own = system.hamiltonian().expression
         if (own - hamiltonian.expression).is_number:
             yield Named(system, dict(hamiltonian.values))

@@ -3,20 +3,24 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from verify.arithmetic.exact import Exact, rational
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.motion import Flow, Values
 
+FlowInTime = Callable[[Values, tuple[Fraction, Fraction, Fraction], Fraction], tuple[Any, Any]]
 Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
 
 
 @dataclass(frozen=True)
 class System:
-    """`formula` is H(p, q); `parameters` explains each of its parameters.
+    """`formula` is H(p, q), or H(p, q, t); `parameters` explains each of its parameters.
 
-    `flow` is its exact flow in closed form, where that is known. Without one, `goes` may say of
-    (parameters, p, q) how the orbit goes to infinity as t grows: None where it stays bounded.
+    `flow` is its exact flow in closed form, where that is known; of an H that depends on time,
+    `flow_in_time` gives p and q for (parameters, p, q and t at the start, how long). Without one,
+    `goes` may say of (parameters, p, q) how the orbit goes to infinity as t grows: None where it
+    stays bounded.
     `regimes` are examples of the kinds of orbits that it has.
     """
 
@@ -26,6 +30,7 @@ class System:
     source: str
     parameters: Mapping[str, str] = field(default_factory=dict)
     flow: Flow | None = None
+    flow_in_time: FlowInTime | None = None
     goes: Callable[[Values, Fraction, Fraction], str | None] | None = None
     regimes: Mapping[str, Regime] = field(default_factory=dict)
 
@@ -37,7 +42,12 @@ class System:
 
     def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
         """H with these parameter values; parameters without one stay symbols."""
-        return Hamiltonian.parse(self.formula, values)
+        return Hamiltonian.parse(self.formula, values, time=True)
+
+    @property
+    def time_dependent(self) -> bool:
+        """Whether t is in H."""
+        return self.hamiltonian().time_dependent
 
     def regime(self, name: str) -> tuple[Values, Fraction, Fraction]:
         """The parameters, p and q of an example."""

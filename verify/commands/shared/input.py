@@ -163,7 +163,11 @@ def hamiltonian_of(
             raise InputError("--param", text, f"is more than one; write --param {instead}")
         values[name.strip()] = value
     if system is not None:
-        return systems.get(system).hamiltonian(values)
+        found = systems.get(system).hamiltonian(values)
+        if found.time_dependent and not time:
+            problem = "depends on t, which this command does not take as yet"
+            raise InputError("--system", system, problem)
+        return found
     systems.check_is_formula(hamiltonian or "")
     return Hamiltonian.parse(hamiltonian or "", values, time=time)
 

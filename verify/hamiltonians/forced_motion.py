@@ -1,0 +1,42 @@
+"""The motion of a harmonic oscillator with a periodic force, in closed form, by ball arithmetic.
+
+q'' + w² q = g cos Wt from (p₀, q₀) at t₀, s = t − t₀. A particular solution is c cos Wt with
+c = g/(w² − W²), in resonance g s sin(wt)/(2w), and for w = W = 0 g s²/2; the rest is free motion
+(Landau, Lifshitz, Mechanics, section 22).
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import flint
+
+from verify.arithmetic.arb import rational_ball
+
+Ball = flint.arb
+
+
+def forced_oscillator(
+    values: Mapping[str, Fraction], start: tuple[Fraction, Fraction, Fraction], time: Fraction
+) -> tuple[Ball, Ball]:
+    """p and q after `time` from `start`, which is p, q, t; within the precision that is set.
+
+    `values`: omega0, gamma and omega, as `forced-oscillator` has them.
+    """
+    names = ("omega0", "gamma", "omega")
+    w, g, drive = (rational_ball(values[name]) for name in names)
+    p, q, t0 = map(rational_ball, start)
+    s, t = rational_ball(time), rational_ball(start[2] + time)
+    if values["omega0"] ** 2 != values["omega"] ** 2:
+        c = g / (w**2 - drive**2)
+        extra_q, extra_p = c * (drive * t).cos(), -c * drive * (drive * t).sin()
+        first_q, first_p = c * (drive * t0).cos(), -c * drive * (drive * t0).sin()
+    elif values["omega0"] == 0:
+        extra_q, extra_p, first_q, first_p = g * s**2 / 2, g * s, Ball(0), Ball(0)
+    else:
+        by = g / (2 * w)
+        extra_q, extra_p = by * s * (w * t).sin(), by * ((w * t).sin() + w * s * (w * t).cos())
+        first_q, first_p = Ball(0), by * (w * t0).sin()
+    free_q, free_p = q - first_q, p - first_p
+    cosine, sine = (w * s).cos(), (w * s).sin()
+    over = sine / w if values["omega0"] else s
+    return extra_p - free_q * w * sine + free_p * cosine, extra_q + free_q * cosine + free_p * over

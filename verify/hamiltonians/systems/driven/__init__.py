@@ -1,0 +1,1 @@
+"""Systems whose H depends on time."""
