@@ -7,6 +7,7 @@ import os
 import shlex
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from itertools import takewhile
 from pathlib import Path
@@ -175,12 +176,14 @@ def parse(arguments: list[str]) -> None:
 
 @contextlib.contextmanager
 def folder_of_a_user(folder: Path) -> Iterator[None]:
-    """Be in that folder, beside the repository's `reference`; what is imported there is let go.
+    """Be in that folder, beside the repository's `reference`; what is imported there is let go, as
+    is what other tests have imported from folders of theirs, whose files may have the same names.
 
     All is done in this process, as on a machine with one core: no result depends on that.
     """
     (folder / "reference").symlink_to(ROOT / "reference")
-    before, path = set(sys.modules), list(sys.path)
+    _forget(Path(tempfile.gettempdir()))
+    path = list(sys.path)
     environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
     with (
         contextlib.chdir(folder),
@@ -191,9 +194,15 @@ def folder_of_a_user(folder: Path) -> Iterator[None]:
             yield
         finally:
             sys.path[:] = path
-            for name in set(sys.modules) - before:
-                if str(getattr(sys.modules[name], "__file__", "")).startswith(str(folder)):
-                    del sys.modules[name]
+            _forget(folder)
+
+
+def _forget(folder: Path) -> None:
+    """Let go of all modules whose files are in that folder, but for those of this checkout."""
+    for name, module in list(sys.modules.items()):
+        file = str(getattr(module, "__file__", None) or "")
+        if file.startswith(f"{folder}{os.sep}") and not file.startswith(str(ROOT)):
+            del sys.modules[name]
 
 
 def read_through(page: str, folder: Path, *, by_hand: bool = False) -> Session:
