@@ -10,7 +10,7 @@ What a shape says is seen from how the formula is made:
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby
 from operator import attrgetter
@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.strategies.drives import drive
 from verify.strategies.terms import Drawer, Limits, Sum, combination, monomial, power
 from verify.strategies.user_terms import KINDS as KINDS
 from verify.strategies.user_terms import TERMS_BY_KIND, TermRequest
@@ -50,15 +51,20 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True)
 class Formula:
-    """The text of H, the values of its parameters, and whether H = T(p) + V(q)."""
+    """The text of H, the values of its parameters, whether H = T + V, and whether t is in it."""
 
     text: str
     parameters: tuple[tuple[str, Fraction], ...]
     separable: bool
+    timed: bool = False
 
     def hamiltonian(self) -> Hamiltonian:
         """H of that text, with its parameters' values."""
-        return Hamiltonian.parse(self.text, dict(self.parameters))
+        return Hamiltonian.parse(self.text, dict(self.parameters), time=self.timed)
+
+    def driven(self, by: str) -> "Formula":
+        """H and a term that depends on time."""
+        return replace(self, text=self.text + by, timed=True)
 
 
 def formulas(
@@ -68,10 +74,20 @@ def formulas(
     separable: bool | None = None,
     bounded: bool | None = None,
     with_parameters: bool = False,
+    time_dependent: bool = False,
 ) -> st.SearchStrategy[Formula]:
     """As `hamiltonians`, before they are parsed; parameters are names for some coefficients."""
     tree = _tree(_plans(kinds, limits, separable, bounded))
-    return _formulas(tree, limits, with_parameters)
+    found = _formulas(tree, limits, with_parameters)
+    return _driven(found, limits, bounded is True) if time_dependent else found
+
+
+@st.composite
+def _driven(
+    draw: st.DrawFn, still: st.SearchStrategy[Formula], limits: Limits, linear: bool
+) -> Formula:
+    found = draw(still)
+    return found.driven(drive(Drawer(draw, limits), linear=linear))
 
 
 def _plans(

@@ -24,6 +24,7 @@ def hamiltonians(
     separable: bool | None = None,
     bounded: bool | None = None,
     with_parameters: bool = False,
+    time_dependent: bool = False,
 ) -> st.SearchStrategy[Hamiltonian]:
     """Hamiltonians H(p, q) with rational coefficients, short enough to be read; never constant.
 
@@ -41,10 +42,16 @@ def hamiltonians(
 
     `with_parameters`: some coefficients are parameters `a` and `b`, with their values.
 
+    `time_dependent`: H(p, q, t), by a term in t beside: a force that grows, comes and goes or has a
+    chirp, a stiffness or a mass that changes. All the rest is then true at each t, and `bounded`
+    must not be False.
+
     >>> from hypothesis import find, settings
     >>> quietly = settings(database=None)
     >>> find(hamiltonians(), lambda h: True, settings=quietly).formula
     'p**2/2 + q**2/2'
+    >>> find(hamiltonians(time_dependent=True), lambda h: True, settings=quietly).formula
+    'p**2/2 + q**2/2 + q*t'
 
     Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
     exists, when it is called and not when it draws.
@@ -61,9 +68,15 @@ def hamiltonians(
     )
     yes_no_either("separable", separable)
     yes_no_either("bounded", bounded)
-    if not isinstance(with_parameters, bool):
-        raise InputError("with_parameters", with_parameters, "must be True or False")
+    for name, given in {
+        "with_parameters": with_parameters, "time_dependent": time_dependent
+    }.items():  # fmt: skip
+        if not isinstance(given, bool):
+            raise InputError(name, given, "must be True or False")
+    if time_dependent and bounded is False:
+        raise InputError("bounded", bounded, "is not known of an H in time; allowed: True, None")
     drawn = formulas(
-        kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters
-    )
+        kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters,
+        time_dependent=time_dependent,
+    )  # fmt: skip
     return drawn.map(Formula.hamiltonian)

@@ -1,0 +1,60 @@
+"""What makes a drawn H depend on time: a term in t that is added to it, and that nothing cancels.
+
+The forms are those of a driven oscillator, from a force that grows with t to a mass that changes;
+each is smooth for all real t, and is a function of q and t alone or of p and t alone, so that
+H = T + V stays so.
+"""
+
+from collections.abc import Callable
+
+from verify.strategies.terms import Drawer, power, quotient, times
+
+# A factor of t of each form, and what it stands with, the simplest first.
+_Form = Callable[[Drawer], str]
+
+
+def drive(d: Drawer, *, linear: bool) -> str:
+    """The term, with its sign; `linear`: in q, which what grows faster than that outgrows."""
+    forms = _LINEAR if linear else (*_LINEAR, *_OTHERS)
+    sign, size = d.pick(("+", "-")), d.positive()
+    term = d.pick(forms)(d)
+    top = "" if size.numerator == 1 else f"{size.numerator}*"
+    below = "" if size.denominator == 1 else f"/{size.denominator}"
+    return f" {sign} {top}{term}{below}"
+
+
+def _force_of_power(d: Drawer) -> str:
+    return f"q*{power('t', d.whole(1, 3))}"
+
+
+def _force_of_waves(d: Drawer) -> str:
+    return f"q*{d.pick(('cos', 'sin'))}({times(d.inner(), 't')})"
+
+
+def _chirp(d: Drawer) -> str:
+    """A force whose frequency grows."""
+    return f"q*sin({times(d.inner(), 't')} + t**2{_over(d)})"
+
+
+def _parametric(d: Drawer) -> str:
+    """A stiffness that comes and goes."""
+    return f"{power('q', d.whole(2, 4))}*cos({times(d.inner(), 't')})"
+
+
+def _shaken(d: Drawer) -> str:
+    """A pendulum whose point of support moves."""
+    return f"cos({times(d.inner(), 't')})*cos(q)"
+
+
+def _mass(d: Drawer) -> str:
+    """A kinetic energy that dies out in both directions of time."""
+    return f"p**2/(1 + t**2{_over(d)})"
+
+
+def _over(d: Drawer) -> str:
+    number = quotient(d.whole(0, d.limits.size - 1), d.limits.size)
+    return "" if number == 1 else f"/{number.numerator}"
+
+
+_LINEAR: tuple[_Form, ...] = (_force_of_power, _force_of_waves, _chirp)
+_OTHERS: tuple[_Form, ...] = (_parametric, _shaken, _mass)
