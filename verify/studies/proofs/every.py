@@ -1,10 +1,13 @@
 """The task of a proof for every H."""
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import Task
 from verify.scenes.results.proof import EveryResult
+
+if TYPE_CHECKING:
+    from verify.proof.every_proof import EveryProof
 
 _COST = 20_000_000  # of a proof, about
 
@@ -26,7 +29,12 @@ class EveryTask(Task):
     def compute(self, keeper: Keeper) -> EveryResult:
         """The proof for every H, as a result."""
         from verify.proof.every import prove_every
-        from verify.proof.every_in_time import prove_every_in_time
 
-        proof = prove_every_in_time(self.scheme) if self.timed else prove_every(self.scheme)
+        proof = _in_time(self.scheme) if self.timed else prove_every(self.scheme)
         return EveryResult(**{name: getattr(proof, name) for name in EveryResult.model_fields})
+
+
+def _in_time(scheme: str) -> "EveryProof":
+    from verify.proof.every_in_time import prove_every_in_time
+
+    return prove_every_in_time(scheme)
