@@ -5,17 +5,41 @@ each is smooth for all real t, and is a function of q and t alone or of p and t 
 H = T + V stays so.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 
-from verify.strategies.terms import Drawer, power, quotient, times
+from hypothesis import strategies as st
 
-# A factor of t of each form, and what it stands with, the simplest first.
+from verify.strategies.formulas import Formula
+from verify.strategies.terms import Drawer, Limits, power, quotient, times
+
 _Form = Callable[[Drawer], str]
 
 
-def drive(d: Drawer, *, linear: bool) -> str:
-    """The term, with its sign; `linear`: in q, which what grows faster than that outgrows."""
-    forms = _LINEAR if linear else (*_LINEAR, *_OTHERS)
+@st.composite
+def driven(
+    draw: st.DrawFn,
+    still: st.SearchStrategy[Formula],
+    kinds: Sequence[str],
+    limits: Limits,
+    *,
+    linear: bool,
+) -> Formula:
+    """Formulas with such a term beside, which in p and q is of one of the kinds, and of no higher
+    degree than the limits say; `linear`: in q, which what grows faster than that outgrows."""
+    found = draw(still)
+    d = Drawer(draw, limits)
+    return found.driven(_drive(d, _LINEAR if linear else [*_LINEAR, *_others(kinds, limits)]))
+
+
+def _others(kinds: Sequence[str], limits: Limits) -> Iterator[_Form]:
+    if limits.degree > 1:
+        yield from (_parametric, _mass)
+    if "trigonometric" in kinds:
+        yield _shaken
+
+
+def _drive(d: Drawer, forms: Sequence[_Form]) -> str:
+    """The term, with its sign."""
     sign, size = d.pick(("+", "-")), d.positive()
     term = d.pick(forms)(d)
     top = "" if size.numerator == 1 else f"{size.numerator}*"
@@ -38,7 +62,7 @@ def _chirp(d: Drawer) -> str:
 
 def _parametric(d: Drawer) -> str:
     """A stiffness that comes and goes."""
-    return f"{power('q', d.whole(2, 4))}*cos({times(d.inner(), 't')})"
+    return f"{power('q', d.whole(2, min(4, d.limits.degree)))}*cos({times(d.inner(), 't')})"
 
 
 def _shaken(d: Drawer) -> str:
@@ -56,5 +80,4 @@ def _over(d: Drawer) -> str:
     return "" if number == 1 else f"/{number.numerator}"
 
 
-_LINEAR: tuple[_Form, ...] = (_force_of_power, _force_of_waves, _chirp)
-_OTHERS: tuple[_Form, ...] = (_parametric, _shaken, _mass)
+_LINEAR: Sequence[_Form] = (_force_of_power, _force_of_waves, _chirp)

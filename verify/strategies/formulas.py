@@ -20,7 +20,6 @@ from hypothesis import strategies as st
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.strategies.drives import drive
 from verify.strategies.terms import Drawer, Limits, Sum, combination, monomial, power
 from verify.strategies.user_terms import KINDS as KINDS
 from verify.strategies.user_terms import TERMS_BY_KIND, TermRequest
@@ -74,20 +73,10 @@ def formulas(
     separable: bool | None = None,
     bounded: bool | None = None,
     with_parameters: bool = False,
-    time_dependent: bool = False,
 ) -> st.SearchStrategy[Formula]:
     """As `hamiltonians`, before they are parsed; parameters are names for some coefficients."""
     tree = _tree(_plans(kinds, limits, separable, bounded))
-    found = _formulas(tree, limits, with_parameters)
-    return _driven(found, limits, bounded is True) if time_dependent else found
-
-
-@st.composite
-def _driven(
-    draw: st.DrawFn, still: st.SearchStrategy[Formula], limits: Limits, linear: bool
-) -> Formula:
-    found = draw(still)
-    return found.driven(drive(Drawer(draw, limits), linear=linear))
+    return _formulas(tree, limits, with_parameters)
 
 
 def _plans(

@@ -8,6 +8,7 @@ from verify.algebra.limits import MAX_EXPONENT
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import whole, yes_no_either
+from verify.strategies.drives import driven
 from verify.strategies.formulas import KINDS as KINDS
 from verify.strategies.formulas import Formula, formulas
 from verify.strategies.terms import Limits
@@ -42,9 +43,10 @@ def hamiltonians(
 
     `with_parameters`: some coefficients are parameters `a` and `b`, with their values.
 
-    `time_dependent`: H(p, q, t), by a term in t beside: a force that grows, comes and goes or has a
-    chirp, a stiffness or a mass that changes. All the rest is then true at each t, and `bounded`
-    must not be False.
+    `time_dependent`: H(p, q, t), by one term in t more: a force that grows, comes and goes or has a
+    chirp, a stiffness or a mass that changes. `kinds` and `degree` are of H as a function of p and
+    q, at each t; so is `bounded`, which must not be False: H → ∞ in every direction at each t, but
+    a force in resonance drives an orbit to infinity.
 
     >>> from hypothesis import find, settings
     >>> quietly = settings(database=None)
@@ -76,7 +78,8 @@ def hamiltonians(
     if time_dependent and bounded is False:
         raise InputError("bounded", bounded, "is not known of an H in time; allowed: True, None")
     drawn = formulas(
-        kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters,
-        time_dependent=time_dependent,
-    )  # fmt: skip
+        kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters
+    )
+    if time_dependent:
+        drawn = driven(drawn, kinds, limits, linear=bounded is True)
     return drawn.map(Formula.hamiltonian)

@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import pytest
 import sympy
-from hypothesis import HealthCheck, given, reject, settings
+from hypothesis import HealthCheck, find, given, reject, settings
 from hypothesis import strategies as st
 
 from verify.algebra.formula import symbol, to_text
@@ -128,9 +128,15 @@ def test_h_and_t0_may_be_shifted_together(
     here, there = one_step(made, scheme, t0, 3), one_step(shifted, scheme, t0 - shift, 3)
     for (x, x_bound), (y, y_bound) in zip(here, there, strict=True):
         assert abs(x - y) <= x_bound + y_bound
-    if shift > 1 and made.formula.endswith("q*t"):  # the shift alone is seen
-        still = one_step(shifted, scheme, t0, 3)
-        assert any(abs(x - y) > b + c for (x, b), (y, c) in zip(here, still, strict=True))
+
+
+@pytest.mark.parametrize("scheme", ["lie2", "rk4"])
+def test_a_shift_of_h_alone_is_seen(scheme: str) -> None:
+    made, moved = (
+        Hamiltonian.parse(f"p**2/2 + q**2/2 + q*({time})", time=True) for time in ("t", "t + 1")
+    )
+    here, there = (one_step(x, scheme, Fraction(1), 3) for x in (made, moved))
+    assert any(abs(x - y) > b + c for (x, b), (y, c) in zip(here, there, strict=True))
 
 
 @few
@@ -181,7 +187,7 @@ def test_lie2_is_of_order_3_with_the_divergence_as_its_coefficient(made: Hamilto
 @few
 @given(made=separable)
 def test_splittings_and_the_midpoint_rule_preserve_area(made: Hamiltonian) -> None:
-    for name in ("stormer-verlet", "implicit-midpoint", "forest-ruth, clock frozen"):
+    for name in ("stormer-verlet", "implicit-midpoint", "gauss4", "forest-ruth, clock frozen"):
         try:
             step = get(name).step_map(made)
         except InputError:  # too long
@@ -207,6 +213,24 @@ def test_what_is_drawn_has_t_and_reads_back(made: Hamiltonian) -> None:
 def test_separable_and_bounded_stay_so(made: Hamiltonian) -> None:
     assert made.field()[0].separable()
     assert sympy.Poly(made.exact.diff(t).subs(p, 0), q).degree() == 1  # which the rest outgrows
+
+
+@few
+@given(made=hamiltonians(["polynomial"], time_dependent=True, degree=2))
+def test_kinds_and_degree_are_kept_at_each_t(made: Hamiltonian) -> None:
+    assert sympy.Poly(made.exact.subs(t, sympy.Rational(1, 3)), p, q).total_degree() <= 2
+
+
+@pytest.mark.parametrize(("kinds", "degree"), [(["trigonometric"], 6), (["polynomial"], 3)])
+def test_what_exceeds_them_is_drawn_where_it_is_allowed(kinds: list[str], degree: int) -> None:
+    """The control of the test above: there is something to keep out."""
+
+    def beyond(made: Hamiltonian) -> bool:
+        driving = made.exact.diff(t)
+        return driving.has(sympy.cos(q)) or driving.diff(q, 3) != 0
+
+    quietly = settings(few, max_examples=1000)
+    assert find(hamiltonians(kinds, time_dependent=True, degree=degree), beyond, settings=quietly)
 
 
 def test_bad_arguments_are_refused_in_one_line() -> None:
