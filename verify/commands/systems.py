@@ -31,7 +31,7 @@ def _row(system: "System") -> dict[str, Any]:
         "hamiltonian": system.formula,
         "parameters": dict(system.parameters),
         "regimes": {name: dict(values) for name, values in system.regimes.items()},
-        "exact_flow": (system.flow or system.flow_in_time) is not None,
+        "exact_flow": system.has_closed_form,
         "source": system.source,
     }
 

@@ -46,12 +46,14 @@ def evaluate(motion: Motion, start: Start, time: Fraction, digits: int) -> Evalu
     if motion.rest or time == 0:
         return Evaluation(*start, Fraction(0))
     ends_after(motion, time)
-    least, at = max(map(abs, start)), exactly(time)
+    at = exactly(time)
+    return enclosed(lambda: motion.state(arb(at)), start, digits)
 
-    def found() -> Evaluation | None:
-        return _on_grid(motion.state(arb(at)), arb(exactly(least)), digits)
 
-    return until(found, digits)
+def enclosed(state: Callable[[], State], start: Start, digits: int) -> Evaluation:
+    """What the balls of `state` hold, with a bound as `evaluate` has it; NoFlowError as there."""
+    least = exactly(max(map(abs, start)))
+    return until(lambda: _on_grid(state(), arb(least), digits), digits)
 
 
 def until(found: Callable[[], T | None], digits: int) -> T:

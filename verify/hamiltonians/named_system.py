@@ -3,13 +3,12 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
 from verify.arithmetic.exact import Exact, rational
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.motion import Flow, Values
+from verify.hamiltonians.motion import Flow, State, Values
 
-FlowInTime = Callable[[Values, tuple[Fraction, Fraction, Fraction], Fraction], tuple[Any, Any]]
+FlowInTime = Callable[[Values, tuple[Fraction, Fraction, Fraction], Fraction], State]
 Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
 
 
@@ -20,8 +19,7 @@ class System:
     `flow` is its exact flow in closed form, where that is known; of an H that depends on time,
     `flow_in_time` gives p and q for (parameters, p, q and t at the start, how long). Without one,
     `goes` may say of (parameters, p, q) how the orbit goes to infinity as t grows: None where it
-    stays bounded.
-    `regimes` are examples of the kinds of orbits that it has.
+    stays bounded. `regimes` are examples of the kinds of orbits that it has.
     """
 
     name: str
@@ -48,6 +46,11 @@ class System:
     def time_dependent(self) -> bool:
         """Whether t is in H."""
         return self.hamiltonian().time_dependent
+
+    @property
+    def has_closed_form(self) -> bool:
+        """Whether its exact flow is known in closed form."""
+        return (self.flow or self.flow_in_time) is not None
 
     def regime(self, name: str) -> tuple[Values, Fraction, Fraction]:
         """The parameters, p and q of an example."""

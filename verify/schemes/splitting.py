@@ -79,12 +79,16 @@ def right_times(parts: Sequence[Part]) -> tuple[sympy.Expr, ...]:
     >>> right_times(alternating("kick", [sympy.Rational(1, 2), sympy.S.One, sympy.Rational(1, 2)]))
     (0, 1/2, 1)
     """
-    clocks = dict.fromkeys(LETTERS, sympy.S.Zero)
-    found = []
+    return sums_before(parts, own=False)
+
+
+def sums_before(parts: Sequence[Part], *, own: bool) -> tuple[sympy.Expr, ...]:
+    """What the parts of its own kind, or of the other kind, add up to before each."""
+    sums, found = dict.fromkeys(LETTERS, sympy.S.Zero), []
     for kind, size in parts:
-        (other,) = (each for each in LETTERS if each != kind)
-        found.append(clocks[other])
-        clocks[kind] += size
+        (read,) = (each for each in LETTERS if (each == kind) is own)
+        found.append(sums[read])
+        sums[kind] += size
     return tuple(found)
 
 

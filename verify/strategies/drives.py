@@ -6,11 +6,12 @@ H = T + V stays so.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from hypothesis import strategies as st
 
 from verify.strategies.formulas import Formula
-from verify.strategies.terms import Drawer, Limits, power, quotient, times
+from verify.strategies.terms import Drawer, Limits, Sum, power, times
 
 _Form = Callable[[Drawer], str]
 
@@ -27,8 +28,8 @@ def driven(
     """Formulas with such a term beside, which in p and q is of one of the kinds, and of no higher
     degree than the limits say; `linear`: in q, which what grows faster than that outgrows."""
     found = draw(still)
-    d = Drawer(draw, limits)
-    return found.driven(_drive(d, _LINEAR if linear else [*_LINEAR, *_others(kinds, limits)]))
+    forms = _LINEAR if linear else [*_LINEAR, *_others(kinds, limits)]
+    return replace(found, text=found.text + _drive(Drawer(draw, limits), forms))
 
 
 def _others(kinds: Sequence[str], limits: Limits) -> Iterator[_Form]:
@@ -41,10 +42,9 @@ def _others(kinds: Sequence[str], limits: Limits) -> Iterator[_Form]:
 def _drive(d: Drawer, forms: Sequence[_Form]) -> str:
     """The term, with its sign."""
     sign, size = d.pick(("+", "-")), d.positive()
-    term = d.pick(forms)(d)
-    top = "" if size.numerator == 1 else f"{size.numerator}*"
-    below = "" if size.denominator == 1 else f"/{size.denominator}"
-    return f" {sign} {top}{term}{below}"
+    term = Sum()
+    term.add(size, d.pick(forms)(d))
+    return f" {sign} {term.written({})}"
 
 
 def _force_of_power(d: Drawer) -> str:
@@ -76,8 +76,8 @@ def _mass(d: Drawer) -> str:
 
 
 def _over(d: Drawer) -> str:
-    number = quotient(d.whole(0, d.limits.size - 1), d.limits.size)
-    return "" if number == 1 else f"/{number.numerator}"
+    number = d.whole(1, d.limits.size)
+    return "" if number == 1 else f"/{number}"
 
 
 _LINEAR: Sequence[_Form] = (_force_of_power, _force_of_waves, _chirp)

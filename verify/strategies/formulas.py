@@ -10,7 +10,7 @@ What a shape says is seen from how the formula is made:
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby
 from operator import attrgetter
@@ -50,20 +50,15 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True)
 class Formula:
-    """The text of H, the values of its parameters, whether H = T + V, and whether t is in it."""
+    """The text of H, the values of its parameters, and whether H = T + V; t may be in both."""
 
     text: str
     parameters: tuple[tuple[str, Fraction], ...]
     separable: bool
-    timed: bool = False
 
     def hamiltonian(self) -> Hamiltonian:
         """H of that text, with its parameters' values."""
-        return Hamiltonian.parse(self.text, dict(self.parameters), time=self.timed)
-
-    def driven(self, by: str) -> "Formula":
-        """H and a term that depends on time."""
-        return replace(self, text=self.text + by, timed=True)
+        return Hamiltonian.parse(self.text, dict(self.parameters), time=True)
 
 
 def formulas(

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from verify.algebra.limits import MAX_EXPONENT
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.strategies.arguments import whole, yes_no_either
+from verify.strategies.arguments import whole, yes_no, yes_no_either
 from verify.strategies.drives import driven
 from verify.strategies.formulas import KINDS as KINDS
 from verify.strategies.formulas import Formula, formulas
@@ -70,11 +70,8 @@ def hamiltonians(
     )
     yes_no_either("separable", separable)
     yes_no_either("bounded", bounded)
-    for name, given in {
-        "with_parameters": with_parameters, "time_dependent": time_dependent
-    }.items():  # fmt: skip
-        if not isinstance(given, bool):
-            raise InputError(name, given, "must be True or False")
+    yes_no("with_parameters", with_parameters)
+    yes_no("time_dependent", time_dependent)
     if time_dependent and bounded is False:
         raise InputError("bounded", bounded, "is not known of an H in time; allowed: True, None")
     drawn = formulas(

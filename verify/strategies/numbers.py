@@ -11,7 +11,7 @@ from verify.arithmetic.exact import Exact, magnitude, rational
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.values import InitialValue
-from verify.strategies.arguments import whole
+from verify.strategies.arguments import whole, yes_no
 from verify.strategies.terms import signed_quotient
 
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
@@ -60,9 +60,7 @@ def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrate
     bound = rational(most, "most")
     if bound <= 0:
         raise InputError("most", most, "must be greater than 0")
-    if not isinstance(extreme, bool):
-        raise InputError("extreme", extreme, "must be True or False")
-    numbers = _coordinates(bound, extreme)
+    numbers = _coordinates(bound, yes_no("extreme", extreme))
     return st.builds(InitialValue, q=numbers, p=numbers)
 
 

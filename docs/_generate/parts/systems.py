@@ -13,7 +13,7 @@ def text() -> str:
 
 
 def _section(system: System) -> Iterator[str]:
-    flow = "in closed form" if system.flow or system.flow_in_time else "by numbers"
+    flow = "in closed form" if system.has_closed_form else "by numbers"
     yield f"### {system.name}"
     yield f"{prose(system.title)}: H = {code(system.formula)}. The exact flow is known {flow}."
     if system.parameters:

@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
 
-from verify.arithmetic.exact import text
-from verify.pages.text.typography import NBSP, between, number, step, whole
+from verify.pages.text.typography import NBSP, between, interval, number, step, whole
 from verify.scenes.results.separation import (
     WAYS,
     CrossoverResult,
@@ -71,5 +70,4 @@ def end_of(points: Sequence[SeparationResult]) -> str:
     lengths = {Fraction(point.step_size) * point.steps for point in points}
     if len(lengths) != 1:
         return ""
-    start = points[0].t0
-    return f", over [{number(start)}, {number(text(Fraction(start) + max(lengths)))}]"
+    return f", over {interval(points[0].t0, max(lengths), number)}"

@@ -5,16 +5,14 @@ The drawing, and with it matplotlib, is imported only where something is drawn.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from math import isfinite, log10
 from statistics import median
 from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
-from verify.arithmetic.exact import text
 from verify.pages.figures.captioned_plot import Plot, plotted
 from verify.pages.figures.logarithm import lg
-from verify.pages.text.typography import listed
+from verify.pages.text.typography import interval, listed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import LimitedBy, WorkLine, WorkPoint, WorkPrecisionResult
 
@@ -45,7 +43,7 @@ def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
     yield plotted(
         lambda: draw_panels(lettered),
         name=f"work-of-{name}",
-        lead=f"Over [{found.t0}, {text(Fraction(found.t0) + Fraction(found.time))}]: {what}",
+        lead=f"Over {interval(found.t0, found.time)}: {what}",
         caption=" ".join(caption for own_panels, caption in told if own_panels and caption),
     )
 

@@ -5,14 +5,12 @@ The drawing, and with it matplotlib, is imported only where something is drawn.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from verify.arithmetic.exact import text
 from verify.pages.figures.captioned_plot import Plot, computed, plotted
 from verify.pages.sections.claim_view import ClaimView
-from verify.pages.text.typography import is_decimal
+from verify.pages.text.typography import interval, is_decimal
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
@@ -24,10 +22,6 @@ if TYPE_CHECKING:
 # -- against the step size ------------------------------------------------------------------------
 
 
-def _end(scene: SceneResult) -> str:
-    return text(Fraction(scene.t0) + Fraction(scene.time or 0))
-
-
 def against_step_size(
     runs: Sequence[RunResult], scene: SceneResult, proof: ProofResult, *, name: str
 ) -> Iterator[Plot]:
@@ -37,7 +31,7 @@ def against_step_size(
     from verify.pages.figures import figures
 
     order = proof.order
-    span = f"over [{scene.t0}, {_end(scene)}]" if scene.time else "over all steps"
+    span = f"over {interval(scene.t0, scene.time)}" if scene.time else "over all steps"
     of_lam = (order - 1, order) if order is not None and order > 1 else ()
     of_ratio = (order, order + 1) if order is not None else ()
     lam = figures.Quantity("|Λ|", figures.lines(runs, "lambda"), of_lam)

@@ -4,11 +4,13 @@ A number keeps exactly the digits it comes with.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from decimal import Decimal, InvalidOperation
+from fractions import Fraction
 
 from markupsafe import Markup, escape
 
+from verify.arithmetic.exact import text
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.run import RunResult
@@ -127,10 +129,18 @@ def grouped(text: str) -> Markup:
 
 def start(run: RunResult | SeparationResult | AverageResult | WorkPrecisionResult) -> str:
     """A run's initial value, and when it starts, where that is not 0."""
-    at = {"q₀": run.q, "p₀": run.p, "t₀": getattr(run, "t0", "0")}
-    return ", ".join(
-        f"{name}{NBSP}={NBSP}{number(x)}" for name, x in at.items() if name != "t₀" or x != "0"
-    )
+    t0 = getattr(run, "t0", "0")
+    at = {"q₀": run.q, "p₀": run.p} | ({} if t0 == "0" else {"t₀": t0})
+    return ", ".join(f"{name}{NBSP}={NBSP}{number(x)}" for name, x in at.items())
+
+
+def interval(t0: str, length: Fraction | str, shown: Callable[[str], str] = str) -> str:
+    """[t₀, t₀ + length], each end as `shown` writes it.
+
+    >>> interval("1/3", "2")
+    '[1/3, 7/3]'
+    """
+    return f"[{shown(t0)}, {shown(text(Fraction(t0) + Fraction(length)))}]"
 
 
 def listed(items: Iterable[str]) -> str:

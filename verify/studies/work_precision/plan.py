@@ -40,16 +40,18 @@ def _peers(asked: bool | None, timed: bool) -> tuple[tuple[str, ...], tuple[tupl
     for name, library in peers.libraries().items():
         if asked is False:
             left_out.append((name, "the scene says `peers = false`"))
-        elif timed and asked:
-            problem = "is given no H that depends on time as yet"
-            raise InputError("work_precision.peers", "true", problem)
-        elif timed:
-            left_out.append((name, "it is given no H that depends on time as yet"))
-        elif find_spec(library) is not None:
+        elif not (problem := _problem(library, timed)):
             drawn.append(name)
         elif asked:
-            problem = f"{library} is not installed; the extra `peers` has it"
             raise InputError("work_precision.peers", "true", problem)
         else:
-            left_out.append((name, f"{library} is not installed; the extra `peers` has it"))
+            left_out.append((name, problem))
     return tuple(drawn), tuple(left_out)
+
+
+def _problem(library: str, timed: bool) -> str:
+    """Why it cannot be drawn; empty where it can."""
+    if timed:
+        return "it is given no H that depends on time as yet"
+    installed = find_spec(library) is not None
+    return "" if installed else f"{library} is not installed; the extra `peers` has it"

@@ -25,7 +25,6 @@ from verify.flows.solution import Solution, exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
-from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
@@ -127,8 +126,7 @@ class Ladder:
 
     def _kernel_run(self, h: Fraction, observables: frozenset[str]) -> KernelRun:
         of = self.problem
-        orbit = Orbit(of.hamiltonian, self.name, h, of.q, of.p, t0=of.t0)
-        start, steps = orbit.start, of.time // h
+        start, steps = {"p": of.p, "q": of.q, "h": h, "t": of.t0}, of.time // h
         return KernelRun(of.hamiltonian, self.name, start, steps, observables, points=0)
 
     def _loop(self, h: Fraction) -> ChunkedLoop:

@@ -16,8 +16,8 @@ import sympy
 
 from verify.errors import InputError
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import LETTERS, Part, Splitting
+from verify.schemes.splitting import splitting, sums_before
+from verify.schemes.splitting_conditions import Part, Splitting
 
 EXAMPLES = ()  # its names are the users' own
 _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")
@@ -44,21 +44,12 @@ def make(name: str) -> Scheme | None:
         order=base.order,
         symmetric=False,
         source=f"{base.source}; with a wrong clock",
-        times=tuple(_CLOCKS[how](parts)),
+        times=_CLOCKS[how](parts),
     )
 
 
-def _own_sums(parts: Sequence[Part]) -> list[sympy.Expr]:
-    """What the parts of its own kind add up to before each."""
-    sums, found = dict.fromkeys(LETTERS, sympy.S.Zero), []
-    for kind, size in parts:
-        found.append(sums[kind])
-        sums[kind] += size
-    return found
-
-
-_CLOCKS: Mapping[str, Callable[[Sequence[Part]], list[sympy.Expr]]] = {
-    "frozen": lambda parts: [sympy.S.Zero] * len(parts),
-    "at the end": lambda parts: [sympy.S.One] * len(parts),
-    "exchanged": _own_sums,
+_CLOCKS: Mapping[str, Callable[[Sequence[Part]], tuple[sympy.Expr, ...]]] = {
+    "frozen": lambda parts: (sympy.S.Zero,) * len(parts),
+    "at the end": lambda parts: (sympy.S.One,) * len(parts),
+    "exchanged": lambda parts: sums_before(parts, own=True),
 }
