@@ -27,6 +27,7 @@ from verify.proof.certificates.established import established
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
 from verify.proof.potential import potential_of
 from verify.schemes import get, names
@@ -41,6 +42,9 @@ HAMILTONIANS = (
     "p**2/2 + sin(exp(q))/(d + q**2)",
     "p**2/2 + q**3/3",
     "cos(p)*sin(q)",
+    "p**2/2 - (1 + cos(2*t)/2)*cos(q)",
+    "p**2/2 + d*q**3/(1 + t**2)",
+    "t*p*q + exp(t)*q**2",
 )
 OF_ONE = ("lie1", "lie2", "lie3", "symplectic-euler", "stormer-verlet", "rk4")
 
@@ -53,17 +57,18 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
         for name in OF_ONE:
             scheme = get(name)
             try:
-                proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
+                hamiltonian = Hamiltonian.parse(text, time=True)
+                proof = prove(scheme.step_map(hamiltonian), scheme)
                 found.append(of_one(proof, potential_of(proof, scheme)))
             except InputError:
                 continue
     for name in (*names(), "lie1", "lie2", "lie3"):
         every = get(name).every_h
         for separable in (False, True) if every and not every.separable else (True,):
-            try:
+            with suppress(InputError):
                 found.append(of_every(prove_every(name, separable)))
-            except InputError:
-                continue
+        with suppress(InputError):
+            found.append(of_every(prove_every_in_time(name)))
     texts = dict.fromkeys(map(json.dumps, found))
     return tuple(json.loads(text) for text in texts if len(text) <= longest)
 
@@ -74,11 +79,13 @@ Place = tuple[Any, Any]  # a list or an object, and an index or key in it
 NUMBERS = ("0", "1", "-1", "2", "1/2", "-3/7", "1/0", "1e999999999", "-", "9" * 2000, "٣", "0.5",
            "1/" + "7" * 1999, "nan", " 1", "1_0", "")  # fmt: skip
 WHOLES = (-1, -3, 0, 1, 2, 3, 4, 8, 64, 10**9, True, False, None, 2.0, "2", [], 10**4000)
-NAMES = ("p", "q", "h", "d", "e", "#1", "#2", "#3", "#9", "H_", "H_p", "H_q", "H_pq", "H_qp",
-         "H_pp", "H_" + "q" * 300, "sin", "\x1b[2J", "x y", "𝑝", "")  # fmt: skip
+NAMES = ("p", "q", "t", "h", "d", "e", "#1", "#2", "#3", "#9", "H_", "H_p", "H_q", "H_pq", "H_qp",
+         "H_pp", "H_t", "H_pt", "H_qtt", "H_tp", "H_" + "q" * 300, "sin", "\x1b[2J", "x y", "𝑝",
+         "")  # fmt: skip
 KINDS = ("sin", "cos", "exp", "inverse", "log", "")
-KEYS = ("hamiltonian", "separable", "parameters", "functions", "p_next", "q_next", "leading",
-        "order", "convergence_order", "potential", "witness", "cofactors", "stages", "scheme", "x",
+KEYS = ("hamiltonian", "separable", "time_dependent", "parameters", "functions", "p_next",
+        "q_next", "leading", "order", "convergence_order", "potential", "witness", "cofactors",
+        "stages", "scheme", "x",
 )  # fmt: skip
 
 
@@ -173,6 +180,7 @@ def another_function(data: Data, rng: random.Random) -> None:
         ],
         [["#90", "exp", [["999999", "q"]]]],
         [["#90", "sin", [["1", "p"]]]],
+        [["#90", "sin", [["1", "t"]]], ["#91", "cos", [["1", "t"]]]],
         [["p", "exp", [["1", "q"]]]],
         [["#90", "inverse", [["1", "#90"]]]],
         [["#90", "inverse", [["1", "q"]]]],
@@ -185,6 +193,21 @@ def another_function(data: Data, rng: random.Random) -> None:
     if isinstance(cofactors, dict):
         what = f"{rng.choice(['p', 'q', 'det'])} {rng.randrange(5)}"
         cofactors[what] = {name: [["1"], ["1", name]]}
+
+
+def another_clock(data: Data, rng: random.Random) -> None:
+    """t stands where a parameter stood, or the other way round, or is no longer said to be time."""
+    timed = data.get("time_dependent") is True
+    match rng.randrange(4):
+        case 0:
+            data["time_dependent"] = not timed
+        case 1:
+            data.pop("time_dependent", None)
+        case 2:
+            old, new = ('"d"', '"t"') if rng.random() < 0.5 else ('"t"', '"d"')
+            data |= json.loads(json.dumps(data).replace(old, new))
+        case _ if isinstance(data.get("parameters"), list):
+            data["parameters"].append("t")
 
 
 def less_is_said(data: Data, rng: random.Random) -> None:
@@ -207,7 +230,7 @@ def less_is_said(data: Data, rng: random.Random) -> None:
 
 WAYS: tuple[Callable[[Data, random.Random], None], ...] = (
     another_value, another_value, another_shape, another_term, another_entry, another_function,
-    less_is_said,
+    another_clock, less_is_said,
 )  # fmt: skip
 
 

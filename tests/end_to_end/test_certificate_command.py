@@ -9,14 +9,18 @@ from tests.end_to_end.test_command_line import here, json_of
 
 ONE = ["prove", "--system", "pendulum", "--scheme", "lie2"]
 EVERY = ["prove", "--every-hamiltonian", "--scheme", "lie4"]
+DRIVEN = ["prove", "--system", "driven-pendulum", "--scheme", "lie2"]
+EVERY_IN_TIME = ["prove", "--every-hamiltonian", "--time-dependent", "--scheme", "lie3"]
 # H has functions, or the map stages, that the checker does not know.
 OTHERS = [
     ["prove", "--hamiltonian", "p**2/2 + log(q)", "--scheme", "lie2"],
     ["prove", "--system", "pendulum", "--scheme", "stormer-verlet"],
+    ["prove", "--hamiltonian", "p**2/2 + t*log(q)", "--scheme", "lie2"],
+    ["prove", "--system", "driven-pendulum", "--scheme", "stormer-verlet"],
 ]
 
 
-@pytest.mark.parametrize("command", [ONE, EVERY, *OTHERS], ids=" ".join)
+@pytest.mark.parametrize("command", [ONE, EVERY, DRIVEN, EVERY_IN_TIME, *OTHERS], ids=" ".join)
 def test_what_is_proved_has_a_certificate_that_holds(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, command: list[str]
 ) -> None:
@@ -27,6 +31,8 @@ def test_what_is_proved_has_a_certificate_that_holds(
     assert ("for every H" in err) is (command in OTHERS)
     status, out, _ = here(capsys, "certificate", "check", str(path))
     assert (status, out.split(":")[0]) == (0, "holds")
+    timed = "driven-pendulum" in command or "--time-dependent" in command or "t*log" in str(command)
+    assert (", t)" in out or "cos(t" in out or "cos(omega*t" in out) is timed
 
 
 def test_a_changed_certificate_is_refused_with_status_1(

@@ -92,9 +92,6 @@ def test_an_h_that_depends_on_time_is_not_for_every_command(
         name, *rest = command.split()
         told(capsys, [name, "--scheme", "lie2", "--hamiltonian", formula, *rest], words)
     lie2 = ["prove", "--scheme", "lie2"]
-    told(capsys, [*lie2, "--hamiltonian", formula, "--certificate", "c.json"], ("as yet",))
-    timed = [*lie2, "--every-hamiltonian", "--time-dependent", "--certificate", "c.json"]
-    told(capsys, timed, ("as yet",))
     told(capsys, [*lie2, "--time-dependent", "--hamiltonian", formula], ("--time-dependent",))
 
 

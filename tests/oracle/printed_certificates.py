@@ -1,7 +1,7 @@
 """Whether what a checked certificate prints is true, from the printed formulas alone.
 
 In numbers of 100 digits, or more, at random points. Formulas are read by Python's own parser;
-values carry their derivatives by p and q, and powers of h or t as truncated series. Nothing here
+values carry their derivatives by p, q and t, and powers of h as truncated series. Nothing here
 comes from `verify`: not the reading of formulas, not the arithmetic, not the flow.
 """
 
@@ -70,29 +70,35 @@ class Series:
 
 @dataclass
 class Dual:
-    """A series with its derivatives by p and q."""
+    """A series with its derivatives by p, q and t."""
 
     v: Series
     p: Series
     q: Series
+    t: Series
+
+    @property
+    def slopes(self) -> tuple[Series, Series, Series]:
+        return self.p, self.q, self.t
 
     def like(self, x: Any) -> "Dual":
-        zero = self.v.like(0)
-        return x if isinstance(x, Dual) else Dual(self.v.like(x), zero, zero)
+        return x if isinstance(x, Dual) else Dual(self.v.like(x), *[self.v.like(0)] * 3)
 
     def __add__(self, other: Any) -> "Dual":
         o = self.like(other)
-        return Dual(self.v + o.v, self.p + o.p, self.q + o.q)
+        slopes = (a + b for a, b in zip(self.slopes, o.slopes, strict=True))
+        return Dual(self.v + o.v, *slopes)
 
     def __neg__(self) -> "Dual":
-        return Dual(-self.v, -self.p, -self.q)
+        return Dual(-self.v, *(-a for a in self.slopes))
 
     def __mul__(self, other: Any) -> "Dual":
         o = self.like(other)
-        return Dual(self.v * o.v, self.p * o.v + self.v * o.p, self.q * o.v + self.v * o.q)
+        slopes = (a * o.v + self.v * b for a, b in zip(self.slopes, o.slopes, strict=True))
+        return Dual(self.v * o.v, *slopes)
 
     def chained(self, value: Series, slope: Series) -> "Dual":
-        return Dual(value, slope * self.p, slope * self.q)
+        return Dual(value, *(slope * a for a in self.slopes))
 
     def inverse(self) -> "Dual":
         one = self.v.inverse()
@@ -159,24 +165,33 @@ def _value(node: ast.expr, names: Names, zero: Dual) -> Dual:
 class Polynomial:
     """A polynomial H with random coefficients, whose derivatives at a point are as good as free."""
 
-    terms: tuple[tuple[int, int, Any], ...]
+    terms: tuple[tuple[int, int, int, Any], ...]
 
     @classmethod
-    def drawn(cls, rng: random.Random, degree: int, *, separable: bool) -> "Polynomial":
-        powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-        kept = [(i, j) for i, j in powers if not (separable and i and j)]
-        return cls(tuple((i, j, MP.mpf(rng.randint(-99, 99)) / 64) for i, j in kept))
+    def drawn(
+        cls, rng: random.Random, degree: int, *, separable: bool, timed: bool = False
+    ) -> "Polynomial":
+        powers = [
+            (i, j, k)
+            for i in range(degree + 1)
+            for j in range(degree + 1 - i)
+            for k in range(degree + 1 - i - j if timed else 1)
+        ]
+        kept = [each for each in powers if not (separable and each[0] and each[1])]
+        return cls(tuple((*each, MP.mpf(rng.randint(-99, 99)) / 64) for each in kept))
 
-    def derivative(self, m: int, n: int, p: Dual, q: Dual) -> Dual:
-        """∂ᵐ/∂pᵐ ∂ⁿ/∂qⁿ H at (p, q)."""
-        most = max(i + j for i, j, _ in self.terms)
-        of_p, of_q = ([x.power(k) for k in range(most + 1)] for x in (p, q))
-        total = p.like(0)
-        for i in range(m, most + 1):
-            inner = p.like(0)
-            for j, c in ((j, c) for k, j, c in self.terms if k == i and j >= n):
-                inner = inner + of_q[j - n] * (MP.ff(i, m) * MP.ff(j, n) * c)
-            total = total + of_p[i - m] * inner
+    def derivative(self, orders: Sequence[int], *at: Dual) -> Dual:
+        """∂ˡ/∂pˡ ∂ᵐ/∂qᵐ ∂ⁿ/∂tⁿ H at (p, q, t)."""
+        most = max(i + j + k for i, j, k, _ in self.terms)
+        powers = [[x.power(n) for n in range(most + 1)] for x in at]
+        total = at[0].like(0)
+        for *term, c in self.terms:
+            left = [own - n for own, n in zip(term, orders, strict=True)]
+            if min(left) >= 0:
+                scale = c * MP.fprod(MP.ff(own, n) for own, n in zip(term, orders, strict=True))
+                of_p, of_q, of_t = (x[n] for x, n in zip(powers, left, strict=True))
+                product = of_p * of_q
+                total = total + (product * of_t if left[2] else product) * scale
         return total
 
 
@@ -203,44 +218,46 @@ def _holds_at(said: Data, rng: random.Random) -> tuple[bool, bool]:
     """(whether all of it holds at a random point, whether L is other than 0 there)."""
     if re.match(r"p1 = ", said["p_next"]):
         return _stages_hold(said, rng), True
-    separable = "T(p) + V(q)" in said["hamiltonian"]
     every = said["hamiltonian"].startswith("every")
+    timed = _timed(said)
     powers = [int(n) for n in re.findall(r"h\*\*(\d+)", said["p_next"] + said["q_next"])]
     length = 2 * max([*powers, 1]) + 2
     agreed = said["convergence_order"] or 0
-    point = [_drawn(rng) for _ in "pq"]
+    point = [_drawn(rng) for _ in ("pqt" if timed else "pq")]
+    if not timed:
+        point.append(MP.mpf(0))
     zero = _constant(0, max(length, agreed + 1))
-    p, q = (_variable(x, name, zero) for x, name in zip(point, "pq", strict=True))
+    start = [_variable(x, name, zero) for x, name in zip(point, "pqt", strict=True)]
     h = Series([MP.mpf(n == 1) for n in range(len(zero.v.c))])
-    free = Polynomial.drawn(rng, 9, separable=separable)
-    names: dict[str, Any] = {"p": p, "q": q, "h": _series(h, zero)}
+    free = Polynomial.drawn(rng, 7 if timed else 9, separable=_separable(said), timed=timed)
+    names: dict[str, Any] = {**dict(zip("pqt", start, strict=True)), "h": _series(h, zero)}
     one = _constant(0, 1)
-    alone = [_variable(x, name, one) for x, name in zip(point, "pq", strict=True)]
+    alone = [_variable(x, name, one) for x, name in zip(point, "pqt", strict=True)]
     for name in sorted(_names(said)):
         if every:
-            m, n = name.count("p"), name.count("q")
-            at = free.derivative(m, n, *alone)
-            names[name] = Dual(*(zero.v.like(x.c[0]) for x in (at.v, at.p, at.q)))
+            at = free.derivative([name.count(by) for by in "pqt"], *alone)
+            names[name] = Dual(*(zero.v.like(x.c[0]) for x in (at.v, *at.slopes)))
         else:
             names[name] = zero.like(_drawn(rng))
 
-    def hamiltonian(at_p: Dual, at_q: Dual) -> Dual:
+    def hamiltonian(*at: Dual) -> Dual:
         if every:
-            return free.derivative(0, 0, at_p, at_q)
-        own = {name: at_p.like(x.v.c[0]) for name, x in names.items() if name not in "pqh"}
-        return evaluate(said["hamiltonian"], {**own, "p": at_p, "q": at_q}, at_p.like(0))
+            return free.derivative((0, 0, 0), *at)
+        own = {name: at[0].like(x.v.c[0]) for name, x in names.items() if name not in "pqth"}
+        return evaluate(said["hamiltonian"], {**own, **dict(zip("pqt", at, strict=True))},
+                        at[0].like(0))  # fmt: skip
 
     p_next, q_next = (evaluate(said[name], names, zero) for name in ("p_next", "q_next"))
     leading = evaluate(said["leading"] or "0", names, zero)
     holds = _known_far_enough(said)
-    holds &= _agrees(hamiltonian, (p, q), (p_next.v.c, q_next.v.c), agreed)
+    holds &= _agrees(hamiltonian, start, (p_next.v.c, q_next.v.c), agreed)
     det = (p_next.p * q_next.q + -(p_next.q * q_next.p)).c
     last = said["order"] or len(det) - 1
     wanted = [MP.mpf(n == 0) + leading.v.c[0] * (n == said["order"]) for n in range(last + 1)]
     holds &= all(map(_same, det, wanted))
     if said["potential"] is not None:
-        g, at = evaluate(said["potential"], names, zero), hamiltonian(p, q)
-        holds &= _same((at.p * g.q + -(at.q * g.p)).c[0], leading.v.c[0])
+        g, at = evaluate(said["potential"], names, zero), hamiltonian(*start)
+        holds &= _same((at.p * g.q + -(at.q * g.p) + g.t).c[0], leading.v.c[0])
     return bool(holds), abs(leading.v.c[0]) > TOLERANCE
 
 
@@ -253,19 +270,20 @@ def _known_far_enough(said: Data) -> bool:
 
 
 def _agrees(
-    hamiltonian: Callable[[Dual, Dual], Dual],
-    start: tuple[Dual, Dual],
+    hamiltonian: Callable[[Dual, Dual, Dual], Dual],
+    start: Sequence[Dual],
     found: tuple[Sequence[Any], Sequence[Any]],
     agreed: int,
 ) -> bool:
-    """Whether the coefficients are those of the solution of p' = −H_q, q' = H_p, as series in t."""
-    p, q = (_constant(x.v.c[0], agreed + 1) for x in start)
-    one = p.like(1).v
+    """Whether the coefficients are those of the solution of p' = −H_q, q' = H_p from t on."""
+    p, q, t = (_constant(x.v.c[0], agreed + 1) for x in start)
+    one, none = p.like(1).v, p.like(0).v
+    t = Dual(Series([*t.v.c[:1], MP.mpf(1), *t.v.c[2:]][: agreed + 1]), none, none, one)
     for _ in range(agreed):  # each iteration makes one more coefficient right
-        at = hamiltonian(Dual(p.v, one, one.like(0)), Dual(q.v, one.like(0), one))
+        at = hamiltonian(Dual(p.v, one, none, none), Dual(q.v, none, one, none), t)
         p, q = (
             _series(Series([x.v.c[0], *(c / (n + 1) for n, c in enumerate(slope.c[:-1]))]), p)
-            for x, slope in zip(start, (-at.q, at.p), strict=True)
+            for x, slope in zip(start, (-at.q, at.p), strict=False)
         )
     return all(
         _same(a, b)
@@ -277,15 +295,16 @@ def _agrees(
 def _stages_hold(said: Data, rng: random.Random) -> bool:
     """det J = 1 of the stages' solution as a series in h, for a random polynomial H."""
     length = 6
-    h_of = Polynomial.drawn(rng, 5, separable="T(p) + V(q)" in said["hamiltonian"])
+    h_of = Polynomial.drawn(rng, 5, separable=_separable(said), timed=_timed(said))
     zero = _constant(0, length)
     names: dict[str, Any] = {
         "p": _variable(_drawn(rng), "p", zero),
         "q": _variable(_drawn(rng), "q", zero),
+        "t": zero.like(_drawn(rng)) if _timed(said) else zero,
         "h": _series(Series([MP.mpf(n == 1) for n in range(length)]), zero),
-        "H_p": partial(h_of.derivative, 1, 0),
-        "H_q": partial(h_of.derivative, 0, 1),
     }
+    for name, orders in {"H_p": (1, 0, 0), "H_q": (0, 1, 0)}.items():
+        names[name] = lambda p, q, t=names["t"], n=orders: h_of.derivative(n, p, q, t)
     pairs = zip(said["p_next"].split("; "), said["q_next"].split("; "), strict=True)
     last = ("p", "q")
     for one, two in pairs:
@@ -305,7 +324,19 @@ def _names(said: Data) -> set[str]:
     if not said["hamiltonian"].startswith("every"):
         formulas.append(said["hamiltonian"])
     found = set(re.findall(r"[A-Za-z_]\w*", " ".join(formulas)))
-    return found - {"p", "q", "h", "O", "sin", "cos", "exp"}
+    return found - {"p", "q", "t", "h", "O", "sin", "cos", "exp"}
+
+
+def _timed(said: Data) -> bool:
+    """Whether t is a variable: of every H that is said, and of one H it stands there or not."""
+    if said["hamiltonian"].startswith("every"):
+        return "t)" in said["hamiltonian"]
+    formulas = (said[n] or "" for n in ("hamiltonian", "p_next", "q_next", "leading", "potential"))
+    return any(re.search(r"\bt\b", formula) for formula in formulas)
+
+
+def _separable(said: Data) -> bool:
+    return bool(re.search(r"T\(p(, t)?\) \+ V\(q(, t)?\)", said["hamiltonian"]))
 
 
 def _drawn(rng: random.Random) -> Any:
@@ -314,17 +345,17 @@ def _drawn(rng: random.Random) -> Any:
 
 def _constant(x: Any, length: int) -> Dual:
     zero = Series([MP.mpf(0)] * length)
-    return Dual(zero.like(x), zero, zero)
+    return Dual(zero.like(x), zero, zero, zero)
 
 
 def _series(x: Series, like: Dual) -> Dual:
     zero = like.v.like(0)
-    return Dual(x, zero, zero)
+    return Dual(x, zero, zero, zero)
 
 
 def _variable(x: Any, name: str, zero: Dual) -> Dual:
     one, none = zero.v.like(1), zero.v.like(0)
-    return Dual(zero.v.like(x), one if name == "p" else none, one if name == "q" else none)
+    return Dual(zero.v.like(x), *(one if by == name else none for by in "pqt"))
 
 
 def _same(x: Any, y: Any) -> bool:

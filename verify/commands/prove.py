@@ -73,19 +73,12 @@ def prove(
         for option, given in {"separable": separable, "time-dependent": time_dependent}.items():
             if given:
                 raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
-        exact = hamiltonian_of(system, hamiltonian, params, time=True)
-        if certificate is not None and exact.time_dependent:
-            raise InputError(
-                "--certificate", str(certificate), "is of no H that depends on time as yet"
-            )
-        return _prove_one(exact, scheme, certificate)
+        return _prove_one(
+            hamiltonian_of(system, hamiltonian, params, time=True), scheme, certificate
+        )
     if system is not None or hamiltonian is not None or params:
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
-        )
-    if time_dependent and certificate is not None:
-        raise InputError(
-            "--certificate", str(certificate), "is of no H that depends on time as yet"
         )
     from verify.proof.every import prove_every
     from verify.proof.every_in_time import prove_every_in_time
@@ -153,6 +146,7 @@ def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> di
     from verify.proof.certificates.every import of_every
     from verify.proof.certificates.one import of_one
     from verify.proof.every import prove_every
+    from verify.proof.every_in_time import prove_every_in_time
 
     try:
         return of_one(proof, potential)
@@ -160,7 +154,8 @@ def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> di
         if scheme.every_h is None or proof.verdict != "PROVED":
             raise
         click.echo(f"the certificate is of the proof for every H: {error}", err=True)
-        return of_every(prove_every(scheme.name))
+        timed = proof.step_map.hamiltonian.time_dependent
+        return of_every(prove_every_in_time(scheme.name) if timed else prove_every(scheme.name))
 
 
 def _write(data: dict[str, Any], path: Path) -> None:

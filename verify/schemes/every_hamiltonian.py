@@ -14,7 +14,7 @@ import flint
 import sympy
 
 from verify.algebra.conditions import Condition
-from verify.algebra.series.jets import Jets, Poly, Series
+from verify.algebra.series.jets import JetRing, Jets, Poly, Series
 from verify.prose import count
 
 At = TypeVar("At")
@@ -46,7 +46,7 @@ class TaylorSeries:
         """What it costs, in words."""
         return f"derivatives of p and q along the flow, up to X^{self.eta}"
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
         """p' and q' as series up to h^most; see `BySeries`."""
         kept = min(self.eta, most)
 

@@ -14,6 +14,7 @@ from verify.proof.certificates.established import established
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
 from verify.proof.potential import potential_of
 from verify.schemes import get
@@ -26,6 +27,9 @@ INVOLVED = (
     "exp(sin({}))",
     "cos({0})*sin({0})",
     "d*{}",
+    "(1 + cos(2*t)/3)*{}",
+    "sin({} - t)",
+    "{}/(2 + t**2)",
 )
 EVERY = (
     "lie1",
@@ -38,6 +42,7 @@ EVERY = (
     "implicit-symplectic-euler",
     "explicit-midpoint",
 )
+IN_TIME = ("lie1", "lie2", "lie3", "stormer-verlet", "implicit-midpoint", "ruth3")
 Data = dict[str, Any]
 
 
@@ -53,7 +58,7 @@ def of_drawn(draw: st.DrawFn) -> Data:
     bent = draw(st.sampled_from(INVOLVED)).format(f"({inner})")
     text = f"p**2/2 + ({draw(rationals(4))})*{bent} + ({draw(rationals(3))})*q**3 + 5"
     scheme = get(draw(st.sampled_from(["lie1", "lie2", *["symplectic-euler"] * separable])))
-    proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
+    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
     potential = potential_of(proof, scheme)
     data = as_read(of_one(proof, potential))
     assert (data["order"], data["convergence_order"]) == (proof.order, proof.convergence_order)
@@ -65,7 +70,10 @@ def of_drawn(draw: st.DrawFn) -> Data:
 
 
 certificates = st.one_of(
-    of_drawn(), of_drawn(), st.sampled_from(EVERY).map(lambda n: as_read(of_every(prove_every(n))))
+    of_drawn(),
+    of_drawn(),
+    st.sampled_from(EVERY).map(lambda name: as_read(of_every(prove_every(name)))),
+    st.sampled_from(IN_TIME).map(lambda name: as_read(of_every(prove_every_in_time(name)))),
 )
 
 

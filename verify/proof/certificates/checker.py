@@ -1,6 +1,8 @@
 """Checks a certificate with the standard library alone; it shares nothing with the prover.
 
-**Theorem** (what acceptance proves). Let X f = H_p f_q − H_q f_p for a function H of p and q.
+**Theorem** (what acceptance proves). Let X f = H_p f_q − H_q f_p for a function H of p and q. With
+`time_dependent` it is one of t, too, and in all that follows X stands for D = ∂_t + X, "flow" for
+that from t to t + h, and J and each identity are taken at one t, which is any.
 
 *Of one H*, a polynomial in p, q, parameters and functions. Where no denominator among them is 0,
 which is so at the witness: for every map p' = Σ p_n hⁿ + O(h^(m+1)), q' likewise, with the `p_next`
@@ -18,13 +20,15 @@ With `order` null, for the map p' = Σ p_n hⁿ, q' = Σ q_n hⁿ without a rema
 a polynomial in p, q and the derivatives of H that is not 0, and so is not 0 for some H.
 
 *Of stages*, for every H: det J = 1 for each smooth map (p, q) ↦ (p', q') that solves
-p' = p − h k H_q, q' = q + h d H_p at (p + s (p' − p), q + t (q' − q)), wherever the derivatives of
-these equations by (p', q') have a determinant det A ≠ 0; and so for one stage after the other.
+p' = p − h k H_q, q' = q + h d H_p at (p + s (p' − p), q + u (q' − q)), wherever the derivatives of
+these equations by (p', q') have a determinant det A ≠ 0; and so for one stage after the other. With
+`time_dependent` a stage has one time, t + c h with c any, at which both H_q and H_p are taken.
 
 **Proof.** Names are differentiated by the rules for what they stand for, and the relations are true
 of that (sin² + cos² = 1, u · 1/u = 1): an identity up to Σ cofactor · relation is one of functions.
 For every H its derivatives are free: an identity of polynomials in them holds for each H, and at a
-point they take any values. For the stages see `_preserves`.
+point they take any values. With t as a coordinate, t' = 1, the flow is that of D. For the stages
+see `_preserves`: at its own time the H of each is a function of p and q.
 """
 
 from collections.abc import Iterable
@@ -70,27 +74,29 @@ def single(name: str) -> Poly:
     return {(name,): Fraction(1)}
 
 
-def _preserves(k: Fraction, d: Fraction, s: Fraction, t: Fraction, *, separable: bool) -> bool:
+def _preserves(k: Fraction, d: Fraction, s: Fraction, u: Fraction, *, separable: bool) -> bool:
     """Whether det J = 1 of a stage for every H.
 
-    A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d t) +
-    h² k d s t (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and t − 1.
+    A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
+    h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
     """
-    return (separable or k == d) and k * d * (1 - s - t) == 0
+    return (separable or k == d) and k * d * (1 - s - u) == 0
 
 
 class _Algebra:
-    """∂/∂p and ∂/∂q of every name: the free derivatives of H, or functions of given arguments."""
+    """∂/∂p, ∂/∂q, ∂/∂t of every name: the free derivatives of H, or functions of arguments."""
 
     def __init__(self, entries: Expansion) -> None:
         self.given = entries
         self.work = 0
-        self.images: dict[str, dict[str, Poly]] = {"p": {"p": ONE}, "q": {"q": ONE}}
+        self.variables = "pqt" if entries.timed else "pq"
+        self.images: dict[str, dict[str, Poly]] = {by: {by: ONE} for by in self.variables}
         self.relations: dict[str, Poly] = {}
         for made in entries.functions:
             slope = self.slope(made.name, made.kind, made.argument)
-            inner = {by: self.diff(made.argument, by) for by in "pq"}
-            self.images[made.name] = {by: self.mul(slope, inner[by]) for by in "pq"}
+            self.images[made.name] = {
+                by: self.mul(slope, self.diff(made.argument, by)) for by in self.variables
+            }
         if entries.hamiltonian is None:
             self.h_p, self.h_q = single("H_p"), single("H_q")
         else:
@@ -115,8 +121,9 @@ class _Algebra:
     def image(self, name: str, by: str) -> Poly:
         if name in self.images or not name.startswith("H_"):
             return self.images.get(name, {}).get(by, {})  # a parameter has none
-        i, j = name.count("p") + (by == "p"), name.count("q") + (by == "q")
-        return {} if self.given.separable and i and j else single("H_" + "p" * i + "q" * j)
+        i, j, k = (name.count(x) + (by == x) for x in "pqt")
+        mixed = self.given.separable and i and j
+        return {} if mixed else single("H_" + "p" * i + "q" * j + "t" * k)
 
     def add(self, x: Poly, y: Poly, scale: Fraction | int = 1) -> Poly:
         return self.sum_of([*x.items(), *((m, scale * c) for m, c in y.items())])
@@ -132,10 +139,11 @@ class _Algebra:
             for m, d in self.image(name, by).items()
         )
 
-    def lie_derivative(self, x: Poly) -> Poly:
-        return self.add(
-            self.mul(self.h_p, self.diff(x, "q")), self.mul(self.h_q, self.diff(x, "p")), -1
-        )
+    def along_flow(self, x: Poly) -> Poly:
+        """X x, or D x."""
+        by_q, by_p = self.mul(self.h_p, self.diff(x, "q")), self.mul(self.h_q, self.diff(x, "p"))
+        slope = self.add(by_q, by_p, -1)
+        return self.add(slope, self.diff(x, "t")) if self.given.timed else slope
 
     def sum_of(self, terms: Iterable[Term]) -> Poly:
         return collected(map(self.counted, terms))
@@ -170,7 +178,7 @@ class Identities(_Algebra):
         self.check_flow()
         self.check_determinant(given.order or 2 * length)
         if given.potential is not None:
-            slope = self.lie_derivative(given.potential)
+            slope = self.along_flow(given.potential)
             self.zero(self.add(slope, given.leading, -1), "potential")
         unused = min(self.cofactors, default="")
         need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
@@ -181,7 +189,7 @@ class Identities(_Algebra):
             flow = single(by)
             for n in range(self.given.convergence_order + 1):
                 if n:
-                    flow = self.lie_derivative(flow)
+                    flow = self.along_flow(flow)
                 gap = self.add(_at(series, n), flow, Fraction(-1, factorial(n)))
                 self.zero(gap, f"{by} {n}")
 

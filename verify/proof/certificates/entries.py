@@ -1,8 +1,9 @@
 """A certificate's entries, each of a type and within a range: nothing in the file is believed.
 
 Every reader raises ValueError, which names the entry. What none of them asks for is refused, and so
-is a name that stands for nothing: a term's names are p, q, the parameters and the functions that
-stand before it, or, for every H, p, q and the derivatives of H.
+is a name that stands for nothing: a term's names are p, q, t where H depends on time, the
+parameters and the functions that stand before it, or, for every H, the derivatives of H. t is time
+and no parameter, with which the formulas that are printed would be read as those of another H.
 """
 
 import re
@@ -17,9 +18,9 @@ MOST_ORDERS = 128
 MOST_FACTORS = 256  # in a term
 _NUMBER = re.compile(r"(-?[0-9]{1,2000})(?:/([1-9][0-9]{0,1999}))?")
 _PARAMETER = re.compile(r"(?!H_)[A-Za-z][A-Za-z0-9_]{0,63}")
-_RESERVED = {"p", "q", "h", "sin", "cos", "exp", "log", "sqrt", "pi", "e", "i", "E", "I"}
+_RESERVED = {"p", "q", "h", "t", "sin", "cos", "exp", "log", "sqrt", "pi", "e", "i", "E", "I"}
 _KINDS = ("sin", "cos", "exp", "inverse")
-_DERIVATIVE = re.compile("H_(p*)(q*)(?<!_)")
+_DERIVATIVE = re.compile("H_(p*)(q*)(t*)(?<!_)")
 
 
 @dataclass(frozen=True)
@@ -33,18 +34,26 @@ class Function:
 
 @dataclass(frozen=True)
 class Stages:
-    """Rows (kick, drift, share of p', share of q') of a scheme for every H."""
+    """Rows (kick, drift, share of p', share of q') of a scheme for every H.
+
+    `times`: one of each row, in parts of h from the step's start; None where H has no time.
+    """
 
     separable: bool
     rows: tuple[tuple[Fraction, Fraction, Fraction, Fraction], ...]
+    times: tuple[Fraction, ...] | None
 
 
 @dataclass(frozen=True)
 class Expansion:
-    """A map as coefficients of powers of h, and what is said of it; `hamiltonian` None: every H."""
+    """A map as coefficients of powers of h, and what is said of it.
+
+    `hamiltonian` None: every H; `timed`: H depends on t.
+    """
 
     hamiltonian: Poly | None
     separable: bool
+    timed: bool
     parameters: tuple[str, ...]
     functions: tuple[Function, ...]
     p_next: tuple[Poly, ...]
@@ -84,6 +93,7 @@ class _Entries:
         self.left.pop("format", None)  # which who opens the file looks at
         self.names: set[str] = set()
         self.every = self.separable = False
+        self.timed = "time_dependent" in self.left and self.flag("time_dependent")
 
     def take(self, name: str) -> object:
         need(name in self.left, f"{name} is missing")
@@ -93,24 +103,26 @@ class _Entries:
         need(self.take("hamiltonian") == "every", "stages are those of every hamiltonian")
         separable, rows = self.flag("separable"), _array(self.take("stages"), "stages")
         need(0 < len(rows) <= 1000, "stages: has 1 to 1000 rows")
-        found = []
+        found, times, length = [], [], 4 + self.timed
         for row in rows:
-            four = _array(row, "stages")
-            need(len(four) == 4, "stages: a row has 4 numbers")
-            kick, drift, at_p, at_q = (_number(x, "stages") for x in four)
+            numbers = _array(row, "stages")
+            need(len(numbers) == length, f"stages: a row has {length} numbers")
+            kick, drift, at_p, at_q, *time = (_number(x, "stages") for x in numbers)
             found.append((kick, drift, at_p, at_q))
-        return Stages(separable, tuple(found))
+            times += time
+        return Stages(separable, tuple(found), tuple(times) if self.timed else None)
 
     def expansion(self) -> Expansion:
         hamiltonian = self.take("hamiltonian")
         self.every = hamiltonian == "every"
         self.separable = self.flag("separable") if self.every else False
         parameters = () if self.every else self.parameters()
-        self.names = {"p", "q", *parameters}
+        self.names = {"p", "q", *(["t"] if self.timed else []), *parameters}
         functions = () if self.every else self.functions()
         return Expansion(
             hamiltonian=None if self.every else self.poly(hamiltonian, "hamiltonian"),
             separable=self.separable,
+            timed=self.timed,
             parameters=parameters,
             functions=functions,
             p_next=self.series("p_next"),
@@ -172,8 +184,8 @@ class _Entries:
 
     def witness(self) -> dict[str, Fraction]:
         given = _object(self.take("witness"), "witness")
-        said = f"witness: gives values to p, q and the parameters: {', '.join(sorted(self.names))}"
         variables = {name for name in self.names if not name.startswith("#")}
+        said = f"witness: gives values to p, q and the parameters: {', '.join(sorted(variables))}"
         need(not given or set(given) == variables, said)
         return {name: _number(x, "witness") for name, x in given.items()}
 
@@ -200,7 +212,8 @@ class _Entries:
         derivative = _DERIVATIVE.fullmatch(name)
         if not (self.every and derivative) or len(name) > MOST_FACTORS:
             return False
-        return not (self.separable and all(derivative.groups()))
+        by_p, by_q, by_t = derivative.groups()
+        return not (self.separable and by_p and by_q) and (self.timed or not by_t)
 
 
 def collected(terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:

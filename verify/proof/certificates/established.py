@@ -12,7 +12,12 @@ from verify.proof.certificates.entries import Expansion, Monomial, Poly, Stages,
 
 _LONGEST = 1_000_000  # characters of a formula with its functions written out
 _ALMOST = "L does not vanish identically in p and q"
-_ONE_H, _EVERY, _SEPARABLE = "this H", "every smooth H", "every smooth H = T(p) + V(q)"
+_WHICH = {  # H, by (separable, timed)
+    (False, False): "every smooth H",
+    (True, False): "every smooth H = T(p) + V(q)",
+    (False, True): "every smooth H(p, q, t)",
+    (True, True): "every smooth H = T(p, t) + V(q, t)",
+}
 
 
 @dataclass(frozen=True)
@@ -46,11 +51,14 @@ def established(entries: Stages | Expansion) -> Established:
 
 
 def _of_stages(entries: Stages) -> Established:
-    which = _SEPARABLE if entries.separable else _EVERY
+    times = [""] * len(entries.rows)
+    if entries.times is not None:
+        times = [f", t + ({c})*h" if c else ", t" for c in entries.times]
+    which = _WHICH[entries.separable, entries.times is not None]
     p, q, p_next, q_next, implicit = "p", "q", [], [], False
-    for n, (kick, drift, at_p, at_q) in enumerate(entries.rows, 1):
+    for n, ((kick, drift, at_p, at_q), time) in enumerate(zip(entries.rows, times, strict=True), 1):
         p_new, q_new = f"p{n}", f"q{n}"
-        at = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)})"
+        at = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)}{time})"
         p_next.append(f"{p_new} = {p}" + (f" - h*({kick})*H_q{at}" if kick else ""))
         q_next.append(f"{q_new} = {q}" + (f" + h*({drift})*H_p{at}" if drift else ""))
         mixed = 0 if entries.separable else kick * at_p - drift * at_q
@@ -79,17 +87,18 @@ def _between(start: str, end: str, share: Fraction) -> str:
 
 def _of_expansion(entries: Expansion) -> Established:
     written = _Writer(entries)
-    which = _ONE_H if entries.hamiltonian is not None else _EVERY
-    which = _SEPARABLE if entries.separable else which
+    which = _WHICH[entries.separable, entries.timed]
+    of_one = entries.hamiltonian is not None
     agreed, order = entries.convergence_order, entries.order
     area = "det J = 1"
     if order is not None:
-        where = "" if entries.hamiltonian is not None else " for some H"
+        where = "" if of_one else " for some H"
         area = f"det J − 1 = L h^{order} + O(h^{order + 1}), L not zero{where}"
-    telescopes = "" if entries.potential is None else ", and L = X·G"
+    along = "D·G, D = ∂/∂t + X" if entries.timed else "X·G"
+    telescopes = "" if entries.potential is None else f", and L = {along}"
     flow = f"which agrees with the flow up to h^{agreed}{telescopes}"
     return Established(
-        statement=f"{area}, for {which} and this map, {flow}",
+        statement=f"{area}, for {'this H' if of_one else which} and this map, {flow}",
         scheme=_taylor_series(entries),
         hamiltonian=which if entries.hamiltonian is None else written.poly(entries.hamiltonian),
         p_next=written.series(entries.p_next, entries.last),

@@ -5,6 +5,8 @@ number is a text such as "-3/2".
 - `format`: what this is, with its version (see `verify.formats`).
 - `hamiltonian`: a polynomial, or "every": then the names are p, q and H_p, H_q, H_pp, … as free
   derivatives of H (`separable`: the mixed ones are 0).
+- `time_dependent`: true where H depends on t, and else not there. Then t is a name, H_pt, H_qtt, …
+  are derivatives of H, and D = ∂_t + X takes the place of X.
 - `parameters`: the names of H's parameters, for one H.
 - `functions`: `[name, kind, argument]`, kind one of sin, cos, exp, inverse, inner ones first, for
   one H; a sin and the cos of the same argument stand together.
@@ -17,7 +19,8 @@ number is a text such as "-3/2".
 - `cofactors`: what has to be zero is Σ cofactor·relation over the functions' relations.
 - `stages`, alone with `hamiltonian` and `separable`: rows (kick, drift, share of p', share of q')
   of a scheme that is p' = p − h·kick·H_q, q' = q + h·drift·H_p, with H_p and H_q taken at those
-  shares of the way from (p, q) to (p', q'): det J = 1.
+  shares of the way from (p, q) to (p', q'): det J = 1. Where H depends on t a row has a fifth
+  number c: both are taken at t + c h.
 
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
@@ -26,14 +29,20 @@ from collections.abc import Mapping
 
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly
-from verify.algebra.series.jets import Jets, Series
+from verify.algebra.series.jets import JetRing, Jets, Series
+from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.every import EveryProof, telescoping_of
+from verify.proof.telescoping import potential_of_lie
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import BySeries, StageEquations
+from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.scheme import Scheme
 from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
+
+_BY_COEFFICIENTS = "is proved by its coefficients; the checker knows rational ones, of stages"
 
 
 def of_every(proof: EveryProof) -> Certificate:
@@ -43,22 +52,41 @@ def of_every(proof: EveryProof) -> Certificate:
     if proof.verdict is not Verdict.PROVED or every_h is None or proof.convergence_order is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
     data: Certificate = {"format": FORMAT, "hamiltonian": "every", "separable": proof.separable}
+    data |= {"time_dependent": True} if proof.timed else {}
     stages = every_h.stages if isinstance(every_h, Splitting) else every_h
     if isinstance(stages, StageEquations) and proof.area_preserving:
-        rows = ((s.kick, s.drift, s.at_p, s.at_q) for s in stages.stages)
+        times = _clock(scheme) if proof.timed else [()] * len(stages.stages)
+        rows = (
+            (s.kick, s.drift, s.at_p, s.at_q, *time)
+            for s, time in zip(stages.stages, times, strict=True)
+        )
         return data | {"stages": [[str(x) for x in row] for row in rows]}
     if proof.order is None or not isinstance(every_h, BySeries):
-        problem = "is proved by its coefficients; the checker knows rational ones, of stages"
-        raise InputError("scheme", proof.scheme, problem)
-    jets = Jets(proof.order + 2, separable=proof.separable)
-    series = every_h.taylor(jets, proof.order)
-    leading = list(jets.delta_j(*series))[-1]
+        raise InputError("scheme", proof.scheme, _BY_COEFFICIENTS)
+    most = proof.order
+    if proof.timed and isinstance(every_h, TaylorSeries):
+        jets: JetRing = TimedJets(most + 2)
+        series = every_h.taylor(jets, most)
+        leading = list(jets.delta_j(*series))[-1]
+        potential = potential_of_lie(jets, every_h.eta) if proof.telescopes else None
+    else:
+        jets = plain = Jets(most + 2, separable=proof.separable)
+        series = every_h.taylor(plain, most)
+        leading = list(jets.delta_j(*series))[-1]
+        potential = telescoping_of(plain, every_h, leading).potential if proof.telescopes else None
     names = dict(enumerate(jets.names))
-    data |= map_of(proof.order, proof.convergence_order, leading, series, names)
-    potential = telescoping_of(jets, every_h, leading).potential if proof.telescopes else None
+    data |= map_of(most, proof.convergence_order, leading, series, names)
     if potential is not None:
         data["potential"] = terms(potential, names)
     return data
+
+
+def _clock(scheme: Scheme) -> list[tuple[str, ...]]:
+    """The time of each stage, in parts of h."""
+    found = conditions_for(scheme.every_h).clock
+    if not all(time.is_Rational for time in found):
+        raise InputError("scheme", scheme.name, _BY_COEFFICIENTS)
+    return [(str(time),) for time in found]
 
 
 def map_of(

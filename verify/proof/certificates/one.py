@@ -47,13 +47,15 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
     field, elements = hamiltonian.field(*asked)
     plain = _Plain(field.ring)
     _, p_next, q_next, leading, _ = elements
-    h, potential_ = (_without_constants(plain.ring, x) for x in (elements[0], elements[4]))
+    h = plain.without_constants(elements[0], "pq")
+    potential_ = plain.without_constants(elements[4], plain.variables)
     needed = max(proof.order or 0, proof.convergence_order) if proof.order else None
     series = [_coefficients(plain.ring, x)[: needed and needed + 1] for x in (p_next, q_next)]
     data = {
         "format": FORMAT,
         "hamiltonian": terms(h, plain.names),
-        "parameters": [name for name in field.ring.variables if name not in ("p", "q", "h")],
+        **({"time_dependent": True} if field.timed else {}),
+        "parameters": [n for n in field.ring.variables if n not in ("p", "q", "h", "t")],
         "functions": plain.functions,
         **map_of(
             proof.order, proof.convergence_order, leading, (series[0], series[1]), plain.names
@@ -73,7 +75,8 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
 
 def _witness(data: Certificate, known: Mapping[str, Fraction]) -> dict[str, str]:
     """A point at which the checker sees what is not 0: the proof's own, or one that is tried."""
-    names = ("p", "q", *data["parameters"])
+    timed = ("t",) if data.get("time_dependent") else ()
+    names = ("p", "q", *timed, *data["parameters"])
     for k in range(_TRIED):
         tried = {name: Fraction(7 + 4 * k + i, 17 + 2 * i) for i, name in enumerate(names)}
         at = {name: str(known.get(name, value)) for name, value in tried.items()}
@@ -94,25 +97,12 @@ def _coefficients(ring: Ring, x: Poly) -> list[Poly]:
     return [powers.get(n, ring.zero) for n in range(max(powers, default=0) + 1)]
 
 
-def _without_constants(ring: Ring, x: Poly) -> Poly:
-    """Without the terms that depend on neither p nor q, which X takes to 0."""
-    kept = {
-        monomial: c
-        for monomial, c in terms_of(x)
-        if any(n and not _parameter(ring, k) for k, n in enumerate(monomial))
-    }
-    return ring.context.from_dict(kept)
-
-
-def _parameter(ring: Ring, index: int) -> bool:
-    return ring.room + 1 < index  # p and q stand first among the variables
-
-
 class _Plain:
-    """A ring's polynomials with ∂/∂p and ∂/∂q by the chain rule, and nothing reduced."""
+    """A ring's polynomials with ∂/∂p, ∂/∂q, ∂/∂t by the chain rule, and nothing reduced."""
 
     def __init__(self, ring: Ring) -> None:
         self.ring = ring
+        self.variables = "pqt" if "t" in ring.variables else "pq"
         self.names = {
             g.index: str(g.expression) if g.kind == "variable" else f"#{g.index}"
             for g in ring.generators
@@ -133,7 +123,7 @@ class _Plain:
             partner = {"sin": "cos", "cos": "sin"}.get(g.kind)
             side = (partner and ring.find(partner, g.inner)) or ring.zero
             slope = {"sin": side, "cos": -side, "exp": own, "inverse": -(own**2)}[g.kind]
-            self._images[g.index] = {by: slope * self.diff(g.inner, by) for by in "pq"}
+            self._images[g.index] = {by: slope * self.diff(g.inner, by) for by in self.variables}
 
     def diff(self, x: Poly, by: str) -> Poly:
         total = x.derivative(self.ring.room + self.ring.variables.index(by))
@@ -142,6 +132,15 @@ class _Plain:
             if degrees[index] > 0:
                 total += x.derivative(index) * image[by]
         return total
+
+    def without_constants(self, x: Poly, variables: str) -> Poly:
+        """Without the terms that depend on none of these variables."""
+        terms = {m: c for m, c in terms_of(x) if any(self._has(m, by) for by in variables)}
+        return self.ring.context.from_dict(terms)
+
+    def _has(self, monomial: tuple[int, ...], by: str) -> bool:
+        term = self.ring.context.from_dict({monomial: 1})
+        return not self.diff(term, by).is_zero()
 
     def cofactors(self, x: Poly) -> dict[str, list[list[str]]]:
         """By which Σ cofactor·relation is x; InputError where reducing does not end at 0."""
@@ -167,15 +166,16 @@ def _zeros(
     ring, order = plain.ring, data["order"]
     h_p, h_q = plain.diff(h, "p"), plain.diff(h, "q")
 
-    def lie_derivatives(y: Poly) -> Poly:
-        return h_p * plain.diff(y, "q") - h_q * plain.diff(y, "p")
+    def along_flow(y: Poly) -> Poly:
+        slope = h_p * plain.diff(y, "q") - h_q * plain.diff(y, "p")
+        return slope + plain.diff(y, "t") if "t" in plain.variables else slope
 
     last = order or sum(map(len, series))
     for by, own in zip("pq", series, strict=True):
         flow = ring.variable(by)
         for n in range(data["convergence_order"] + 1):
             yield f"{by} {n}", (own[n] if n < len(own) else ring.zero) - flow / math.factorial(n)
-            flow = lie_derivatives(flow)
+            flow = along_flow(flow)
     slopes = [
         [(plain.diff(x, "p"), plain.diff(x, "q")) for x in own] + [(ring.zero, ring.zero)] * last
         for own in series
@@ -187,4 +187,4 @@ def _zeros(
             det += p_p * q_q - p_q * q_p
         yield f"det {n}", det
     if "potential" in data:
-        yield "potential", lie_derivatives(potential) - leading
+        yield "potential", along_flow(potential) - leading

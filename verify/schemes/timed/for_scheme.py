@@ -9,6 +9,7 @@ coefficients of which to ask: its order is that of the series, with D = ∂_t + 
 
 from collections.abc import Sequence
 from functools import singledispatch
+from typing import Protocol
 
 import sympy
 
@@ -25,10 +26,19 @@ from verify.schemes.tree_conditions import TreeConditions
 Times = Sequence[sympy.Expr | None] | None
 
 
+class TimedConditions(ByConditions, Protocol):
+    """Those of a scheme whose parts or stages have times."""
+
+    @property
+    def clock(self) -> list[sympy.Expr]:
+        """The time of each, in parts of h."""
+        ...
+
+
 @singledispatch
 def conditions_for(
     every_h: object, kinetic: Kinetic | None = None, times: Times = None
-) -> ByConditions:
+) -> TimedConditions:
     """Of `Scheme.every_h`, for every H = T + V(q, t) with T of the class.
 
     `kinetic` None: for every H(p, q, t) that the scheme takes. `times`: of each part, or of each
@@ -39,24 +49,28 @@ def conditions_for(
 
 
 @conditions_for.register
-def _(every_h: Splitting, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+def _(every_h: Splitting, kinetic: Kinetic | None = None, times: Times = None) -> TimedConditions:
     own = times or every_h.times or (None,) * len(every_h.parts)
     return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL)
 
 
 @conditions_for.register
-def _(every_h: TreeConditions, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+def _(
+    every_h: TreeConditions, kinetic: Kinetic | None = None, times: Times = None
+) -> TimedConditions:
     return TimedTrees(TimedTableau.of(every_h.tableau, times), _class(every_h.separable, kinetic))
 
 
 @conditions_for.register
-def _(every_h: RungeKutta, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+def _(every_h: RungeKutta, kinetic: Kinetic | None = None, times: Times = None) -> TimedConditions:
     tableau = TimedTableau.of_explicit(every_h, times)
     return TimedTrees(tableau, _class(every_h.separable, kinetic))
 
 
 @conditions_for.register
-def _(every_h: StageEquations, kinetic: Kinetic | None = None, times: Times = None) -> ByConditions:
+def _(
+    every_h: StageEquations, kinetic: Kinetic | None = None, times: Times = None
+) -> TimedConditions:
     tableau = TimedTableau.of_stages(every_h, times)
     return TimedTrees(tableau, _class(every_h.separable, kinetic))
 

@@ -18,6 +18,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 
+import sympy
+
 from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly
@@ -66,6 +68,12 @@ class TimedTrees:
     def clocks_are_right(self) -> bool:
         """Whether every stage has the time that is right for it, exactly."""
         return self.tableau.numbers.right
+
+    @property
+    def clock(self) -> list[sympy.Expr]:
+        """The time of each stage, in parts of h."""
+        numbers = self.tableau.numbers
+        return [numbers.ring.expression(time) for time in numbers.clock]
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those of trees of 1 … `order` vertices.

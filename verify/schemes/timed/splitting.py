@@ -22,6 +22,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import ClassVar
 
+import sympy
+
 from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
@@ -89,6 +91,12 @@ class TimedSplitting:
             or ring.decide(time - clock).zero is True
             for (kind, size, time), clock in zip(parts, self.right, strict=True)
         )
+
+    @property
+    def clock(self) -> list[sympy.Expr]:
+        """The time of each part, in parts of h."""
+        ring, parts = self.numbers
+        return [ring.expression(time) for _, _, time in parts]
 
     @cached_property
     def right(self) -> list[Poly]:

@@ -24,6 +24,7 @@ from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import checked
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
 from verify.proof.potential import potential_of
 from verify.schemes import get
@@ -39,13 +40,19 @@ ONE = [
     ("p**2/2 + sin(p + q)*cos(p)", "lie1"),
     ("sin(exp(q)) + p**2", "lie1"),
     ("p**2/2 + q**3/3", "lie3"),
+    ("p**2/2 - (1 + cos(2*t)/2)*cos(q)", "lie2"),
+    ("p**2/2 - (1 + cos(2*t)/2)*cos(q)", "lie3"),
+    ("p**2/2 + q**4/4 - d*q**2*t**2 + sin(t)", "symplectic-euler"),
+    ("p**2/2 + d*q**3/(1 + t**2)", "lie2"),
+    ("t*p*q + exp(t)*q**2", "lie2"),
 ]
 EVERY = ["lie1", "lie2", "lie3", "lie4", "symplectic-euler"]
+EVERY_IN_TIME = ["lie1", "lie2", "lie3", "symplectic-euler", "implicit-midpoint"]
 
 
 def of(text: str, name: str) -> dict[str, Any]:
     scheme = get(name)
-    proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
+    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
     return as_read(of_one(proof, potential_of(proof, scheme)))
 
 
@@ -53,11 +60,19 @@ def as_read(data: dict[str, Any]) -> dict[str, Any]:
     return json.loads(json.dumps(data))  # type: ignore[no-any-return]
 
 
+def of_every_in_time(name: str) -> dict[str, Any]:
+    return as_read(of_every(prove_every_in_time(name)))
+
+
 CERTIFICATES = {f"{text}, {name}": (text, name) for text, name in ONE}
 
 
-@pytest.fixture(scope="module", params=[*CERTIFICATES, *EVERY])
+@pytest.fixture(
+    scope="module", params=[*CERTIFICATES, *EVERY, *(f"{name} in time" for name in EVERY_IN_TIME)]
+)
 def certificate(request: pytest.FixtureRequest) -> dict[str, Any]:
+    if request.param.endswith(" in time"):
+        return of_every_in_time(request.param.removesuffix(" in time"))
     if request.param in EVERY:
         return as_read(of_every(prove_every(request.param)))
     return of(*CERTIFICATES[request.param])
