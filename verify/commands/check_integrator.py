@@ -108,6 +108,7 @@ def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> 
         "probe_error": None if found.probe_error is None else f"{found.probe_error:.1e}",
         "counterexample": example and {
             **{name: text(value) for name, value in picked(example, "p", "q", "h").items()},
+            **({} if example.t is None else {"t": text(example.t)}),
             **picked(example, "quantity", "found", "expected"),
         },
         **picked(found, "domain", "faults", "notes"),

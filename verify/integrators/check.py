@@ -16,6 +16,7 @@ from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
+from verify.integrators.still_clock import measured_mistakes
 from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
@@ -81,12 +82,12 @@ def _but_for(faults: Sequence[Fault], found: Finding) -> Finding:
 
 
 def _of_time(step: Step) -> list[str]:
-    """What is said where one of H and the step depends on time, and not the other."""
+    """What is said where H or the step does not depend on time."""
     if step.timed and not step.moving:
         return ["H does not depend on time: it is called with t = 0"]
     if step.moving and not step.timed:
         return ["it takes no t, and H depends on it: its force stands still"]
-    return []
+    return [] if step.timed else ["it takes no t: it is judged for a force without time alone"]
 
 
 def _no_step(faults: Sequence[Fault]) -> Finding:
@@ -102,10 +103,6 @@ def _examine(trial: Trial, provable: bool) -> Finding:
                 return _proved(trial)
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", _why(error)))
-    if step.moving:
-        notes.append(prose("a step for an H that depends on time is proved, and not measured yet"))
-        neither = prose("it cannot be traced")
-        return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
     kept = _KEPT * max(step.left, 0)
     for how in ("duals", "floats"):
         step.left += -kept if how == "duals" else kept
@@ -113,11 +110,19 @@ def _examine(trial: Trial, provable: bool) -> Finding:
             if how == "duals":
                 must_agree(trial, by_duals(step))
             told = of_measured(measured(trial, how), trial)
-            return replace(told, notes=(*notes, *told.notes))
+            return replace(told, notes=(*notes, *told.notes)).noting(*_still(trial, how, told))
         except Exception as error:  # as above
             notes.append(prose(f"not measured with {how}: ", _why(error)))
     neither = prose("it can be neither traced nor measured")
     return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
+
+
+def _still(trial: Trial, how: str, found: Finding) -> list[str]:
+    """Which mistake its clock looks like; nothing where that cannot be measured in time."""
+    try:
+        return measured_mistakes(trial, how, found.convergence_order)
+    except Exception:  # the user's code may raise anything
+        return []
 
 
 def _exchanged(trial: Trial, provable: bool) -> list[str]:
@@ -232,8 +237,7 @@ def _rounded_reason(found: Finding, better: Rounded, most: int) -> Prose:
 
 def _measured_area(found: Finding, trial: Trial) -> Finding:
     """What algebra leaves open of ΔJ is measured with dual numbers."""
-    decided = found.area_preserving is not None or found.verdict is Verdict.REFUTED
-    if decided or trial.step.moving:
+    if found.area_preserving is not None or found.verdict is Verdict.REFUTED:
         return found
     try:
         other = of_measured(measured(trial, "duals"), trial)

@@ -40,8 +40,6 @@ def with_claims(found: Finding, claims: Claims, trial: Trial) -> Finding:
         found = replace(found, verdict=Verdict.REFUTED, reason=reason)
     else:
         name = prose("order 1")
-    if trial.step.moving:  # the exact flow is not followed with time as yet
-        return found
     return replace(found, counterexample=_counterexample(name, claims, trial))
 
 
@@ -64,7 +62,8 @@ def _counterexample(name: str, claims: Claims, trial: Trial) -> Counterexample |
             row = whole.largest
             if name == "det J ≡ 1":
                 value = f"{row.delta_j:.6e} ± {row.delta_noise:.1e}"
-                return Counterexample(*row.delta_at, row.h, "det J − 1", value, "0")
+                clock = trial.step.clock(*row.delta_at) if trial.step.moving else None
+                return Counterexample(*row.delta_at, row.h, "det J − 1", value, "0", clock)
             area = name.startswith("ΔJ")
             power = (claims.area_order or 1) if area else (claims.order or 1) + 1
             at = whole.rows[-1].delta_at if area else whole.rows[-1].error_at
@@ -96,6 +95,7 @@ def _too_slow(found: Measured, at: Point, power: int, area: bool) -> Counterexam
         "|det J − 1|" if area else "the distance from the exact flow after one step",
         f"{value:.6e}",
         f"about {allowed:.2e} for O(h^{power}), by that at h = {before.h}",
+        *found.times,
     )
 
 

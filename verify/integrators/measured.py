@@ -121,8 +121,10 @@ def _where(found: Measured) -> Prose:
     """The points and steps that were looked at."""
     first, last = found.rows[0].h, found.rows[-1].h
     most = [max(abs(point[i]) for point in found.points) for i in (0, 1)]
+    clock = f", {min(found.times)} ≤ t ≤ {max(found.times)}" if found.times else ""
     return prose(
-        f"{len(found.points)} points, |p| ≤ {most[0]}, |q| ≤ {most[1]}, for h from {first} to ",
+        f"{len(found.points)} points, |p| ≤ {most[0]}, |q| ≤ {most[1]}{clock}, ",
+        f"for h from {first} to ",
         Number(f"{float(last):.1e}"),
     )  # fmt: skip
 

@@ -15,7 +15,7 @@ from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import Fitted, fitted
-from verify.integrators.step import Step, StepError, Theirs
+from verify.integrators.step import State, Step, StepError, Theirs
 from verify.integrators.tracing.dual import BITS, Duals
 from verify.integrators.tracing.functions import copied
 
@@ -82,7 +82,8 @@ class Row:
 class Measured:
     """`how`: "duals" or "floats". `rows` by falling h. `opaque`: whether it may solve equations up
     to a tolerance, since values were compared or floats hide what it does. `rounded`: whether its
-    coefficients are. `points`: those that it was tried at.
+    coefficients are. `points`: those that it was tried at, and `times`: t at each, where H depends
+    on it.
     """
 
     how: str
@@ -90,6 +91,7 @@ class Measured:
     opaque: bool
     rounded: bool
     points: tuple[Point, ...]
+    times: tuple[Fraction, ...] = ()
 
     @property
     def steady(self) -> tuple[Row, ...]:
@@ -142,14 +144,13 @@ def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measure
     Raises StepError, or what the user's code raises, where there are too few.
     """
     ladder, step = ladder or LADDERS[how], trial.step
-    flow = Flow(trial.hamiltonian.field()[0], _DIGITS[how])
-    probe = _Duals(step) if how == "duals" else _Floats(step)
+    flow, probe = flow_of(trial.hamiltonian, how), PROBES[how](step)
     rows, lost = [], ""
 
     def at(point: Point, h: Fraction) -> Reading | None:
         nonlocal lost
         try:
-            return _reading(probe, flow, point, h)
+            return reading(probe, flow, point, h)
         except Exception as error:  # the user's code may raise anything
             lost = f"{error}, at p = {point[0]}, q = {point[1]}, h = {h}"
             return None
@@ -158,14 +159,20 @@ def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measure
     alive = [point for point in trial.points if at(point, ladder[-1]) is not None]
     for h in ladder if alive else ():
         found = {point: at(point, h) for point in alive}
-        readings = {point: reading for point, reading in found.items() if reading is not None}
+        readings = {point: each for point, each in found.items() if each is not None}
         if step.left <= 0:
             break
         if len(readings) == len(alive):
             rows.append(_row(h, readings))
     if len(rows) < _ENOUGH:
         raise StepError(lost or "it fails for most steps")
-    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive))
+    times = tuple(step.clock(*point) for point in alive) if step.moving else ()
+    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive), times)
+
+
+def flow_of(hamiltonian: Hamiltonian, how: str) -> Flow:
+    """The exact flow, to the digits that a reading asks for."""
+    return Flow(hamiltonian.field()[0], _DIGITS[how])
 
 
 def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
@@ -183,9 +190,11 @@ def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
     )
 
 
-def _reading(probe: "_Duals | _Floats", flow: Flow, point: Point, h: Fraction) -> Reading:
+def reading(probe: "Probe", flow: Flow, point: Point, h: Fraction) -> Reading:
+    """ΔJ of one step, and its distance from that flow, of an H with the step's t or without."""
     (p, q), delta, delta_noise, noise = probe.at(point, h)
-    start = flow.number(point[0]), flow.number(point[1])
+    clock = (probe.step.clock(*point),) if flow.timed else ()
+    start = tuple(map(flow.number, (*point, *clock)))
     try:
         end = flow.advance(start, flow.number(h))
     except NoFlowError as error:
@@ -217,14 +226,15 @@ class _Duals:
     ) -> tuple[tuple["gmpy2.mpfr", "gmpy2.mpfr"], float, float, float]:
         with self.kind.running():
             p, q = self.kind.state(*point)
-            x, y = dual_step(self.step, self.function, p, q, self.kind.rational(h))
+            size, clock = map(self.kind.rational, (h, self.step.clock(*point)))
+            x, y = dual_step(self.step, self.function, p, q, size, clock)
             delta = x.by_p * y.by_q - x.by_q * y.by_p - 1
-            size = abs(x.by_p * y.by_q) + abs(x.by_q * y.by_p) + 1
+            terms = abs(x.by_p * y.by_q) + abs(x.by_q * y.by_p) + 1
             reach = 1 + abs(x.value) + abs(y.value)
             return (
                 (x.value, y.value),
                 float(delta),
-                _DUAL_NOISE * float(size),
+                _DUAL_NOISE * float(terms),
                 _DUAL_NOISE * float(reach),
             )
 
@@ -258,8 +268,8 @@ class _Floats:
     def at(
         self, point: Point, h: Fraction
     ) -> tuple[tuple["gmpy2.mpfr", "gmpy2.mpfr"], float, float, float]:
-        z, size = (float(point[0]), float(point[1])), float(h)
-        here = self.step.at(*z, size)
+        z, size = (float(point[0]), float(point[1])), (float(h), float(self.step.clock(*point)))
+        here = self.step.at(*z, *size)
         width = _WIDTH * (1 + max(map(abs, z)))
         one, two = (self._determinant(z, size, w) for w in (width, width / 2))
         # The wider stencil's error is 2⁶ times the narrower's, whose rounding is twice as large.
@@ -269,17 +279,21 @@ class _Floats:
         state = number(Fraction(here[0])), number(Fraction(here[1]))
         return state, two, noise, 4 * _EPSILON * reach
 
-    def _determinant(self, z: tuple[float, float], h: float, width: float) -> float:
-        """ΔJ by central differences of the increments."""
+    def _determinant(self, z: State, size: State, width: float) -> float:
+        """ΔJ by central differences of the increments, with h and t as they are."""
         columns = []
         for i in (0, 1):
             total = [0.0, 0.0]
             for k, weight in _STENCIL:
                 ahead, behind = list(z), list(z)
                 ahead[i], behind[i] = z[i] + k * width, z[i] - k * width
-                f, b = self.step.at(ahead[0], ahead[1], h), self.step.at(behind[0], behind[1], h)
+                f, b = (self.step.at(x[0], x[1], *size) for x in (ahead, behind))
                 for j in (0, 1):
                     total[j] += weight * ((f[j] - ahead[j]) - (b[j] - behind[j]))
             columns.append([x / (60 * width) for x in total])
         (u_p, v_p), (u_q, v_q) = columns
         return u_p + v_q + u_p * v_q - u_q * v_p
+
+
+Probe = _Duals | _Floats
+PROBES: dict[str, type[Probe]] = {"duals": _Duals, "floats": _Floats}

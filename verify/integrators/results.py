@@ -30,7 +30,10 @@ NOTHING = Claims()
 
 @dataclass(frozen=True)
 class Counterexample:
-    """At (p, q) with step h: what `quantity` is there, and what it would have to be."""
+    """At (p, q) with step h: what `quantity` is there, and what it would have to be.
+
+    `t`: where H depends on it.
+    """
 
     p: Fraction
     q: Fraction
@@ -38,9 +41,11 @@ class Counterexample:
     quantity: str
     found: str
     expected: str
+    t: Fraction | None = None
 
     def __str__(self) -> str:
-        at = f"at p = {self.p}, q = {self.q}, h = {self.h}"
+        time = "" if self.t is None else f", t = {self.t}"
+        at = f"at p = {self.p}, q = {self.q}{time}, h = {self.h}"
         return f"{at}: {self.quantity} is {self.found}, expected {self.expected}"
 
 

@@ -10,13 +10,15 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from fractions import Fraction
+from typing import Any, TypeAlias, TypeVar
 
 from verify.integrators.tracing.number import TracedNumber
 from verify.prose import Number, Prose, prose, read_prose
 
 Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
 State = tuple[float, float]
+Real = TypeVar("Real", float, Fraction)
 TIME_LIMIT = 60.0  # seconds for all of the user's code
 
 
@@ -67,9 +69,9 @@ class Step:
         """Whether it takes t."""
         return "t" in self.order
 
-    def clock(self, p: float, q: float) -> float:
-        """The t at which it is called with floats at a point: another one at every point."""
-        return (1 + 2 * p + q) / 4 if self.moving else 0.0
+    def clock(self, p: Real, q: Real) -> Real:
+        """The t at which it is called at a point: another one at every point."""
+        return (1 + 2 * p + q) / 4 if self.moving else type(p)(0)
 
     def raw(
         self, function: Callable[..., Theirs], p: Theirs, q: Theirs, h: Theirs, t: Theirs = 0.0
@@ -90,10 +92,11 @@ class Step:
         boxes[0][0], boxes[1][0] = p, q
         return self.raw(function, boxes[0], boxes[1], h, t)
 
-    def at(self, p: float, q: float, h: float) -> State:
-        """(p', q') as floats. Raises StepError, also for what is not finite."""
+    def at(self, p: float, q: float, h: float, t: float | None = None) -> State:
+        """(p', q') as floats; without t at the point's own. Raises StepError, also for what is not
+        finite."""
         with self.limited():
-            result = self.called(self.function, p, q, h, self.clock(p, q))
+            result = self.called(self.function, p, q, h, self.clock(p, q) if t is None else t)
         x, y = (_real(x) for x in self.pair(result))
         if x - x != 0 or y - y != 0:
             found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))

@@ -1,6 +1,7 @@
 """Steps of one's own for H(p, q, t): right clocks, wrong ones, and t where it is not looked for."""
 
 import math
+import struct
 from collections.abc import Callable
 from typing import Any
 
@@ -8,6 +9,8 @@ import pytest
 
 import verify
 from verify.errors import InputError
+from verify.flows.extrapolation import Flow
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
 from verify.verdict import Verdict
 
@@ -147,13 +150,95 @@ def test_t_is_known_by_its_name_wherever_it_stands(swapped: bool) -> None:
         verify.check(DRIVEN, right, arguments="p,q,t")
 
 
-def test_what_cannot_be_traced_is_undecided_and_not_called_wrong() -> None:
-    def branching(p: Any, q: Any, t: Any, h: Any) -> Any:
-        return verlet_at(0, 1)(p, q, t, h) if t > 0 else verlet_at(0, 0)(p, q, t, h)
+def as_float(step: Callable[..., Any]) -> Callable[..., Any]:
+    """The same through floats, as of a compiled integrator, which cannot be traced."""
 
-    found = checked(branching, order=2)
-    assert found.verdict is Verdict.UNDECIDED
-    assert "not measured yet" in " ".join(map(str, found.notes))
+    def through(p: Any, q: Any, t: Any, h: Any) -> Any:
+        return step(*(struct.unpack("d", struct.pack("d", x))[0] for x in (p, q, t, h)))
+
+    return through
+
+
+def solved(middle: float) -> Callable[..., Any]:
+    """The implicit midpoint rule by iteration, ended by a comparison: for dual numbers."""
+
+    def step(p: Any, q: Any, t: Any, h: Any) -> Any:
+        x, y = p, q
+        for _ in range(200):
+            u = p + h * force((q + y) / 2, t + middle * h)
+            v = q + h * (p + x) / 2
+            moved = abs(u - x) + abs(v - y)
+            x, y = u, v
+            if moved == 0:
+                break
+        return x, y
+
+    return step
+
+
+@pytest.mark.parametrize("how", ["duals", "floats"])
+@pytest.mark.parametrize(
+    ("middle", "order", "words"),
+    [(0.5, 2, ""), (0.0, 1, "read at t in every stage"), (1.0, 1, "read at t + h in every stage")],
+)
+def test_what_cannot_be_traced_is_measured_and_its_clock_is_named(
+    how: str, middle: float, order: int, words: str
+) -> None:
+    step = solved(middle)
+    found = checked(as_float(step) if how == "floats" else step, order=2)
+    assert found.how == how
+    assert found.convergence_order == order
+    assert found.verdict is (Verdict.REFUTED if words else Verdict.MEASURED)
+    named = [str(note) for note in found.notes if "stands still" in str(note)]
+    assert len(named) == bool(words)
+    assert all(words in each and "of order 2" in each for each in named)
+    assert (found.counterexample is not None) is bool(words)
+    assert any("≤ t ≤" in text for text in found.domain)
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_in_floats_a_right_clock_is_measured_at_its_order(name: str) -> None:
+    step, order = RIGHT[name]
+    found = checked(as_float(step), order=order)
+    assert (found.verdict, found.how) == (Verdict.MEASURED, "floats")
+    assert (found.convergence_order, found.area_preserving) == (order, name != "RK4")
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_in_floats_a_wrong_clock_is_refuted_at_its_order(name: str) -> None:
+    step, claimed, words = WRONG[name]
+    found = checked(as_float(step), order=claimed)
+    assert (found.verdict, found.how, found.convergence_order) == (Verdict.REFUTED, "floats", 1)
+    assert sum("stands still" in str(note) for note in found.notes) == bool(words)
+
+
+def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
+    found = checked(verlet_at(0, 0), order=2)
+    example = found.counterexample
+    assert example is not None
+    assert example.t == (1 + 2 * example.p + example.q) / 4
+    assert f"t = {example.t}" in str(example)
+    gap = float(example.found)
+    at = [float(x) for x in (example.p, example.q, example.t, example.h)]
+    flow = Flow(Hamiltonian.parse(DRIVEN, time=True).field()[0], 20)
+    end = flow.advance(
+        tuple(map(flow.number, (example.p, example.q, example.t))), flow.number(example.h)
+    )
+    made = verlet_at(0, 0)(*at)
+    assert max(abs(float(x) - y) for x, y in zip(end, made, strict=False)) == pytest.approx(gap)
+
+
+def test_branches_are_judged_at_the_points_that_are_named() -> None:
+    """Where they part at a t that is reached, it is told by what is measured."""
+
+    def branching(least: float) -> Callable[..., Any]:
+        def step(p: Any, q: Any, t: Any, h: Any) -> Any:
+            return verlet_at(0, 1)(p, q, t, h) if t > least else verlet_at(0, 0)(p, q, t, h)
+
+        return step
+
+    assert checked(branching(0.0), order=2).verdict is Verdict.MEASURED
+    assert checked(branching(0.4), order=2).verdict is Verdict.REFUTED
 
 
 def test_another_branch_with_floats_is_not_taken_for_what_is_traced() -> None:
@@ -162,4 +247,5 @@ def test_another_branch_with_floats_is_not_taken_for_what_is_traced() -> None:
     def sly(p: Any, q: Any, t: Any, h: Any) -> Any:
         return verlet_at(0, 0 if type(t) is float else 1)(p, q, t, h)
 
-    assert checked(sly).verdict is Verdict.UNDECIDED
+    found = checked(sly, order=2)
+    assert (found.verdict, found.how, found.convergence_order) == (Verdict.REFUTED, "floats", 1)

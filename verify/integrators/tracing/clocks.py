@@ -14,7 +14,7 @@ from verify.proof.order import convergence_of
 from verify.schemes.step_map import StepMap
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees
-_MOMENTS = {"t": 0, "t + h": 1, "t + h/2": sympy.Rational(1, 2)}
+MOMENTS = {"t": sympy.S.Zero, "t + h": sympy.S.One, "t + h/2": sympy.S.Half}  # as parts of h
 _STILL = symbol("still")
 
 
@@ -30,7 +30,7 @@ def clock_mistakes(
         return []
     t, h = symbol("t"), symbol("h")
     still = Hamiltonian(hamiltonian.exact.subs(t, _STILL))
-    for words, part in _MOMENTS.items():
+    for words, part in MOMENTS.items():
         made = expressions(nodes, {"t": _STILL - part * h})
         try:
             step = StepMap.from_expressions(still, made[p_next.number], made[q_next.number])
@@ -38,9 +38,13 @@ def clock_mistakes(
         except InputError:  # too long, or not smooth
             continue
         if found is None or found > order:
-            reached = "exact" if found is None else f"of order {found}"
-            return [
-                f"it is {reached} as if the force were read at {words} in every stage: its clock "
-                "stands still"
-            ]
+            return [stands_still("exact" if found is None else f"of order {found}", words)]
     return []
+
+
+def stands_still(reached: str, words: str) -> str:
+    """What is said of such a clock: `reached` is what the step then is, `words` the moment."""
+    return (
+        f"it is {reached} as if the force were read at {words} in every stage: its clock stands "
+        "still"
+    )
