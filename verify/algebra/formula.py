@@ -42,8 +42,8 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Div: operator.truediv,
 }
 _NO_TIME = (
-    "only `prove`, `run`, `separate`, `check-integrator` and scenes take an H that depends on time "
-    "as yet"
+    "only `prove`, `run`, `separate`, `export`, `check-integrator` and scenes take an H that "
+    "depends on time as yet"
 )
 _SHORT = 18  # digits of a number that is surely within the limits
 _DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)

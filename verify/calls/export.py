@@ -32,6 +32,8 @@ def export(
     parameters: exact values by name; one without a value becomes an argument of the functions.
     name: of the function that makes a step; those of J and ΔJ are NAME_jacobian and NAME_delta_j.
 
+    The functions take p, q and h, and where H depends on time p, q, t and h; J is taken at that t.
+
     Numbers in the code are the doubles nearest to the exact ones, which comments beside them give.
     Raises InputError, one line, for what is none of this, and for a map that is given by equations.
 
@@ -52,7 +54,7 @@ def program(
     name: str = "step",
 ) -> Program:
     """What is written: the map as assignments, with its constants; see `export`."""
-    exact = hamiltonian_from(system, parameters)
+    exact = hamiltonian_from(system, parameters, time=True)
     found = scheme_from(scheme)
     step_map = step_map_from(found, exact)
     if isinstance(found, Scheme):

@@ -70,7 +70,7 @@ def hamiltonian_from(
 
 def _allowed(hamiltonian: Hamiltonian, time: bool) -> Hamiltonian:
     if hamiltonian.time_dependent and not time:
-        problem = "depends on t, which is taken by prove, run, separate and check alone"
+        problem = "depends on t, which is taken by prove, run, separate, export and check alone"
         raise InputError("hamiltonian", hamiltonian.formula, problem)
     return hamiltonian
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@with_hamiltonian
+@with_hamiltonian(time=True)
 @scheme_option
 @answering
 @click.option(
@@ -33,12 +33,13 @@ def export(
 ) -> Answer:
     """Write a step map, its Jacobian and ΔJ as C, Python, Julia or LaTeX.
 
-    A parameter without a value becomes an argument. Constants are the doubles nearest to the exact
-    numbers, which comments beside them give.
+    A parameter without a value becomes an argument, and so does t where H depends on it. Constants
+    are the doubles nearest to the exact numbers, which comments beside them give.
 
     \b
     verify export --system duffing --scheme lie2 --language c
     verify export --system pendulum --scheme yoshida4 --language latex
+    verify export --system driven-pendulum --scheme stormer-verlet --language julia
     """
     from verify.calls.export import program
     from verify.files import write_atomically

@@ -29,6 +29,7 @@ OUTPUTS = {
 class Program:
     """The map of `scheme` for H, `hamiltonian`, as three functions of p, q, h and `parameters`.
 
+    `variables`: p, q and h, with t, at which the step begins, before h where H depends on it.
     `name` is the step's; `functions` has the lines of `step`, `jacobian` (∂p'/∂p, ∂p'/∂q, ∂q'/∂p,
     ∂q'/∂q) and `delta_j`, which end with assignments to the names in `OUTPUTS`. `parts`: the
     formulas of each part, for people. `area_preserving`: whether ΔJ ≡ 0 is proved.
@@ -37,6 +38,7 @@ class Program:
     name: str
     scheme: str
     hamiltonian: str
+    variables: tuple[str, ...]
     parameters: tuple[str, ...]
     constants: tuple[Constant, ...]
     functions: dict[str, Lines]
@@ -47,7 +49,7 @@ class Program:
     @property
     def arguments(self) -> tuple[str, ...]:
         """The names of what each function takes."""
-        return ("p", "q", "h", *self.parameters)
+        return (*self.variables, *self.parameters)
 
     def head(self) -> tuple[str, ...]:
         """What it is, in lines of a comment, in ASCII."""
@@ -58,6 +60,11 @@ class Program:
             f"One step of the scheme {self.scheme}",
             f"for H = {self.hamiltonian}, p' = -dH/dq, q' = dH/dp.",
             f"{area}.",
+            *(
+                ["J is taken at a fixed t, at which the step begins."]
+                if "t" in self.variables
+                else []
+            ),
             "Constants are the doubles nearest to the exact numbers in the comments.",
         )
         return tuple(" ".join(line.split()) for line in lines)  # a text of the users' has ends
@@ -80,11 +87,14 @@ def program_of(
         raise LimitError("map", shown, problem)
     taken = {*reserved, *(n for names in OUTPUTS.values() for n in names), *OUTPUTS, name}
     renamed = _renamed(step_map.hamiltonian.symbols, taken)
-    writer = _Writer(step_map, renamed)
+    time = ("t",) if step_map.hamiltonian.time_dependent else ()
+    variables = ("p", "q", *time, "h")
+    writer = _Writer(step_map, renamed, variables)
     return Program(
         name=name,
         scheme=scheme,
         hamiltonian=_formula(step_map, renamed),
+        variables=variables,
         parameters=tuple(str(x) for x in renamed.values()),
         functions={key: getattr(writer, key)() for key in OUTPUTS},
         constants=tuple(writer.constants),
@@ -110,10 +120,15 @@ def _renamed(names: Sequence[str], taken: set[str]) -> dict[sympy.Symbol, sympy.
 
 
 class _Writer:
-    def __init__(self, step_map: StepMap, renamed: dict[sympy.Symbol, sympy.Symbol]) -> None:
+    def __init__(
+        self,
+        step_map: StepMap,
+        renamed: dict[sympy.Symbol, sympy.Symbol],
+        variables: Sequence[str],
+    ) -> None:
         self.map = step_map
         self.renamed = renamed
-        self.used = {"p", "q", "h", *map(str, renamed.values())}
+        self.used = {*variables, *map(str, renamed.values())}
         self.constants = Constants(lambda k: self._free(f"c{k}"))
         closed = step_map.closed
         self.parts: Sequence[Substep] = step_map.substeps if closed is None else (closed,)

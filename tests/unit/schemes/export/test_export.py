@@ -14,13 +14,15 @@ import sympy
 
 import verify
 from verify import InputError, schemes
+from verify.algebra.formula import symbol
 from verify.calls.given import hamiltonian_from
 from verify.schemes.step_map import H_STEP, P, Q, StepMap
 
 Functions = tuple[Callable[..., Any], Callable[..., Any], Callable[..., Any]]
 JULIA = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "sinh", "cosh")
 POINT = (0.625, -0.75, 0.125)  # p, q, h, which are doubles
-DELTA = 1.5
+DELTA, TIME = 1.5, 0.375
+DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
 OWN = "p_next = p - h*q**3/(1 + h**2*q**2); q_next = q + h*p_next/3"
 CASES = [
     ("duffing", "lie2"),
@@ -32,15 +34,19 @@ CASES = [
     ("p**2/2 + atan(q)*p**3 + sqrt(q**2 + 2)", "lie1"),
     ("p**2/2 + exp(q/3)*cosh(p) + 1/(q**2 + pi)", "lie2"),
     ("p**2/6 + q**4/4", OWN),
+    (DRIVEN, "lie2"),
+    (DRIVEN, "rk4"),
+    (DRIVEN, "stormer-verlet"),
+    ("p**2/(2 + t**2) + q**4/4 - q*exp(-t)", "yoshida4"),
 ]
 
 
 def known(system: str, name: str) -> list[mpmath.mpf]:
     """p', q', the entries of J, and ΔJ at the point with 40 digits, by sympy alone."""
-    step_map = schemes.get(name).step_map(hamiltonian_from(system))
+    step_map = schemes.get(name).step_map(hamiltonian_from(system, time=True))
     with mpmath.workdps(40):
         point = [mpmath.mpf(x) for x in POINT]
-        delta = {s: sympy.Rational(3, 2) for s in sympy.symbols("delta", real=True, seq=True)}
+        delta = {symbol("delta"): sympy.Rational(3, 2), symbol("t"): sympy.Rational(3, 8)}
         jacobian = mpmath.eye(2)
         for part in step_map.substeps:
             pair = [part.ring.expression(x).subs(delta) for x in (part.p_next, part.q_next)]
@@ -115,6 +121,8 @@ def _returned(function: Any) -> Callable[..., float]:
 def check(functions: Functions, system: str, name: str) -> None:
     step, jacobian, delta_j = functions
     given = (*POINT, DELTA) if system == "duffing" else POINT
+    if "t**" in system or "*t" in system:
+        given = (*POINT[:2], TIME, POINT[2])
     wanted = known(system, name)
     found = [*step(*given), *jacobian(*given)]
     for own, exact in zip(found, wanted, strict=False):
@@ -190,3 +198,23 @@ def test_latex_has_the_parts_the_jacobian_and_delta_j() -> None:
     assert rows == ["p_{1}", "q_{1}", "p_{2}", "q_{2}", "p_{3}", "q'", "p'"]
     assert text.count("{") == text.count("}")
     assert "in [6.7560359597982881" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "order"), [("lie2", 2), ("stormer-verlet", 2), ("forest-ruth", 4)]
+)
+def test_exported_python_is_a_scheme_in_time_of_its_order(name: str, order: int) -> None:
+    """As an integrator of one's own, traced again from its text; and frozen it is none."""
+    step = python_code(DRIVEN, name)[0]
+    found = verify.check(DRIVEN, step, order=order)
+    assert (found.verdict.holds, found.convergence_order) == (True, order)
+    frozen = verify.check(DRIVEN, lambda p, q, t, h: step(p, q, 0.0 * t, h), order=order)
+    assert frozen.verdict.value == "REFUTED"
+
+
+def test_a_parameter_called_like_a_name_of_the_code_is_no_clock() -> None:
+    """t is time, at its place before h, and says so in the head."""
+    code = verify.export("p**2/2 - cos(q - omega*t)", "lie1", "python")
+    assert "def step(p, q, t, h, omega):" in code
+    assert "J is taken at a fixed t" in code
+    assert "fixed t" not in verify.export("p**2/2 - cos(q)", "lie1", "python")
