@@ -164,7 +164,7 @@ class _Reader:
         self, source: str, text: str, line: str, names: frozenset[str] | None, time: bool
     ) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
-        self.time = time if names is None else "t" in names
+        self.time = time
         self.required: list[Requirement] = []
 
     def fail(self, problem: str, at: ast.expr | int | None = None) -> InputError:
@@ -219,7 +219,7 @@ class _Reader:
     def name(self, name: str, at: ast.expr | None = None) -> sympy.Expr:
         if name == "pi":
             return sympy.pi
-        if name == "t" and not self.time:
+        if name == "t" and self.names is None and not self.time:
             raise self.fail(f"t is not allowed: {_NO_TIME}", at)
         if self.names is not None and name not in self.names:
             raise self.fail(_nodes().unknown_name(name, self.names, FUNCTIONS), at)
