@@ -3,8 +3,9 @@
 Python raises what a signal's handler raises wherever the program happens to be. Where that is a
 callback of the garbage collector (hypothesis has one), a finaliser or a callback from C, Python
 prints it and goes on: the signal would be lost, and is sent again. Where it is the import of a
-library in C, that may become an ImportError: whatever ends the command after a signal is that
-signal.
+library in C, that may become an ImportError, or nothing at all (gmpy2 runs some Python as it is
+imported, and clears what that raises): while something is imported the signal waits, though not
+for long, and whatever ends the command after a signal is that signal.
 """
 
 import contextlib
@@ -13,10 +14,11 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from types import FrameType
-from typing import NoReturn
 
 TERMINATED = 143
 _AGAIN_AFTER = 0.01  # seconds: by then the callback is left
+_MOST_WAITS = 200  # of them: a user's module may do as it is imported what does not end
+_IMPORTING = "<frozen importlib._bootstrap>"  # the file of frames under which an import runs
 
 
 @contextlib.contextmanager
@@ -24,15 +26,16 @@ def heard_signals() -> Iterator[None]:
     """SIGINT is KeyboardInterrupt and SIGTERM SystemExit with status 143, and neither is lost."""
     heard: list[int] = []
 
-    def interrupted(number: int, frame: FrameType | None) -> NoReturn:
+    def hear(number: int, frame: FrameType | None) -> None:
         heard.append(number)
-        signal.default_int_handler(number, frame)
+        if len(heard) <= _MOST_WAITS and _imports(frame):
+            _send_again(number)
+        elif number == signal.SIGINT:
+            signal.default_int_handler(number, frame)
+        else:
+            sys.exit(TERMINATED)
 
-    def terminated(number: int, _: FrameType | None) -> NoReturn:
-        heard.append(number)
-        sys.exit(TERMINATED)
-
-    with _handlers({signal.SIGINT: interrupted, signal.SIGTERM: terminated}), _sent_again():
+    with _handlers(dict.fromkeys((signal.SIGINT, signal.SIGTERM), hear)), _sent_again():
         try:
             yield
         except Exception as error:
@@ -43,7 +46,7 @@ def heard_signals() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _handlers(chosen: Mapping[signal.Signals, Callable[..., NoReturn]]) -> Iterator[None]:
+def _handlers(chosen: Mapping[signal.Signals, Callable[..., None]]) -> Iterator[None]:
     """Those handlers, for a while; no others where this is not the thread that is signalled."""
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -59,22 +62,34 @@ def _handlers(chosen: Mapping[signal.Signals, Callable[..., NoReturn]]) -> Itera
 @contextlib.contextmanager
 def _sent_again() -> Iterator[None]:
     """A signal whose exception Python prints and forgets comes a second time."""
-    before, here = sys.unraisablehook, threading.get_ident()
+    before = sys.unraisablehook
 
     def hear(ignored: "sys.UnraisableHookArgs") -> None:
         number = _signal(ignored.exc_value)
         if number is None:
             before(ignored)
         else:
-            again = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (here, number))
-            again.daemon = True
-            again.start()
+            _send_again(number)
 
     sys.unraisablehook = hear
     try:
         yield
     finally:
         sys.unraisablehook = before
+
+
+def _send_again(number: int) -> None:
+    main = threading.main_thread().ident
+    again = threading.Timer(_AGAIN_AFTER, signal.pthread_kill, (main, number))
+    again.daemon = True
+    again.start()
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether this is done while something is imported."""
+    while frame is not None and frame.f_code.co_filename != _IMPORTING:
+        frame = frame.f_back
+    return frame is not None
 
 
 def _signal(error: BaseException | None) -> signal.Signals | None:

@@ -4,6 +4,7 @@ import gc
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -57,6 +58,48 @@ def test_what_a_library_makes_of_a_signal_while_it_is_imported_is_that_signal(
 
     with pytest.raises(raised), heard_signals():
         import_library()
+
+
+SWALLOWS = """
+import signal
+try:
+    signal.raise_signal(signal.{name})
+except BaseException:
+    pass
+{more}
+"""
+
+
+def imported(folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, more: str = "") -> None:
+    """A module that clears what is raised as it is imported, as gmpy2 does."""
+    (folder / f"{folder.name}.py").write_text(SWALLOWS.format(name=name, more=more))
+    monkeypatch.syspath_prepend(folder)
+    with heard_signals():
+        __import__(folder.name)
+        time.sleep(WAIT)
+        raise AssertionError("the signal is lost")
+
+
+@pytest.mark.parametrize(
+    ("name", "raised"), [("SIGINT", KeyboardInterrupt), ("SIGTERM", SystemExit)]
+)
+def test_a_signal_that_an_import_would_clear_waits_for_its_end(
+    name: str, raised: type[BaseException], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = time.monotonic()
+    with pytest.raises(raised):
+        imported(tmp_path, monkeypatch, name)
+    assert tmp_path.name in sys.modules
+    assert time.monotonic() - begun < WAIT / 2
+
+
+def test_an_import_that_does_not_end_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        imported(tmp_path, monkeypatch, "SIGINT", "import time\ntime.sleep(60)")
+    assert time.monotonic() - begun < WAIT
 
 
 def test_an_error_without_a_signal_stays_that_error() -> None:
