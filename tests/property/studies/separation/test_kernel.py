@@ -94,7 +94,8 @@ def test_an_input_part_far_below_the_others_is_known_to_as_many_digits(
     true = links(text, eta, start, steps)["plain"]
     value, bound = chain.final("input")
     assert abs(value - (true[1] - true[0])) <= bound + SHORT
-    assume(true[1] != true[0])
+    # Where Λ's slope is 0 there, as at q = 1/8 for q³ − 3q²/8, it is of the square of that.
+    assume(abs(true[1] - true[0]) > Fraction(1, 10 ** (places + 25)))
     assert 0 < bound <= abs(value) / 10**digits / 2
 
 
