@@ -21,7 +21,7 @@ def measured_mistakes(trial: Trial, how: str, order: int | None) -> list[str]:
     if order is None or not trial.step.moving:
         return []
     for words, part in MOMENTS.items():
-        found = _order(trial, how, trial.points[0], Fraction(int(part.p), int(part.q)))
+        found = _order(trial, how, trial.points[0], part)
         if found.power is not None and found.tail is None and found.power - 1 > order:
             return [stands_still(f"of order {found.power - 1}", words)]
     return []

@@ -50,6 +50,18 @@ def as_read(data: Data) -> Data:
     return json.loads(json.dumps(data))  # type: ignore[no-any-return]
 
 
+def of_text(text: str, name: str) -> Data:
+    """The certificate of the scheme of that name for this H."""
+    scheme = get(name)
+    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
+    return as_read(of_one(proof, potential_of(proof, scheme)))
+
+
+def of_every_in_time(name: str) -> Data:
+    """That of the scheme for every H(p, q, t)."""
+    return as_read(of_every(prove_every_in_time(name)))
+
+
 @st.composite
 def of_drawn(draw: st.DrawFn) -> Data:
     """The certificate of a drawn H, separable for a half of them, and a scheme."""
@@ -73,7 +85,7 @@ certificates = st.one_of(
     of_drawn(),
     of_drawn(),
     st.sampled_from(EVERY).map(lambda name: as_read(of_every(prove_every(name)))),
-    st.sampled_from(IN_TIME).map(lambda name: as_read(of_every(prove_every_in_time(name)))),
+    st.sampled_from(IN_TIME).map(of_every_in_time),
 )
 
 

@@ -4,7 +4,7 @@ With t held still at a moment s of the step, H(p, q, s) is autonomous. A step th
 at one moment is a scheme for that H of an order that it may not have for the motion in time.
 """
 
-import sympy
+from fractions import Fraction
 
 from verify.algebra.formula import symbol
 from verify.errors import InputError
@@ -14,7 +14,7 @@ from verify.proof.order import convergence_of
 from verify.schemes.step_map import StepMap
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees
-MOMENTS = {"t": sympy.S.Zero, "t + h": sympy.S.One, "t + h/2": sympy.S.Half}  # as parts of h
+MOMENTS = {"t": Fraction(0), "t + h": Fraction(1), "t + h/2": Fraction(1, 2)}  # as parts of h
 _STILL = symbol("still")
 
 

@@ -55,38 +55,42 @@ def of_every(proof: EveryProof) -> Certificate:
     data |= {"time_dependent": True} if proof.timed else {}
     stages = every_h.stages if isinstance(every_h, Splitting) else every_h
     if isinstance(stages, StageEquations) and proof.area_preserving:
-        times = _clock(scheme) if proof.timed else [()] * len(stages.stages)
-        rows = (
-            (s.kick, s.drift, s.at_p, s.at_q, *time)
-            for s, time in zip(stages.stages, times, strict=True)
-        )
-        return data | {"stages": [[str(x) for x in row] for row in rows]}
+        rows = [[*map(str, (s.kick, s.drift, s.at_p, s.at_q))] for s in stages.stages]
+        if proof.timed:
+            rows = [[*row, time] for row, time in zip(rows, _clock(scheme), strict=True)]
+        return data | {"stages": rows}
     if proof.order is None or not isinstance(every_h, BySeries):
         raise InputError("scheme", proof.scheme, _BY_COEFFICIENTS)
     most = proof.order
+    jets: JetRing
     if proof.timed and isinstance(every_h, TaylorSeries):
-        jets: JetRing = TimedJets(most + 2)
+        jets = TimedJets(most + 2)
         series = every_h.taylor(jets, most)
-        leading = list(jets.delta_j(*series))[-1]
-        potential = potential_of_lie(jets, every_h.eta) if proof.telescopes else None
     else:
-        jets = plain = Jets(most + 2, separable=proof.separable)
-        series = every_h.taylor(plain, most)
-        leading = list(jets.delta_j(*series))[-1]
-        potential = telescoping_of(plain, every_h, leading).potential if proof.telescopes else None
+        jets = Jets(most + 2, separable=proof.separable)
+        series = every_h.taylor(jets, most)
+    *_, leading = jets.delta_j(*series)
     names = dict(enumerate(jets.names))
     data |= map_of(most, proof.convergence_order, leading, series, names)
+    potential = _potential(jets, every_h, leading) if proof.telescopes else None
     if potential is not None:
         data["potential"] = terms(potential, names)
     return data
 
 
-def _clock(scheme: Scheme) -> list[tuple[str, ...]]:
+def _potential(jets: JetRing, every_h: BySeries, leading: Poly) -> Poly | None:
+    """The G of a leading coefficient that telescopes."""
+    if isinstance(jets, Jets):
+        return telescoping_of(jets, every_h, leading).potential
+    return potential_of_lie(jets, every_h.eta) if isinstance(every_h, TaylorSeries) else None
+
+
+def _clock(scheme: Scheme) -> list[str]:
     """The time of each stage, in parts of h."""
     found = conditions_for(scheme.every_h).clock
     if not all(time.is_Rational for time in found):
         raise InputError("scheme", scheme.name, _BY_COEFFICIENTS)
-    return [(str(time),) for time in found]
+    return [*map(str, found)]
 
 
 def map_of(

@@ -14,20 +14,15 @@ from typing import Any
 import pytest
 from mpmath.ctx_mp import MPContext
 
+from tests.helpers.sampled.certificates import as_read, of_every_in_time, of_text
 from tests.oracle.printed_certificates import is_true
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates import balls, checker
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import checked
-from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
-from verify.proof.order import prove
-from verify.proof.potential import potential_of
-from verify.schemes import get
 
 ONE = [
     ("p**2/2 + q**2/2 + d*q**4/4", "lie2"),
@@ -50,20 +45,6 @@ EVERY = ["lie1", "lie2", "lie3", "lie4", "symplectic-euler"]
 EVERY_IN_TIME = ["lie1", "lie2", "lie3", "symplectic-euler", "implicit-midpoint"]
 
 
-def of(text: str, name: str) -> dict[str, Any]:
-    scheme = get(name)
-    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
-    return as_read(of_one(proof, potential_of(proof, scheme)))
-
-
-def as_read(data: dict[str, Any]) -> dict[str, Any]:
-    return json.loads(json.dumps(data))  # type: ignore[no-any-return]
-
-
-def of_every_in_time(name: str) -> dict[str, Any]:
-    return as_read(of_every(prove_every_in_time(name)))
-
-
 CERTIFICATES = {f"{text}, {name}": (text, name) for text, name in ONE}
 
 
@@ -75,7 +56,7 @@ def certificate(request: pytest.FixtureRequest) -> dict[str, Any]:
         return of_every_in_time(request.param.removesuffix(" in time"))
     if request.param in EVERY:
         return as_read(of_every(prove_every(request.param)))
-    return of(*CERTIFICATES[request.param])
+    return of_text(*CERTIFICATES[request.param])
 
 
 def polynomials(data: dict[str, Any]) -> Iterator[list[list[str]]]:
@@ -135,7 +116,7 @@ def test_an_order_off_by_one_is_refused(certificate: dict[str, Any], key: str) -
 
 
 def test_a_changed_cofactor_is_refused() -> None:
-    data = of("p**2/2 - cos(q)", "lie3")
+    data = of_text("p**2/2 - cos(q)", "lie3")
     assert data["cofactors"]
     for cofactors in data["cofactors"].values():
         for terms in cofactors.values():
@@ -199,7 +180,7 @@ def test_stages_are_of_every_hamiltonian_and_of_no_other() -> None:
 
 def test_a_witness_gives_values_to_variables_and_to_nothing_else() -> None:
     """sin² + cos² − 1 is not zero where both are 7."""
-    data = of("p**2/2 - cos(q)", "lie2")
+    data = of_text("p**2/2 - cos(q)", "lie2")
     refused(data | {"witness": data["witness"] | {"#2": "7", "#3": "7"}}, "gives values to p, q")
     refused(data | {"witness": {"p": "1"}}, "gives values to p, q")
     refused(data | {"witness": {}}, "witness: is missing")
@@ -225,7 +206,7 @@ ZEROS = {
 @pytest.mark.parametrize("zero", ZEROS)
 def test_a_quotient_by_zero_makes_nothing_true(zero: str) -> None:
     """With w·u = 1 for u = 0, the cofactor −x of w·u − 1 would show that any x is zero."""
-    data = of("p**2/2 - cos(q)", "symplectic-euler")
+    data = of_text("p**2/2 - cos(q)", "symplectic-euler")
     data |= {"functions": ZEROS[zero], "witness": {"p": "1", "q": "1"}}
     data |= {"hamiltonian": [["1/2", "p", "p"]], "p_next": [[["1", "p"]], [["5", "p", "q"]]]}
     data |= {"q_next": [[["1", "q"]], [["1", "p"]]], "convergence_order": 0}
@@ -237,7 +218,7 @@ def test_a_quotient_by_zero_makes_nothing_true(zero: str) -> None:
 
 
 def test_what_is_beyond_its_range_is_refused_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    data = of("p**2/2 + q**2/2 + d*q**4/4", "lie2")
+    data = of_text("p**2/2 + q**2/2 + d*q**4/4", "lie2")
     for number in ("1e999999999", "9" * 5000, "1/0", "٣", "1_0", " 1", "nan", 1, None):
         refused(data | {"leading": [[number, "p"]]}, "leading")
     for whole in (10**9, 2.0, True, "3", -1, 0):
@@ -256,13 +237,13 @@ def test_what_is_beyond_its_range_is_refused_quickly(monkeypatch: pytest.MonkeyP
 
 
 def test_a_function_before_what_it_is_made_of_is_refused() -> None:
-    data = of("sin(exp(q)) + p**2", "lie1")
+    data = of_text("sin(exp(q)) + p**2", "lie1")
     data["functions"] = data["functions"][::-1]
     refused(data, "stands for nothing")
 
 
 def test_the_names_of_p_and_q_are_not_given_to_functions() -> None:
-    data = of("p**2/2 - cos(q)", "lie2")
+    data = of_text("p**2/2 - cos(q)", "lie2")
     data["functions"].append(["p", "exp", [["1", "q"]]])
     with pytest.raises(ValueError, match="new name"):
         check(data)
@@ -278,7 +259,7 @@ def test_a_leading_coefficient_of_zero_is_refused() -> None:
 
 
 def test_a_witness_at_which_nothing_is_seen_is_refused() -> None:
-    data = of("p**2/2 - cos(q)", "lie2")
+    data = of_text("p**2/2 - cos(q)", "lie2")
     with pytest.raises(ValueError, match="witness"):
         check(data | {"witness": data["witness"] | {"p": "0"}})
 
@@ -317,7 +298,7 @@ def test_what_is_established_is_derived_from_what_is_checked() -> None:
         "det J − 1 = L h^3 + O(h^4), L not zero for some H, for every smooth H and this map, "
         "which agrees with the flow up to h^2, and L = X·G"
     )
-    said = established(check(of("p**2/2 + d/(1 + q**2)", "symplectic-euler")))
+    said = established(check(of_text("p**2/2 + d/(1 + q**2)", "symplectic-euler")))
     assert (said.order, said.leading, said.area_preserving) == (None, None, True)
     assert said.hamiltonian == "d/(q**2 + 1) + p**2/2"
     assert said.p_next == "p + h*(2*d*q/(q**2 + 1)**2)"
@@ -370,12 +351,12 @@ def test_a_file_is_checked(tmp_path: Path) -> None:
 )
 def test_functions_that_the_checker_does_not_know_have_no_certificate(text: str, name: str) -> None:
     with pytest.raises(InputError, match="no certificate"):
-        of(text, name)
+        of_text(text, name)
 
 
 def test_what_is_refuted_has_no_certificate() -> None:
     with pytest.raises(InputError, match="nothing to certify"):
-        of("p**2/2 - cos(q)", "p_next = p; q_next = q")
+        of_text("p**2/2 - cos(q)", "p_next = p; q_next = q")
 
 
 def test_the_checker_is_small_and_imports_nothing_of_the_provers() -> None:

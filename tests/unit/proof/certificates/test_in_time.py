@@ -5,30 +5,13 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.sampled.certificates import as_read
+from tests.helpers.sampled.certificates import of_every_in_time, of_text
 from tests.oracle.printed_certificates import is_true
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import established
-from verify.proof.certificates.every import of_every
-from verify.proof.certificates.one import of_one
-from verify.proof.every_in_time import prove_every_in_time
-from verify.proof.order import prove
-from verify.proof.potential import potential_of
-from verify.schemes import get
 
 DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
 FROZEN = DRIVEN.replace("t)/2", "d)/2")
-
-
-def of(text: str, name: str) -> dict[str, Any]:
-    scheme = get(name)
-    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
-    return as_read(of_one(proof, potential_of(proof, scheme)))
-
-
-def of_all(name: str) -> dict[str, Any]:
-    return as_read(of_every(prove_every_in_time(name)))
 
 
 def refused(data: dict[str, Any], why: str) -> None:
@@ -46,7 +29,7 @@ def renamed(data: Any, names: dict[str, str]) -> Any:
 
 def test_a_frozen_clock_is_no_flow_in_time() -> None:
     """The map of X in the place of D, as of an H with a parameter, said to be one in time."""
-    data = renamed(of(FROZEN, "lie2"), {"d": "t"}) | {"parameters": [], "time_dependent": True}
+    data = renamed(of_text(FROZEN, "lie2"), {"d": "t"}) | {"parameters": [], "time_dependent": True}
     refused(data, "p 2 is not zero")
     refused(data | {"convergence_order": 1}, "potential is not zero")
     del data["potential"]
@@ -58,12 +41,14 @@ def test_a_frozen_clock_is_no_flow_in_time() -> None:
 
 def test_time_is_no_parameter() -> None:
     """The formulas would be read as those of an H in time, of which the certificate is false."""
-    data = renamed(of(FROZEN, "lie2"), {"d": "t"})
+    data = renamed(of_text(FROZEN, "lie2"), {"d": "t"})
     refused(data, "'t' is no new name")
-    refused(of(DRIVEN, "lie2") | {"parameters": ["t"]}, "'t' is no new name")
+    refused(of_text(DRIVEN, "lie2") | {"parameters": ["t"]}, "'t' is no new name")
 
 
-@pytest.mark.parametrize("made", [lambda: of(DRIVEN, "lie2"), lambda: of_all("lie2")])
+@pytest.mark.parametrize(
+    "made", [lambda: of_text(DRIVEN, "lie2"), lambda: of_every_in_time("lie2")]
+)
 def test_without_its_mark_time_stands_for_nothing(made: Any) -> None:
     data = made()
     check(data)
@@ -74,7 +59,7 @@ def test_without_its_mark_time_stands_for_nothing(made: Any) -> None:
 
 
 def test_an_autonomous_certificate_has_no_mark_and_holds_with_one() -> None:
-    data = of("p**2/2 - cos(q)", "lie2")
+    data = of_text("p**2/2 - cos(q)", "lie2")
     assert "time_dependent" not in data
     data["witness"]["t"] = "1/3"
     assert established(check(data | {"time_dependent": True})).order == 3
@@ -82,29 +67,29 @@ def test_an_autonomous_certificate_has_no_mark_and_holds_with_one() -> None:
 
 
 def test_what_depends_on_t_alone_is_no_constant_of_the_motion() -> None:
-    data = of(DRIVEN, "lie2")
+    data = of_text(DRIVEN, "lie2")
     check(data | {"potential": [*data["potential"], ["5"]]})
     refused(data | {"potential": [*data["potential"], ["5", "t"]]}, "potential is not zero")
     check(data | {"hamiltonian": [*data["hamiltonian"], ["5", "t"]]})  # of the force it is none
 
 
 def test_what_h_has_of_t_alone_is_left_out() -> None:
-    assert of(f"{DRIVEN} + t**2 - 5*t", "lie2") == of(DRIVEN, "lie2")
+    assert of_text(f"{DRIVEN} + t**2 - 5*t", "lie2") == of_text(DRIVEN, "lie2")
 
 
 def test_a_derivative_by_t_comes_last_in_a_name() -> None:
-    data = of_all("lie2")
+    data = of_every_in_time("lie2")
     gap = [["1", "H_pt"], ["-1", "H_tp"]]
     refused(data | {"leading": data["leading"] + gap}, "'H_tp' stands for nothing")
 
 
 def test_a_witness_has_a_time() -> None:
-    data = of(DRIVEN, "lie2")
+    data = of_text(DRIVEN, "lie2")
     refused(data | {"witness": {"p": "1", "q": "1"}}, "gives values to p, q .*: p, q, t")
 
 
 def test_a_stage_in_time_has_a_time_and_no_other_has() -> None:
-    data = of_all("stormer-verlet")
+    data = of_every_in_time("stormer-verlet")
     assert [row[4] for row in data["stages"]] == ["0", "1/2", "1"]
     check(data)
     refused(data | {"stages": [row[:4] for row in data["stages"]]}, "a row has 5 numbers")
@@ -112,18 +97,18 @@ def test_a_stage_in_time_has_a_time_and_no_other_has() -> None:
 
 
 def test_what_is_printed_names_time_and_says_the_truth() -> None:
-    said = established(check(of_all("stormer-verlet")))
+    said = established(check(of_every_in_time("stormer-verlet")))
     assert said.hamiltonian == "every smooth H = T(p, t) + V(q, t)"
     assert said.p_next.startswith("p1 = p - h*(1/2)*H_q(p, q, t); ")
     assert said.q_next == "q1 = q; q2 = q1 + h*(1)*H_p(p1, q1, t + (1/2)*h); q3 = q2"
     assert is_true(asdict(said))
     assert not is_true(asdict(said) | {"p_next": said.p_next.replace("h*(1/2)", "h*(1/2)*p", 1)})
-    said = established(check(of_all("implicit-midpoint")))
+    said = established(check(of_every_in_time("implicit-midpoint")))
     assert said.p_next == (
         "p1 = p - h*(1)*H_q(p + (1/2)*(p1 - p), q + (1/2)*(q1 - q), t + (1/2)*h)"
     )
     assert is_true(asdict(said))
-    said = established(check(of_all("lie2")))
+    said = established(check(of_every_in_time("lie2")))
     assert said.statement == (
         "det J − 1 = L h^3 + O(h^4), L not zero for some H, for every smooth H(p, q, t) and this "
         "map, which agrees with the flow up to h^2, and L = D·G, D = ∂/∂t + X"
@@ -135,6 +120,6 @@ def test_what_is_printed_names_time_and_says_the_truth() -> None:
 
 def test_a_splitting_with_times_of_its_own() -> None:
     name = "kick 1/3 at 0; drift 1/2; kick 2/3 at 1/2; drift 1/2; order 1"
-    said = established(check(of_all(name)))
+    said = established(check(of_every_in_time(name)))
     assert "H_q(p2, q2, t + (1/2)*h)" in said.p_next
     assert is_true(asdict(said))
