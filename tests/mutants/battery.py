@@ -51,18 +51,20 @@ def drawn_scenes(examples: int, seed: int) -> list[Any]:
     A scheme that is not drawn hides its mutants. The order is mixed, as the dear properties look
     at the first scenes only.
     """
-    drawer, tasks, schemes = (
-        import_module(f"verify.{name}") for name in ("drawn_scenes", "tasks", "schemes")
+    drawer, spaces, schemes = (
+        import_module(f"verify.{name}")
+        for name in ("exploration.scenes", "exploration.sample_space", "schemes")
     )
-    asked = [(tasks.Drawn(), k) for k in range(examples)]
-    asked += [(tasks.Drawn(schemes=(n,)), k) for n in schemes.names() for k in range(_OF_EACH)]
+    space = spaces.SampleSpace
+    asked = [(space(), k) for k in range(examples)]
+    asked += [(space(schemes=(n,)), k) for n in schemes.names() for k in range(_OF_EACH)]
     random.Random(seed).shuffle(asked)  # noqa: S311 - no secret
-    return [drawer.drawn_scene(drawn, seed, k) for drawn, k in asked]
+    return [drawer.sample_scene(drawn, seed, k) for drawn, k in asked]
 
 
 def example_of(scene: Any) -> Any:
     """The scene as properties look at it."""
-    return import_module("verify.exploration.sample").Example.of(scene)
+    return import_module("verify.exploration.sample").Sample.of(scene)
 
 
 def violation() -> type[Exception]:

@@ -46,6 +46,7 @@ _SEEDS = 2**32
     help="polynomial, trigonometric, exponential or rational H only; repeatable.",
 )
 @click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most.")
+@click.option("--time-dependent", is_flag=True, help="H(p, q, t), from a drawn t₀ on.")
 @click.option(
     "--maximise",
     metavar="MEASURE",
@@ -71,6 +72,7 @@ def explore(
     schemes: tuple[str, ...],
     kinds: tuple[str, ...],
     degree: int,
+    time_dependent: bool,
     maximise: str | None,
     steps: int | None,
     output: Path,
@@ -102,7 +104,12 @@ def explore(
 
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
     looks, left_out = _looks(claims, names) if maximise is None else ({}, {})
-    drawn = SampleSpace(kinds=kinds, degree=degree, schemes=schemes or _spoken_of(looks))
+    drawn = SampleSpace(
+        kinds=kinds,
+        degree=degree,
+        schemes=schemes or _spoken_of(looks),
+        time_dependent=time_dependent,
+    )
     if maximise is not None:
         if claims or names:
             raise InputError(

@@ -63,6 +63,8 @@ def _command(asked: "Hunt") -> str:
     own += [f"--kind {name}" for name in asked.drawn.kinds]
     if asked.drawn.degree != type(asked.drawn)().degree:
         own.append(f"--degree {asked.drawn.degree}")
+    if asked.drawn.time_dependent:
+        own.append("--time-dependent")
     return f"verify explore {' '.join(own)}"
 
 
@@ -83,6 +85,7 @@ def _print(shown: "Gallery", output: Path, page: Path) -> None:
         of = each.separation
         click.echo(f"{place}. 10^{each.value:.2f}  H = {of.hamiltonian}")
         start = f"h = {of.step_size}, q = {of.q}, p = {of.p}"
+        start += f", t0 = {of.t0}" if of.t0 != "0" else ""
         click.echo(f"   {of.scheme}, {start}: {_when(each)}; {output / f'worst-{place}.toml'}")
     if not shown.scenes:
         click.echo("no scene that was drawn can be measured so")

@@ -4,7 +4,7 @@ No kernel is written for them: an oracle for the number systems that shares no c
 rigorous. ΔJ is taken from the four entries of J, not from its closed form.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -22,11 +22,18 @@ _SHARP = 120  # bits that a ball must know to be worth comparing
 
 @dataclass(frozen=True)
 class BallState:
-    """After so many steps: p, q, and Π det J_k over the steps done."""
+    """After so many steps: p, q, Π det J_k over the steps done, and t where H depends on it."""
 
     p: Ball
     q: Ball
     product: Ball
+    t: Ball | None = None
+
+    @property
+    def point(self) -> dict[str, Ball]:
+        """p and q, and t, by name."""
+        found = {"p": self.p, "q": self.q}
+        return found if self.t is None else found | {"t": self.t}
 
     def sharp(self) -> "BallState":
         """The same; Silent where one of the three is too wide to tell numbers apart."""
@@ -35,16 +42,17 @@ class BallState:
 
 
 def ball_steps(
-    step_map: StepMap, p: Fraction, q: Fraction, h: Fraction, steps: int, bits: int = BITS
+    step_map: StepMap, start: Mapping[str, Fraction], steps: int, bits: int = BITS
 ) -> Sequence[BallState]:
     """The states after 0, 1, … steps; Silent where the map solves equations, or is not defined.
 
-    h may be negative.
+    `start`: p, q, h, which may be negative, and t where H depends on it.
     """
     only_if(not step_map.implicit)
     with working_precision(bits):
-        states = [BallState(rational_ball(p), rational_ball(q), flint.arb(1))]
-        size = rational_ball(h)
+        first = {name: rational_ball(x) for name, x in start.items()}
+        size = first.pop("h")
+        states = [BallState(**first, product=flint.arb(1))]
         for _ in range(steps):
             states.append(stepped(step_map, states[-1], size))
     return states
@@ -52,14 +60,15 @@ def ball_steps(
 
 def stepped(step_map: StepMap, state: BallState, h: Ball) -> BallState:
     """One step from a state, in flint's present precision; Silent where it is not defined."""
-    p, q, product = state.p, state.q, state.product
+    box, product = state.point | {"h": h}, state.product
     for step in step_map.substeps:
         wanted = step.p_next, step.q_next, *step.jacobian
-        found = known(enclose_all(step.ring, wanted, {"p": p, "q": q, "h": h}))
+        found = known(enclose_all(step.ring, wanted, box))
         only_if(all(x.is_finite() for x in found))
-        p, q, a, b, c, d = found
+        box["p"], box["q"], a, b, c, d = found
         product = product * (a * d - b * c)
-    return BallState(p, q, product)
+    after = None if state.t is None else state.t + h
+    return BallState(box["p"], box["q"], product, after)
 
 
 def unlike(found: Ball, wanted: Ball) -> str:

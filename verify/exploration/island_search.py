@@ -148,11 +148,13 @@ def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
             drawn.kinds or strategies.KINDS,
             degree=drawn.degree,
             separable=separable_for(drawn.schemes),
+            time_dependent=drawn.time_dependent,
             terms=3,
             size=SIZE,
         ),
         schemes=strategies.schemes(names=drawn.schemes or ("lie2",)),
         initial_values=st.builds(InitialValue, q=tenths, p=tenths),
+        initial_times=tenths,
         step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
         steps=(steps, steps),
     )

@@ -52,7 +52,8 @@ def _scene(scene: Scene, formula: str, q: Fraction, p: Fraction, h: Fraction) ->
         "step_sizes": [text(h)],
         "initial_values": [{"q": text(q), "p": text(p)}],
     }
-    return scene_from({"hamiltonian": formula, "schemes": scene.schemes, "grid": grid}, "neighbour")
+    whole = {"hamiltonian": formula, "t0": text(scene.t0), "schemes": scene.schemes, "grid": grid}
+    return scene_from(whole, "neighbour")
 
 
 def _formulas(hamiltonian: Hamiltonian, within: tuple[Fraction, Fraction]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""One drawn scene as properties look at it: one H, scheme, step size, initial value and N."""
+"""One drawn scene as properties look at it: one H, scheme, step size, initial value, t₀ and N."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -31,6 +31,7 @@ class Sample:
     q: Fraction
     step_size: Fraction
     steps: int
+    t0: Fraction
     scene: Scene
 
     @classmethod
@@ -49,6 +50,7 @@ class Sample:
             q=start.q,
             step_size=h,
             steps=scene.grid.steps_for(h),
+            t0=scene.t0,
             scene=scene,
         )
 
@@ -141,9 +143,16 @@ class Sample:
     @property
     def run_arguments(self) -> dict[str, Any]:
         """What `run` and `separate` are called with beside H and the scheme."""
-        return {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
+        own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
+        return own | {"t0": self.t0}
+
+    @property
+    def timed(self) -> bool:
+        """Whether H depends on t."""
+        return self.hamiltonian.time_dependent
 
     @property
     def start(self) -> dict[str, Fraction]:
-        """p, q and h by name, as a run and an enclosure want them."""
-        return {"p": self.p, "q": self.q, "h": self.step_size}
+        """p, q and h by name, and t where H depends on it, as a run and an enclosure want them."""
+        own = {"p": self.p, "q": self.q, "h": self.step_size}
+        return own | {"t": self.t0} if self.timed else own

@@ -4,7 +4,8 @@ from verify.scenes.frozen import Frozen
 
 
 class SampleSpace(Frozen):
-    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all).
+    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all), and
+    whether H depends on t.
 
     >>> SampleSpace(kinds=("polynomial",), schemes=("lie2",)).degree
     6
@@ -13,3 +14,4 @@ class SampleSpace(Frozen):
     kinds: tuple[str, ...] = ()
     degree: int = 6
     schemes: tuple[str, ...] = ()
+    time_dependent: bool = False

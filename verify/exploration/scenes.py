@@ -35,10 +35,16 @@ def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
     if drawn.kinds or drawn.degree != SampleSpace().degree:
         kinds = drawn.kinds or strategies.KINDS
         hamiltonians = strategies.hamiltonians(
-            kinds, degree=drawn.degree, separable=separable_for(drawn.schemes)
+            kinds,
+            degree=drawn.degree,
+            separable=separable_for(drawn.schemes),
+            time_dependent=drawn.time_dependent,
         )
     return strategies.scenes(
-        hamiltonians=hamiltonians, schemes=given_schemes, steps=(1, _MOST_STEPS)
+        hamiltonians=hamiltonians,
+        schemes=given_schemes,
+        steps=(1, _MOST_STEPS),
+        time_dependent=drawn.time_dependent,
     )
 
 

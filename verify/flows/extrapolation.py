@@ -9,7 +9,7 @@ Where H depends on time a state is (p, q, t): with t' = 1 the system is autonomo
 takes its midpoints at t, t + h, t + 2h, …
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -72,15 +72,19 @@ class Flow:
     def __init__(self, field: VectorField, digits: int) -> None:
         self.arithmetic = mpfr.make(digits + _GUARD)
         ring, self.timed = field.ring, field.timed
-        names = ("p", "q", "t") if self.timed else ("p", "q")
+        self._names = ("p", "q", "t") if self.timed else ("p", "q")
         elements = [(ring, -field.h_q), (ring, field.h_p)]
-        self._slopes = functions_at(self.arithmetic, elements, names)
+        self._slopes = functions_at(self.arithmetic, elements, self._names)
         self._midpoint = self._midpoint_in_time if self.timed else self._midpoint_still
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + _GUARD - _LOST)))
         self._columns = 6 + digits // 3  # more of them gain less than a shorter step does
 
     def number(self, x: Fraction) -> Number:
         return self.arithmetic.number(x)
+
+    def state(self, point: Mapping[str, Fraction]) -> State:
+        """z at a point: p and q by name, and t where H depends on it."""
+        return tuple(self.number(point[name]) for name in self._names)
 
     def slope(self, z: State) -> State:
         """f(z) = (−H_q, H_p). Raises NoFlowError where it is not defined."""

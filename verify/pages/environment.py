@@ -28,7 +28,8 @@ def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Envi
         lstrip_blocks=True,
     )
     made.filters.update({each.__name__: each for each in _FILTERS})
-    made.globals.update(equation=_equation, words=words, signs=SIGNS, drawn=drawn)
+    own = {"equation": _equation, "hamiltonian": mathml.hamiltonian}
+    made.globals.update(own, words=words, signs=SIGNS, drawn=drawn)
     return made
 
 

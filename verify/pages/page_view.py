@@ -96,7 +96,6 @@ def _scene(scene: SceneResult, anchor: str) -> SceneView:
     return SceneView(
         result=scene,
         anchor=anchor,
-        energy="H(p, q, t)" if "t" in names else "H(p, q)",
         symbols=tuple(n for n in names if n not in (*scene.parameters, "t")),
         floors=_floors(scene),
         sections=shown(of_scene.FILES, Place(anchor, scene.title), scene, anchor),

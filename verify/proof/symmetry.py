@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from verify.algebra.conditions import Condition, WithSymmetry
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Series, at_point, partials
+from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import first_wrong, shown
@@ -93,11 +93,18 @@ def by_series(step_map: StepMap, most: int) -> Symmetry:
 
 
 def undone(ring: Ring, x: Series, p: Series, q: Series) -> Series:
-    """Of x = p or q, Σ (−h)ⁿ xₙ at the point (p, q) that is given by its series, less its start."""
+    """Of x = p or q, Σ (−h)ⁿ xₙ at the point (p, q) that is given by its series, less its start.
+
+    Where H depends on time, at t + h, at which the step of −h begins.
+    """
+    timed, h = "t" in ring.variables, Series.of(ring, [ring.zero, ring.one], x.most)
     start: tuple[Poly, Poly] = (ring.variable("p"), ring.variable("q"))
     u, v = (s - Series.of(ring, [y], s.most) for s, y in zip((p, q), start, strict=True))
     total = Series.of(ring, [-x.coefficients[0]], x.most)
     for n, coefficient in enumerate(x.coefficients):
-        moved = at_point(partials(ring, coefficient), u, v).shifted(n)
+        if timed:
+            moved = at_time(ring, coefficient, u, v, h).shifted(n)
+        else:
+            moved = at_point(partials(ring, coefficient), u, v).shifted(n)
         total = total - moved if n % 2 else total + moved
     return total

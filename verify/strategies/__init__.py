@@ -12,8 +12,16 @@ what is wrong with one. `st.from_type` knows the types that are drawn here: see 
 
 from verify.strategies.hamiltonians import KINDS as KINDS
 from verify.strategies.hamiltonians import hamiltonians
-from verify.strategies.numbers import initial_values, parameters, step_sizes
+from verify.strategies.numbers import initial_times, initial_values, parameters, step_sizes
 from verify.strategies.scenes import scenes
 from verify.strategies.schemes import schemes
 
-__all__ = ["hamiltonians", "initial_values", "parameters", "scenes", "schemes", "step_sizes"]
+__all__ = [
+    "hamiltonians",
+    "initial_times",
+    "initial_values",
+    "parameters",
+    "scenes",
+    "schemes",
+    "step_sizes",
+]

@@ -23,13 +23,13 @@ def driven(
     kinds: Sequence[str],
     limits: Limits,
     *,
-    linear: bool,
+    linear: bool = False,
 ) -> Formula:
     """Formulas with such a term beside, which in p and q is of one of the kinds, and of no higher
     degree than the limits say; `linear`: in q, which what grows faster than that outgrows."""
     found = draw(still)
     forms = _LINEAR if linear else [*_LINEAR, *_others(kinds, limits)]
-    return replace(found, text=found.text + _drive(Drawer(draw, limits), forms))
+    return replace(found, text=found.text + _drive(Drawer(draw, limits), forms), timed=True)
 
 
 def _others(kinds: Sequence[str], limits: Limits) -> Iterator[_Form]:

@@ -50,11 +50,12 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True)
 class Formula:
-    """The text of H, the values of its parameters, and whether H = T + V; t may be in both."""
+    """The text of H, the values of its parameters, whether H = T + V, and whether t is in it."""
 
     text: str
     parameters: tuple[tuple[str, Fraction], ...]
     separable: bool
+    timed: bool = False
 
     def hamiltonian(self) -> Hamiltonian:
         """H of that text, with its parameters' values."""

@@ -64,6 +64,17 @@ def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrate
     return st.builds(InitialValue, q=numbers, p=numbers)
 
 
+def initial_times(*, most: Exact = 2) -> st.SearchStrategy[Fraction]:
+    """t₀ as an exact rational with |t₀| ≤ most, of the kinds of numbers that initial values are.
+
+    Raises InputError for most ≤ 0.
+    """
+    bound = rational(most, "most")
+    if bound <= 0:
+        raise InputError("most", most, "must be greater than 0")
+    return _coordinates(bound, extreme=False)
+
+
 def _coordinates(most: Fraction, extreme: bool) -> st.SearchStrategy[Fraction]:
     ordinary = [_multiples(most, d) for d in _DENOMINATORS if most * d >= 1]
     ordinary = ordinary or [_multiples(most, math.ceil(10 / most))]

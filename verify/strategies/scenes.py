@@ -1,7 +1,9 @@
 """Whole scenes: an H, a scheme that takes it, and a run of a few steps."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
+from typing import Any, NamedTuple
 
 from hypothesis import reject
 from hypothesis import strategies as st
@@ -13,8 +15,9 @@ from verify.scenes.scene import Scene
 from verify.scenes.values import MAX_STEPS, InitialValue
 from verify.schemes.scheme import Scheme
 from verify.strategies import numbers
-from verify.strategies.arguments import whole
-from verify.strategies.formulas import Formula, formulas
+from verify.strategies.arguments import whole, yes_no
+from verify.strategies.drives import driven
+from verify.strategies.formulas import KINDS, USUAL, Formula, formulas
 from verify.strategies.schemes import named, takers
 
 
@@ -23,8 +26,10 @@ def scenes(
     hamiltonians: st.SearchStrategy[Hamiltonian] | None = None,
     schemes: st.SearchStrategy[Scheme] | None = None,
     initial_values: st.SearchStrategy[InitialValue] | None = None,
+    initial_times: st.SearchStrategy[Fraction] | None = None,
     step_sizes: st.SearchStrategy[Fraction] | None = None,
     steps: tuple[int, int] = (1, 40),
+    time_dependent: bool = False,
 ) -> st.SearchStrategy[Scene]:
     """Valid scenes with one scheme and a `[grid]` of one step size, one initial value and at least
     steps[0] and at most steps[1] steps.
@@ -35,60 +40,85 @@ def scenes(
     example is rejected. A scheme is named in its scene, so it has to be one that
     `verify.schemes.get` finds. Shrinks towards lie1, one step of 1/10, H = p**2/2 + q**2/2.
 
+    `time_dependent`: H(p, q, t), as `verify.strategies.hamiltonians` draws them; of those that are
+    given it is not to be said. Wherever H depends on t, a t₀ is drawn.
+
     Raises InputError for a bad argument when it is called.
     """
     given = {"hamiltonians": hamiltonians, "schemes": schemes, "initial_values": initial_values,
-             "step_sizes": step_sizes}  # fmt: skip
+             "initial_times": initial_times, "step_sizes": step_sizes}  # fmt: skip
     for name, strategy in given.items():
         if strategy is not None and not isinstance(strategy, st.SearchStrategy):
             raise InputError(name, strategy, "is not a hypothesis strategy")
     if not isinstance(steps, Sequence) or len(steps) != 2:
         raise InputError("steps", steps, "is not a pair: the least and the most steps")
+    if yes_no("time_dependent", time_dependent) and hamiltonians is not None:
+        problem = "is of H that are drawn here; the hamiltonians that are given say it themselves"
+        raise InputError("time_dependent", time_dependent, problem)
     least, most = (whole("steps", value, 1, MAX_STEPS) for value in steps)
     if least > most:
         raise InputError("steps", steps, "the first is greater than the second")
     values = numbers.initial_values() if initial_values is None else initial_values
+    times = numbers.initial_times() if initial_times is None else initial_times
     sizes = numbers.step_sizes() if step_sizes is None else step_sizes
     # One number needs no draw, nor may it hang on whether a loaded module has it as a constant.
     counts = st.just(least) if least == most else st.integers(least, most)
-    grids = st.builds(_grid, counts, sizes, values)
+    runs = _Runs(st.builds(_grid, counts, sizes, values), times)
     if hamiltonians is not None:
-        return _of_hamiltonians(hamiltonians, schemes, grids)
+        return _of_hamiltonians(hamiltonians, schemes, runs)
+    formula = partial(_formulas, time_dependent=time_dependent)
     if schemes is not None:
-        return _of_schemes(schemes, grids)
-    return _of_formulas(grids)
+        return _of_schemes(schemes, formula, runs)
+    return _of_formulas(formula, runs)
+
+
+class _Runs(NamedTuple):
+    """What a scene has beside H and the scheme; the times are drawn where H depends on t."""
+
+    grids: st.SearchStrategy[Grid]
+    times: st.SearchStrategy[Fraction]
+
+    def drawn(self, draw: st.DrawFn, timed: bool) -> dict[str, Any]:
+        """The keys of the scene."""
+        found = {"grid": draw(self.grids)}
+        return found | {"t0": draw(self.times)} if timed else found
 
 
 def _grid(steps: int, step_size: Fraction, initial_value: InitialValue) -> Grid:
     return Grid(steps=steps, step_sizes=(step_size,), initial_values=(initial_value,))
 
 
-def _of_formulas(grids: st.SearchStrategy[Grid]) -> st.SearchStrategy[Scene]:
+_Formulas = Callable[..., st.SearchStrategy[Formula]]
+
+
+def _of_formulas(formula_of: _Formulas, runs: _Runs) -> st.SearchStrategy[Scene]:
     found = named()
     of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
     of_separable = st.sampled_from(found)
-    any_formula = _formulas()
+    any_formula = formula_of()
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
         formula = draw(any_formula)
-        return _scene(formula, draw(of_separable if formula.separable else of_any), draw(grids))
+        scheme = draw(of_separable if formula.separable else of_any)
+        return _scene(formula, scheme, runs.drawn(draw, formula.timed))
 
     return drawn()
 
 
 def _of_schemes(
-    schemes: st.SearchStrategy[Scheme], grids: st.SearchStrategy[Grid]
+    schemes: st.SearchStrategy[Scheme], formula_of: _Formulas, runs: _Runs
 ) -> st.SearchStrategy[Scene]:
-    any_formula, separable = _formulas(), _formulas(separable=True)
+    any_formula, separable = formula_of(), formula_of(separable=True)
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
         scheme = draw(schemes)
         formula = draw(separable if scheme.needs_separable else any_formula)
+        run = runs.drawn(draw, formula.timed)
         if scheme.every_h is not None:
-            return _scene(formula, scheme, draw(grids))
-        return _fitting(formula.hamiltonian(), scheme, draw(grids))
+            return _scene(formula, scheme, run)
+        return _fitting(formula.hamiltonian(), scheme, run)
 
     return drawn()
 
@@ -96,7 +126,7 @@ def _of_schemes(
 def _of_hamiltonians(
     hamiltonians: st.SearchStrategy[Hamiltonian],
     schemes: st.SearchStrategy[Scheme] | None,
-    grids: st.SearchStrategy[Grid],
+    runs: _Runs,
 ) -> st.SearchStrategy[Scene]:
     found = named()
 
@@ -107,27 +137,31 @@ def _of_hamiltonians(
             values = draw(numbers.parameters(hamiltonian.symbols))
             hamiltonian = hamiltonian.with_values(dict(hamiltonian.values) | values)
         own = st.sampled_from(takers(found, hamiltonian)) if schemes is None else schemes
-        return _fitting(hamiltonian, draw(own), draw(grids))
+        scheme = draw(own)
+        return _fitting(hamiltonian, scheme, runs.drawn(draw, hamiltonian.time_dependent))
 
     return drawn()
 
 
-def _formulas(separable: bool | None = None) -> st.SearchStrategy[Formula]:
+def _formulas(
+    separable: bool | None = None, time_dependent: bool = False
+) -> st.SearchStrategy[Formula]:
     plain, named = (formulas(separable=separable, with_parameters=named) for named in (False, True))
-    return st.one_of(plain, plain, named)
+    still = st.one_of(plain, plain, named)
+    return driven(still, KINDS, USUAL) if time_dependent else still
 
 
-def _scene(formula: Formula, scheme: Scheme, grid: Grid) -> Scene:
+def _scene(formula: Formula, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
     """What is valid by how it was made: looking at it again would make the step map of each."""
     return Scene.model_construct(
         hamiltonian=formula.text,
         parameters=dict(formula.parameters),
         schemes=(scheme.name,),
-        grid=grid,
+        **run,
     )
 
 
-def _fitting(hamiltonian: Hamiltonian, scheme: Scheme, grid: Grid) -> Scene:
+def _fitting(hamiltonian: Hamiltonian, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
     """The scene of parts that others drew; rejected where the scheme does not take H."""
     if not takers([scheme], hamiltonian):
         reject()
@@ -135,5 +169,5 @@ def _fitting(hamiltonian: Hamiltonian, scheme: Scheme, grid: Grid) -> Scene:
         hamiltonian=hamiltonian.formula,
         parameters=dict(hamiltonian.values),
         schemes=(scheme.name,),
-        grid=grid,
+        **run,
     )

@@ -18,9 +18,11 @@ from verify.algebra.formula import symbol, to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
+from verify.proof.symmetry import by_series
 from verify.runs.run import run
 from verify.schemes import get
 from verify.strategies.hamiltonians import hamiltonians
+from verify.verdict import Verdict
 
 p, q, t, h = map(symbol, "pqth")
 DIGITS = 25
@@ -182,6 +184,18 @@ def test_lie2_is_of_order_3_with_the_divergence_as_its_coefficient(made: Hamilto
         assert abs(found - wanted) < 1e-30
     else:
         assert abs(wanted) < 1e-30
+
+
+@few
+@given(made=separable)
+def test_by_series_the_step_back_begins_at_the_later_time(made: Hamiltonian) -> None:
+    """And a clock that stands still is not symmetric, where the force changes."""
+    for scheme in ("stormer-verlet", "position-verlet"):
+        assert by_series(get(scheme).step_map(made), 3).verdict is Verdict.UNDECIDED
+    still = get("position-verlet, clock frozen").step_map(
+        Hamiltonian.parse("p**2/2 + q*t", time=True)
+    )
+    assert by_series(still, 3).verdict is Verdict.REFUTED
 
 
 @few

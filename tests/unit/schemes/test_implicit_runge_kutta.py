@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import mpmath
 import pytest
 import sympy
 
@@ -15,6 +16,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
+from verify.runs.run import run
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, Substep
@@ -80,6 +82,25 @@ def test_the_implicit_symplectic_euler_satisfies_its_equation(text: str) -> None
     assert sympy.simplify(step_map.p_next - P + h * expression.diff(Q).xreplace(put)) == 0
     assert sympy.simplify(step_map.q_next - Q - h * expression.diff(P).xreplace(put)) == 0
     proof = prove(step_map, schemes.get("implicit-symplectic-euler"))
+    assert (proof.verdict, proof.area_preserving) == (Verdict.PROVED, True)
+    assert proof.convergence_order == 1
+
+
+@pytest.mark.parametrize("text", ["p**2/2 + p*q*t + q**2", "p**2*q**2 + p**2/2 + cos(q*t)"])
+def test_the_implicit_symplectic_euler_takes_h_at_the_time_of_the_step(text: str) -> None:
+    """One time for both derivatives, so that det J ≡ 1; solved here with mpmath alone."""
+    name, exact, t = "implicit-symplectic-euler", Hamiltonian.parse(text, time=True), plain("t")
+    start, at, size = (Fraction(1, 3), Fraction(-1, 2)), Fraction(3, 7), Fraction(1, 10)
+    found = run(exact, name, p=start[0], q=start[1], t0=at, step_size=size, steps=1,
+                arithmetic="mpfr", digits=25, observables=("lambda_plain",))  # fmt: skip
+    with mpmath.workdps(40):
+        p, q, time, h = (mpmath.mpf(x.numerator) / x.denominator for x in (*start, at, size))
+        by_p, by_q = (sympy.lambdify((P, Q, t), exact.exact.diff(x), "mpmath") for x in (P, Q))
+        p_next = mpmath.findroot(lambda y: y - p + h * by_q(y, q, time), p)
+        wanted = {"p": p_next, "q": q + h * by_p(p_next, q, time), "lambda_plain": mpmath.mpf(0)}
+        for quantity, true in wanted.items():
+            assert abs(mpmath.mpf(found.values[quantity].value) - true) < mpmath.mpf(10) ** -24
+    proof = prove(schemes.get(name).step_map(exact), schemes.get(name))
     assert (proof.verdict, proof.area_preserving) == (Verdict.PROVED, True)
     assert proof.convergence_order == 1
 

@@ -49,6 +49,13 @@ TWISTED = Hamiltonian.parse("p**2/2 + q**2/2 + p*q**2")
         (lambda: s.scenes(steps=(5, 3)), "the first is greater"),
         (lambda: s.scenes(steps=4), "is not a pair"),
         (lambda: s.scenes(hamiltonians="p**2/2"), "is not a hypothesis strategy"),
+        (lambda: s.scenes(initial_times=0), "initial_times=0: is not a hypothesis strategy"),
+        (lambda: s.scenes(time_dependent=1), "time_dependent=1: must be True or False"),
+        (
+            lambda: s.scenes(hamiltonians=s.hamiltonians(), time_dependent=True),
+            "the hamiltonians that are given say it themselves",
+        ),
+        (lambda: s.initial_times(most=0), "most=0: must be greater than 0"),
     ],
 )
 def test_bad_arguments_are_told_at_once(call: Callable[[], object], said: str) -> None:

@@ -307,6 +307,26 @@ def test_scenes_of_given_parts_have_them_and_are_valid() -> None:
     assert all(set(scene.parameters) == {"delta"} for scene in with_values)
 
 
+def test_scenes_in_time_are_valid_and_begin_at_drawn_times() -> None:
+    own = s.scenes(hamiltonians=s.hamiltonians(time_dependent=True), initial_times=st.just("1/3"))
+    lies = s.scenes(schemes=s.schemes(names=["lie2", "ruth3"]), time_dependent=True)
+    for strategy in (s.scenes(time_dependent=True), lies, own):
+        drawn = fuzzed(strategy, 60)
+        assert len(drawn) >= 55
+        assert all(valid(scene) == scene for scene in drawn)
+        assert all(scene.exact_hamiltonian().time_dependent for scene in drawn)
+        assert len({scene.t0 for scene in drawn}) > 5 or {scene.t0 for scene in drawn} == {
+            Fraction(1, 3)
+        }
+
+
+def test_a_scene_without_t_draws_no_time() -> None:
+    """So that scene K of seed S is what it was before there were any with t."""
+    never = st.nothing()
+    assert len(fuzzed(s.scenes(initial_times=never), 40)) == 40
+    assert not fuzzed(s.scenes(initial_times=never, time_dependent=True), 40)
+
+
 def test_what_does_not_fit_is_rejected_not_drawn() -> None:
     verlet = s.schemes(names=["stormer-verlet"])
     assert not fuzzed(s.scenes(hamiltonians=st.just(TWISTED), schemes=verlet), 20)

@@ -13,7 +13,6 @@ class SceneView:
 
     result: SceneResult
     anchor: str
-    energy: str  # H with what it depends on
     symbols: tuple[str, ...]  # parameters without a value
     floors: str  # a sentence on the step sizes that do not divide the time
     sections: tuple[Shown, ...]

@@ -126,6 +126,12 @@ def free_names(text: str) -> tuple[str, ...]:
     return tuple(n for n in dict.fromkeys(_identifiers(text)) if n not in known)
 
 
+def hamiltonian(text: str) -> Markup:
+    """H(p, q) = …, or H(p, q, t) = … of a formula with t."""
+    left = "H(p, q, t)" if "t" in free_names(text) else "H(p, q)"
+    return equation(NAMED[left], text)
+
+
 def read(text: str) -> Expr | None:
     """The expression, or None where the whitelist parser refuses the text."""
     try:

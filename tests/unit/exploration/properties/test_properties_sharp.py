@@ -11,6 +11,7 @@ from tests.unit.exploration.properties.test_properties import (
     Patch,
     Plant,
     example_of,
+    must_fail,
     take_every_turn,
     with_map,
 )
@@ -21,8 +22,6 @@ from verify.exploration.properties.orbits import growth_laws
 from verify.exploration.properties.orders import planted_errors
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
-from verify.kernels.kernel import kernel_for
-from verify.proof import growth_law as growth
 from verify.proof.growth_law import GrowthLaw
 from verify.proof.order_proof import Proof
 from verify.schemes.substep import Substep
@@ -191,17 +190,7 @@ PLANTED: list[tuple[str, str, Plant]] = [
 def test_a_property_sees_a_small_error(
     name: str, scheme: str, plant: Plant, monkeypatch: Patch
 ) -> None:
-    kernel_for.cache_clear()
-    growth.growth_law.cache_clear()
-    planted = plant(example_of(scheme), monkeypatch)
-    try:
-        with pytest.raises(Violation) as found:
-            properties.get(name).holds(planted)
-    finally:
-        monkeypatch.undo()
-        kernel_for.cache_clear()
-        growth.growth_law.cache_clear()
-    assert "\n" not in str(found.value)
+    must_fail(name, plant, example_of(scheme), monkeypatch)
 
 
 def test_an_order_that_is_higher_at_the_initial_value_is_no_violation() -> None:

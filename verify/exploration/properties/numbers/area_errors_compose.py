@@ -16,7 +16,9 @@ def holds(sample: Sample) -> None:
     middle = sample.steps // 2
     whole = _run(sample, sample.start, sample.steps)
     first = _run(sample, sample.start, middle)
-    after = {"p": first["p"], "q": first["q"], "h": sample.step_size}
+    after = sample.start | {"p": first["p"], "q": first["q"]}
+    if sample.timed:
+        after["t"] += middle * sample.step_size
     second = _run(sample, after, sample.steps - middle)
     product = (1 + first["lambda"]) * (1 + second["lambda"])
     size = 1 + abs(first["lambda"]) + abs(second["lambda"])

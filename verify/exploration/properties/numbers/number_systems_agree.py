@@ -50,8 +50,8 @@ def _turn(sample: Sample) -> str:
 def _enclosed(sample: Sample) -> dict[str, Ball]:
     if sample.step_map.implicit:
         return {n: _ball(v) for n, v in _run(sample, "mpfr", 40).values.items()}
-    start = sample.p, sample.q, sample.step_size
-    states = [state.sharp() for state in ball_steps(sample.step_map, *start, sample.steps)]
+    steps = ball_steps(sample.step_map, sample.start, sample.steps)
+    states = [state.sharp() for state in steps]
     with working_precision(BITS):
         return _of_states(states)
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.scenes.results.separation import Parts
-from verify.studies.separation.chain import PARTS
 from verify.studies.separation.separate import separate
 
 _IN = 8  # one in so many samples
@@ -21,8 +20,9 @@ def holds(sample: Sample) -> None:
     only_if(found.status == "finished")
     for evaluation in (found.plain, found.closed_form):
         if evaluation is not None:
-            _must_add_up(evaluation.parts, ("truncation", *PARTS), "lambda_working")
-            _must_add_up(evaluation.parts, PARTS, "total")
+            rounding = evaluation.parts.of_rounding
+            _must_add_up(evaluation.parts, ("truncation", *rounding), "lambda_working")
+            _must_add_up(evaluation.parts, rounding, "total")
 
 
 def _must_add_up(parts: Parts, names: tuple[str, ...], whole: str) -> None:

@@ -1,9 +1,10 @@
 """The exact flow keeps H, comes back with time reversed, and moves G by the leading term X·G.
 
 G is the potential of the leading coefficient of ΔJ, where it has one. The flow is followed by
-extrapolation, to 40 digits over a short time.
+extrapolation, to 40 digits over a short time. Where H depends on time it moves H by ∂H/∂t.
 """
 
+from collections.abc import Mapping
 from contextlib import suppress
 from fractions import Fraction
 
@@ -22,26 +23,36 @@ _TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
 _MOST_STEPS = 100  # of the flow, in so short a time: a field that wants more is left out
 _KNOWN = Fraction(1, 10**30)  # of a state that was followed over _TIME
 _WITHIN = Fraction(1, 2**20)  # of 1 + |L|: what (G(φ_t z) − G(z))/t leaves out is t times H's own
-Point = tuple[Fraction, Fraction]
+Point = Mapping[str, Fraction]
+Element = tuple[Ring, Poly]
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN) and sample.ordinary)
-    field = sample.field
-    flow = Flow(field, _DIGITS)
-    start = sample.p, sample.q
+    flow = Flow(sample.field, _DIGITS)
+    start = sample.start
     after = _flow_to(flow, start, _TIME)
     back = _flow_to(flow, after, -_TIME)
-    for name, x, y in zip("pq", start, back, strict=True):
+    for name in "pq":
+        x, y = start[name], back[name]
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
-    before, then = (_value(field.ring, field.energy, point) for point in (start, after))
-    with working_precision(_BITS):
-        if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
-            raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
+    _energy_must_be_kept(sample, after)
     if sample.is_turn(_OF_POTENTIALS):
         with suppress(Silent):  # the flow has been looked at
             _potential_must_move(sample)
+
+
+def _energy_must_be_kept(sample: Sample, after: Point) -> None:
+    field = sample.field
+    ring, energy = field.ring, field.energy
+    if sample.timed:
+        _must_grow(sample, "H", (ring, energy), "∂H/∂t", (ring, ring.diff(energy, "t")))
+        return
+    before, then = (_value((ring, energy), point) for point in (sample.start, after))
+    with working_precision(_BITS):
+        if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
+            raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
 
 
 def _potential_must_move(sample: Sample) -> None:
@@ -49,25 +60,31 @@ def _potential_must_move(sample: Sample) -> None:
     only_if(sample.polynomial)
     found = potential_of(sample.proof, sample.scheme)
     only_if(bool(found.holds))
-    ring, potential = known(found.element)
-    start = sample.p, sample.q
+    _must_grow(sample, "G", known(found.element), "L", known(sample.proof.first.element))
+
+
+def _must_grow(sample: Sample, name: str, x: Element, rate: str, wanted_rate: Element) -> None:
+    """Violation where an element does not grow, over an instant, by another one a time."""
+    start = sample.start
     end = _flow_to(Flow(sample.field, 2 * _DIGITS), start, _INSTANT)
-    ends = [_value(ring, potential, point) for point in (start, end)]
-    wanted = _value(*known(sample.proof.first.element), start)
+    ends = [_value(x, point) for point in (start, end)]
+    wanted = _value(wanted_rate, start)
     with working_precision(_BITS):
-        rate = (ends[1] - ends[0]) / rational_ball(_INSTANT)
-        wrong = abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
+        grown = (ends[1] - ends[0]) / rational_ball(_INSTANT)
+        wrong = abs(grown - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN)
     if wrong:
-        raise Violation(f"G grows by {shown(rate, 12)} a time, and L is {shown(wanted, 12)}")
+        told = f"{name} grows by {shown(grown, 12)} a time"
+        raise Violation(f"{told}, and {rate} is {shown(wanted, 12)}")
 
 
-def _flow_to(flow: Flow, start: Point, time: Fraction) -> Point:
-    arithmetic = flow.arithmetic
-    first = arithmetic.number(start[0]), arithmetic.number(start[1])
+def _flow_to(flow: Flow, start: Point, time: Fraction) -> dict[str, Fraction]:
+    """Where the flow is after the time, and when where H depends on it."""
     with silent_at(NoFlowError):
-        p, q = flow.follow(first, time, _MOST_STEPS)
-    return arithmetic.exact(p), arithmetic.exact(q)
+        z = flow.follow(flow.state(start), time, _MOST_STEPS)
+    found = dict(zip("pqt", map(flow.arithmetic.exact, z), strict=False))
+    return found | {"t": start["t"] + time} if flow.timed else found
 
 
-def _value(ring: Ring, x: Poly, point: Point) -> Ball:
-    return known(enclose(ring, x, dict(zip("pq", point, strict=True)), _BITS))
+def _value(element: Element, point: Point) -> Ball:
+    ring, x = element
+    return known(enclose(ring, x, point, _BITS))

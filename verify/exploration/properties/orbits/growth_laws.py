@@ -31,7 +31,8 @@ def holds(sample: Sample) -> None:
     with silent_at(NoLawError, InputError):  # ΔJ ≡ 0, or too large a closed form
         law = growth_law(sample.hamiltonian, sample.scheme.name)
     bits = _BITS_A_POWER * (law.power + 3) + _SPARE
-    states = ball_steps(sample.step_map, sample.p, sample.q, _STEP, _STEPS, bits)
+    start = sample.start | {"h": _STEP}
+    states = ball_steps(sample.step_map, start, _STEPS, bits)
     with working_precision(bits):
         _by_law(law, states[0], states[-1])
 
@@ -55,4 +56,4 @@ def _change(element: Element, first: BallState, last: BallState) -> Ball:
 
 def _at(element: Element, state: BallState) -> Ball:
     ring, x = element
-    return known(enclose_over(ring, x, {"p": state.p, "q": state.q}))
+    return known(enclose_over(ring, x, state.point))

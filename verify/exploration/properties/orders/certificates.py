@@ -50,7 +50,7 @@ def _changed(data: dict[str, Any], name: str) -> dict[str, Any] | None:
     the certificate might be that of another map, of which it says the truth.
     """
     copied: dict[str, Any] = json.loads(json.dumps(data))
-    terms = copied[name] if name == "leading" else copied[name][1]
+    terms = copied[name] if name == "leading" else [*copied[name], [], []][1]
     if not terms:
         return None
     terms[0][0] = f"{terms[0][0]}0"

@@ -19,14 +19,15 @@ _STEP = Fraction(1, 2**96)
 _BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
 _DIGITS_A_BIT = Fraction(30103, 100000)
 _WITHIN = Fraction(1, 10)  # of a whole order
-_BESIDE = Fraction(3, 70), Fraction(1, 55)  # in p and q
+_BESIDE = {"p": Fraction(3, 70), "q": Fraction(1, 55), "t": Fraction(2, 65)}
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.ordinary and not sample.step_map.implicit)
     order = known(sample.proof.convergence_order)
-    for aside in ((0, 0), _BESIDE):
-        found = _orders(sample, sample.p + aside[0], sample.q + aside[1], order)
+    beside = {name: x + _BESIDE.get(name, 0) for name, x in sample.start.items()}
+    for point in (sample.start, beside):
+        found = _orders(sample, point, order)
         _must_reach(found, order + 1)
         if not _passes(found, order + 1):
             return
@@ -47,9 +48,9 @@ def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
     return all(ball is None or ball > most for ball in found.values())
 
 
-def _orders(sample: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, Ball | None]:
+def _orders(sample: Sample, point: Mapping[str, Fraction], order: int) -> dict[str, Ball | None]:
     """By which power of h the errors in p and q shrink, None for one that may be 0."""
-    whole, half = (_error(sample, (p, q), h, order) for h in (_STEP, _STEP / 2))
+    whole, half = (_error(sample, {**point, "h": h}, order) for h in (_STEP, _STEP / 2))
     found: dict[str, Ball | None] = {}
     with working_precision(64):
         for name, large, small in zip("pq", whole, half, strict=True):
@@ -60,19 +61,17 @@ def _orders(sample: Sample, p: Fraction, q: Fraction, order: int) -> dict[str, B
     return found
 
 
-def _error(
-    sample: Sample, point: tuple[Fraction, Fraction], h: Fraction, order: int
-) -> tuple[Ball, Ball]:
+def _error(sample: Sample, start: Mapping[str, Fraction], order: int) -> tuple[Ball, Ball]:
     """Step minus flow in p and q, as balls; Silent where one of them is not known."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE
-    after = ball_steps(sample.step_map, *point, h, 1, bits)[-1]
+    after = ball_steps(sample.step_map, start, 1, bits)[-1]
     flow = Flow(sample.field, int(bits * _DIGITS_A_BIT))
     arithmetic = flow.arithmetic
     with silent_at(NoFlowError), arithmetic.context():
-        start = arithmetic.number(point[0]), arithmetic.number(point[1])
-        end = flow.advance(start, arithmetic.number(h))
+        z = flow.state(start)
+        end = flow.advance(z, arithmetic.number(start["h"]))
     with working_precision(bits):
-        exact = [_with_error(arithmetic.exact(x), bits - _LOST) for x in end]
+        exact = [_with_error(arithmetic.exact(x), bits - _LOST) for x in end[:2]]
         return after.p - exact[0], after.q - exact[1]
 
 

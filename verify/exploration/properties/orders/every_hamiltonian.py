@@ -5,6 +5,7 @@ from functools import lru_cache
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.every_proof import EveryProof
 from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
@@ -12,13 +13,17 @@ from verify.verdict import Verdict
 
 _MOST_ORDER = 4  # of a scheme that is proved for every H here
 _IN = 3  # one in so many samples is asked whether its leading coefficient telescopes
-_proved = lru_cache(maxsize=64)(prove_every)
+
+
+@lru_cache(maxsize=128)
+def _proved(scheme: str, timed: bool) -> EveryProof:
+    return prove_every_in_time(scheme) if timed else prove_every(scheme)
 
 
 def holds(sample: Sample) -> None:
     scheme = sample.scheme
     only_if(scheme.every_h is not None and scheme.order <= _MOST_ORDER and sample.ordinary)
-    every, proof = _proved(scheme.name), sample.proof
+    every, proof = _proved(scheme.name, sample.timed), sample.proof
     only_if(every.verdict is Verdict.PROVED)
     wrong = _contradiction(every, proof)
     if wrong:

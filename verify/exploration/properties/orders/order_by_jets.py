@@ -1,16 +1,19 @@
 """ΔJ's order and leading coefficient are those that the proof for every H gives, put in this H.
 
 For every H the partial derivatives of H are free variables (jets); for this one ΔJ is expanded
-itself. The two share no code but the polynomials' own.
+itself. The two share no code but the polynomials' own. Of an H that depends on time, whose jets are
+many, `lieη` alone is looked at.
 """
 
-from functools import lru_cache
+from collections.abc import Sequence
+from functools import cache, lru_cache
 
 import flint
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.generator import terms_of
 from verify.algebra.series.jets import Jets, Poly
+from verify.algebra.series.timed_jets import TimedJets
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
@@ -24,10 +27,10 @@ _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 def holds(sample: Sample) -> None:
     scheme = sample.scheme
-    only_if(_has_series_in_jets(scheme) and scheme.order <= _MOST_ORDER and sample.ordinary)
+    only_if(_has_series_in_jets(sample) and scheme.order <= _MOST_ORDER and sample.ordinary)
     proof = sample.proof
     only_if(proof.area_preserving is not None)
-    jets, coefficients = _of_every(scheme, scheme.order + 2)
+    jets, coefficients = _of_every(scheme, scheme.order + 2, sample.timed)
     derivatives = _derivatives(sample, jets)
     for n, x in enumerate(coefficients, start=1):
         wanted = _value(x, derivatives)
@@ -40,15 +43,20 @@ def holds(sample: Sample) -> None:
             return
 
 
-def _has_series_in_jets(scheme: Scheme) -> bool:
+def _has_series_in_jets(sample: Sample) -> bool:
     """Whether the scheme is a pair of series in the jets, and not only conditions on numbers."""
-    return isinstance(scheme.every_h, TaylorSeries | RungeKutta | StageEquations)
+    kinds = TaylorSeries if sample.timed else TaylorSeries | RungeKutta | StageEquations
+    return isinstance(sample.scheme.every_h, kinds)
 
 
 @lru_cache(maxsize=64)
-def _of_every(scheme: Scheme, most: int) -> tuple[Jets, tuple[Poly, ...]]:
+def _of_every(scheme: Scheme, most: int, timed: bool) -> tuple[Jets | TimedJets, tuple[Poly, ...]]:
     """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
     generic = scheme.every_h
+    if timed:
+        assert isinstance(generic, TaylorSeries)  # noqa: S101 - the caller looks
+        in_time = TimedJets(most + 2)
+        return in_time, tuple(in_time.delta_j(*generic.taylor(in_time, most)))
     assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
     jets = Jets(most + 2, separable=generic.separable)
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
@@ -61,20 +69,25 @@ def _leading(sample: Sample) -> Ball:
     return known(enclose(*element, sample.start, BITS))
 
 
-def _derivatives(sample: Sample, jets: Jets) -> dict[tuple[int, int], Ball]:
-    """H_ij at the initial value; Silent where one of them is not defined there."""
+def _derivatives(sample: Sample, jets: Jets | TimedJets) -> list[Ball]:
+    """H_ij, or H_ijk, at the initial value; Silent where one of them is not defined there."""
     field = sample.field
-    ring, found = field.ring, {(1, 0): field.h_p, (0, 1): field.h_q}
-    for i, j in sorted(jets.indices, key=sum):
-        if (i, j) not in found:
-            lower, name = ((i, j - 1), "q") if j else ((i - 1, 0), "p")
-            found[i, j] = ring.diff(found[lower], name)
-    return {ij: known(enclose(ring, found[ij], sample.start, BITS)) for ij in jets.indices}
+    ring, start = field.ring, sample.start
+
+    @cache
+    def derivative(index: tuple[int, ...]) -> Poly:
+        if sum(index) == 1:
+            return field.h_p if index[0] else field.h_q
+        at = max(k for k, n in enumerate(index) if n)
+        lower = tuple(n - (k == at) for k, n in enumerate(index))
+        return ring.diff(derivative(lower), "pqt"[at])
+
+    return [known(enclose(ring, derivative(index), start, BITS)) for index in jets.indices]
 
 
-def _value(x: Poly, derivatives: dict[tuple[int, int], Ball]) -> Ball:
+def _value(x: Poly, derivatives: Sequence[Ball]) -> Ball:
     with working_precision(BITS):
-        total, values = flint.arb(0), [flint.arb(0)] * 2 + list(derivatives.values())
+        total, values = flint.arb(0), [flint.arb(0)] * 2 + list(derivatives)
         for monomial, coefficient in terms_of(x):
             term = flint.arb(coefficient)
             for value, power in zip(values, monomial, strict=True):

@@ -4,7 +4,7 @@ from verify.errors import InputError
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.order import prove
-from verify.schemes.step_map import StepMap
+from verify.schemes.step_map import Expanded, StepMap
 from verify.schemes.substep import Substep
 from verify.verdict import Verdict
 
@@ -19,15 +19,24 @@ def holds(sample: Sample) -> None:
     with silent_at(InputError):  # its closed form is too large to be looked at
         found = prove(_planted(sample, order), sample.scheme)
     if found.verdict is not Verdict.REFUTED:
-        raise Violation(f"with q·h^{order} added to p' it is {found.verdict.value}")
+        raise Violation(f"with q'·h^{order} added to p' it is {found.verdict.value}")
     if found.convergence_order != order - 1:
         told = f"agrees with the flow up to h^{found.convergence_order}"
-        raise Violation(f"with q·h^{order} added to p' it {told}, and truly up to h^{order - 1}")
+        raise Violation(f"with q'·h^{order} added to p' it {told}, and truly up to h^{order - 1}")
 
 
 def _planted(sample: Sample, power: int) -> StepMap:
-    """The map with q·h^power added to p' in its last part."""
-    *before, last = sample.step_map.substeps
-    ring = last.ring
-    wrong = last.p_next + ring.variable("q") * ring.variable("h") ** power
-    return StepMap(sample.hamiltonian, (*before, Substep(last.field, wrong, last.q_next)))
+    """The map with q'·h^power added to p'; its series has that term, too, where it has one."""
+    true = sample.step_map
+    *before, last = true.substeps
+    wrong = last.p_next + last.q_next * last.ring.variable("h") ** power
+    parts = (*before, Substep(last.field, wrong, last.q_next))
+    known = true.expansion
+    if known is None:
+        return StepMap(sample.hamiltonian, parts)
+
+    def expansion(most: int) -> Expanded:
+        field, p, q = known(most)
+        return field, p + q.shifted(power), q
+
+    return StepMap(sample.hamiltonian, parts, expansion)

@@ -5,7 +5,7 @@ Asked of schemes that treat p and q alike.
 
 from fractions import Fraction
 
-from verify.exploration.equivariance import knows_no_coordinates, must_be_same_step
+from verify.exploration.equivariance import Change, knows_no_coordinates, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
@@ -15,4 +15,4 @@ _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN) and knows_no_coordinates(sample))
-    must_be_same_step(sample, _EXCHANGED, Fraction(-1), Fraction(1))
+    must_be_same_step(sample, Change(_EXCHANGED, Fraction(-1)))

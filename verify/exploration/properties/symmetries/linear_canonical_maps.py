@@ -5,7 +5,7 @@ Schemes that step p and q by turns are asked for M that scales p and q only.
 
 from fractions import Fraction
 
-from verify.exploration.equivariance import knows_no_coordinates, must_be_same_step
+from verify.exploration.equivariance import Change, knows_no_coordinates, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
@@ -16,5 +16,4 @@ _MIXED = (Fraction(2), Fraction(1, 3)), (Fraction(3, 2), Fraction(3, 4))
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN, _AFTER))
-    matrix = _MIXED if knows_no_coordinates(sample) else _SCALED
-    must_be_same_step(sample, matrix, Fraction(1), Fraction(1))
+    must_be_same_step(sample, Change(_MIXED if knows_no_coordinates(sample) else _SCALED))

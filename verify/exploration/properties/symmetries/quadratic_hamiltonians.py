@@ -50,7 +50,7 @@ def holds(sample: Sample) -> None:
 def _hessian(sample: Sample) -> tuple[Fraction, Fraction, Fraction]:
     """H_pp, H_pq, H_qq at the initial value, rounded; Silent where they are no usual numbers."""
     field = sample.field
-    ring, point = field.ring, {"p": sample.p, "q": sample.q}
+    ring, point = field.ring, sample.start
     found = []
     for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
         value = known(enclose(ring, ring.diff(x, name), point, 128))

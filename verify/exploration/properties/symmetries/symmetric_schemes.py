@@ -17,7 +17,7 @@ def holds(sample: Sample) -> None:
         series = by_series(sample.step_map, sample.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")
-    first, last = ball_steps(sample.step_map, sample.p, sample.q, sample.step_size, 1)
+    first, last = ball_steps(sample.step_map, sample.start, 1)
     with working_precision(BITS):
         back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
     for name, ball, start in (("p", back.p, first.p), ("q", back.q, first.q)):

@@ -24,7 +24,7 @@ def holds(sample: Sample) -> None:
     if sample.step_map.implicit:
         _by_a_run(sample)
         return
-    after = ball_steps(sample.step_map, sample.p, sample.q, sample.step_size, 1)[-1].sharp()
+    after = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
     if not after.product.contains(1):
         raise Violation(f"det J is {unlike(after.product, rational_ball(Fraction(1)))}")
 

@@ -3,6 +3,9 @@
 Where H_q is linear in p, as for H = T(p) + p b(q) + V(q), the first equation gives
 p' = p − h H_q(p, q)/(1 + h H_pq(q)). For H = T(p) + V(q) it is `symplectic-euler`. Elsewhere the
 equation is solved for the change of p.
+
+Where H depends on time and is no T(p, t) + V(q, t), both derivatives are taken at t: of one time
+they are those of one generating function, h H(p', q, t), so that det J ≡ 1.
 """
 
 from fractions import Fraction
@@ -11,7 +14,6 @@ from functools import lru_cache
 from verify.algebra.implicit_unknowns import define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, partials
-from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.methods.splitting.symplectic_euler import PARTS
@@ -33,9 +35,6 @@ def implicit_euler_map(hamiltonian: Hamiltonian) -> StepMap:
     ring = field.ring
     if field.separable():
         return shears(hamiltonian, _NAME, PARTS)
-    if field.timed:
-        problem = f"{_NAME} takes an H that depends on time only as T(p, t) + V(q, t) as yet"
-        raise InputError("hamiltonian", str(hamiltonian.expression), problem)
     mixed = ring.diff(field.h_q, "p")
     if ring.decide(ring.diff(mixed, "p")).zero is not True:
         return _by_equations(hamiltonian, field)
@@ -47,10 +46,10 @@ def implicit_euler_map(hamiltonian: Hamiltonian) -> StepMap:
 
 def _by_equations(hamiltonian: Hamiltonian, field: VectorField) -> StepMap:
     stages = Stages(field, 1, _NAMES)
-    ring, (p, q) = stages.ring, stages.start
+    ring, (p, q, *time) = stages.ring, stages.start
     h = ring.variable("h")
     change = unknowns(ring, 1)
-    at = stages.at(stages.named((p + change[0], q)))
+    at = stages.at(stages.named((p + change[0], q, *time)))
 
     def named_at_stage(x: Poly) -> Poly:
         return ring.named(at(x))

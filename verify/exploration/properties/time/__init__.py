@@ -1,0 +1,1 @@
+"""Properties that only an H that depends on time has."""
