@@ -6,7 +6,7 @@ are read. What is written replaces a regular file or nothing.
 
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
@@ -98,6 +98,19 @@ def check_replaceable(path: Path) -> None:
         raise InputError("file", str(path), "is read-only")
 
 
+def _by(process: int) -> str:
+    """What stands in the name of a file that the process is writing."""
+    return f".of-{process}."
+
+
+def clear_unfinished(folder: Path, processes: Iterable[int]) -> None:
+    """Removes what these processes, which are no more, were writing there as they were ended."""
+    for process in processes:
+        for path in folder.glob(f".*{_by(process)}*"):
+            with suppress(OSError):
+                path.unlink()
+
+
 def write_atomically(path: Path, content: str | bytes) -> None:
     """The whole content or the old one, never a part: written beside it, then renamed.
 
@@ -109,7 +122,8 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     check_replaceable(path)
     raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.")
+    prefix = f".{path.name[:100]}{_by(os.getpid())}"
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=prefix)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(raw)

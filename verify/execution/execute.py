@@ -33,7 +33,7 @@ from verify.execution.keeping import (
 )
 from verify.execution.plan import Plan
 from verify.execution.task import Task
-from verify.files import write_atomically
+from verify.files import clear_unfinished, write_atomically
 from verify.scenes.frozen import Frozen
 
 OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
@@ -83,6 +83,11 @@ class Store:
                 keeper.clear()
         self._keepers.pop(name, None)
 
+    def tidy(self, ended: Sequence[int]) -> None:
+        """Removes what processes that were ended had begun to write here."""
+        if self.folder is not None:
+            clear_unfinished(self.folder, ended)
+
     def keeper(self, name: str) -> Keeper:
         """What keeps the checkpoints of that task's runs."""
         return self._keepers.setdefault(name, Keeper(self.folder, name))
@@ -131,7 +136,7 @@ def execute(
         return results
     together = {name: task for name, task in waiting.items() if not task.alone}
     alone = {name: task for name, task in waiting.items() if task.alone}
-    with open_place(_enough(together, where), _modules(together)) as place:
+    with open_place(_enough(together, where), _modules(together), store.tidy) as place:
         take(place, together)
         if not place.local:
             take(place, alone, one_by_one=True)

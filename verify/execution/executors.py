@@ -91,12 +91,16 @@ class Place(Protocol):
 
 
 @contextlib.contextmanager
-def open_place(where: Placement, modules: Sequence[str] = ()) -> Iterator[Place]:
+def open_place(
+    where: Placement,
+    modules: Sequence[str] = (),
+    after_end: Callable[[Sequence[int]], None] = lambda _: None,
+) -> Iterator[Place]:
     """Opens the place where functions are called; left by an exception, it ends what is under way
     at once.
 
     `modules`: what processes have imported before their first call; of several places, the first
-    says it for all.
+    says it for all. `after_end` hears the numbers of processes here that were ended.
 
     Processes are started as they are needed. InputError where the cluster does not answer, has no
     workers, or has other code than this.
@@ -113,7 +117,7 @@ def open_place(where: Placement, modules: Sequence[str] = ()) -> Iterator[Place]
         try:
             yield processes
         except BaseException:
-            processes.end()
+            after_end(processes.end())
             raise
         processes.close()
 

@@ -10,13 +10,15 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cached_property
-from multiprocessing import forkserver, resource_tracker
+from multiprocessing import connection, forkserver, resource_tracker
 from typing import Any
 
+_TO_END = 5.0  # seconds in which a process that is ended is no more
 _SAFE_PATH = "PYTHONSAFEPATH"  # Python's own variable, read as it starts
 
 
@@ -65,13 +67,24 @@ class Processes:
 
     def check(self) -> None: ...
 
-    def end(self) -> None:
-        """Ends the processes at once, whatever they are at."""
+    def end(self) -> list[int]:
+        """Ends the processes at once, whatever they are at; returns their numbers.
+
+        When it returns they write nothing any more.
+        """
+        ended = {}
         for pool in (*self._idle, *self._busy.values()):
             # The executor has no public way to end a task that is running.
             for process in (pool._processes or {}).values():
                 process.terminate()
+                ended[process.pid] = process.sentinel
             pool.shutdown(wait=False, cancel_futures=True)
+        alive = list(ended.values())
+        until = time.monotonic() + _TO_END
+        while alive and time.monotonic() < until:
+            done = connection.wait(alive, until - time.monotonic())
+            alive = [each for each in alive if each not in done]
+        return [pid for pid in ended if pid is not None]
 
     def close(self) -> None:
         """Ends the processes, which are idle, together."""
