@@ -46,6 +46,7 @@ _KEYS = ("agrees", "lost", "rounding", "perhaps rounding", "more than rounding")
 @click.option("--step-size", metavar="H", help="Their step size.")
 @click.option("--q", "q0", metavar="X", help="Their initial q.")
 @click.option("--p", "p0", metavar="X", help="Their initial p.")
+@click.option("--t0", metavar="T", help="Their time at the start, where H depends on t.")
 @click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
               help="What the table calls a column, such as q=position; repeatable.")  # fmt: skip
 @answering

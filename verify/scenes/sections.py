@@ -115,6 +115,10 @@ class Reference(Section):
     flow: Annotated[bool, Field(strict=True)] = True
     """Whether the exact flow at the times N·h is given, too."""
 
+    @property
+    def without_time(self) -> None:
+        """It takes every H."""
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "initial_values", "schemes"):

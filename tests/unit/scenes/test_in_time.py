@@ -91,8 +91,6 @@ def test_a_scene_in_time_comes_back_from_its_text(tmp_path: Path) -> None:
          "steps = [5]\n", "[flow]"),
         ("[[stability]]\nstep_sizes = [0.1]\nsteps = 9\ninitial_values = [{ q = 1, p = 0 }]\n",
          "[stability]"),
-        ("[[reference]]\nstep_sizes = [0.1]\nsteps = [1]\ninitial_values = [{ q = 1, p = 0 }]\n",
-         "[reference]"),
     ],
 )  # fmt: skip
 def test_a_section_that_takes_no_t_is_named_in_one_line(

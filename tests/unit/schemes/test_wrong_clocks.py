@@ -47,9 +47,14 @@ def test_they_keep_their_order_without_time_and_have_order_1_with_it(base: str, 
 
 @pytest.mark.parametrize(
     ("name", "problem"),
-    [("lie2, clock frozen", "is no splitting"), ("verlet, clock broken", "clock broken: unknown"),
-     ("nonsense, clock frozen", "nonsense: unknown"), ("verlet, clock", "unknown")],
-)  # fmt: skip
+    [
+        ("gauss4, clock frozen", "has no such clocks"),
+        ("lie2, clock exchanged", "clock exchanged: unknown; allowed: frozen, at the end"),
+        ("verlet, clock broken", "clock broken: unknown"),
+        ("nonsense, clock frozen", "nonsense: unknown"),
+        ("verlet, clock", "unknown"),
+    ],
+)
 def test_another_name_is_refused_in_one_line(name: str, problem: str) -> None:
     with pytest.raises(InputError) as error:
         schemes.get(name)

@@ -18,7 +18,15 @@ from verify.errors import InputError
 from verify.files import text_of
 from verify.reference.check.difference import Place
 from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import Data, Flow, Proof, Run, values_of
+from verify.reference.make.models import (
+    Data,
+    Flow,
+    FlowInTime,
+    Proof,
+    Run,
+    RunInTime,
+    values_of,
+)
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import Row, csv_text
@@ -61,14 +69,8 @@ def _inputs(data: Data, scene: Scene, file: Place) -> None:
     ]
     found: dict[str, Any] = {name: getattr(data, name) for name in ("name", *written)}
     found["proofs"] = [proof.scheme for proof in data.proofs]
-    found["runs"] = [
-        (r.scheme, r.step_size, r.q, r.p, r.digits, tuple(x.step for x in r.rows))
-        for r in data.runs
-    ]
-    found["flow"] = [
-        (f.step_size, f.q, f.p, f.digits, tuple((x.step, x.time) for x in f.rows))
-        for f in data.flow
-    ]
+    found["runs"] = [(r.scheme, *_given(r), tuple(x.step for x in r.rows)) for r in data.runs]
+    found["flow"] = [(*_given(f), tuple((x.step, x.time) for x in f.rows)) for f in data.flow]
     for name, value in wanted.items():
         lists = isinstance(value, list)
         pairs = zip_longest(value, found[name]) if lists else [(value, found[name])]
@@ -79,6 +81,12 @@ def _inputs(data: Data, scene: Scene, file: Place) -> None:
                 break
 
 
+def _given(of: Run | Flow) -> tuple[str | int, ...]:
+    """Its inputs, in the order of a task's."""
+    times = (of.t0,) if isinstance(of, RunInTime | FlowInTime) else ()
+    return of.step_size, of.q, of.p, *times, of.digits
+
+
 def _proof(data: Data, proof: Proof, row: Place) -> None:
     zero = (proof.order, proof.leading) == (None, "0")
     found = f"order {proof.order}, leading {proof.leading}"
@@ -87,7 +95,8 @@ def _proof(data: Data, proof: Proof, row: Place) -> None:
     ordered = preserving is not False or proof.order is not None
     row.must(ordered, "order", "a number, since ΔJ is not 0", "null")
     try:
-        parse(proof.leading, ["p", "q", *data.parameters])
+        time = ["t"] if data.timed else []
+        parse(proof.leading, ["p", "q", *time, *data.parameters])
         tight = ast.unparse(ast.parse(proof.leading, mode="eval")).replace(" ", "")
     except InputError as error:
         row.differs("leading", f"a formula ({error.problem})", proof.leading)
@@ -99,7 +108,7 @@ def _proof(data: Data, proof: Proof, row: Place) -> None:
 
 def _row(of: Run | Flow, row: OrbitPoint | FlowPoint, at: Place) -> None:
     values = values_of(row)
-    start = {"p": Fraction(of.p), "q": Fraction(of.q)}
+    start = {name: of.start[name] for name in ("p", "q")}
     size = max(map(abs, start.values()))
     finished = row.status == "finished"
     for name, value in values.items():

@@ -6,7 +6,7 @@ is what two such integrations say, with several times their difference as its ra
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -31,12 +31,14 @@ class BlowsUpError(NoSolutionError):
 
 
 def states_at(
-    field: Field, p: Fraction, q: Fraction, times: Sequence[Fraction], digits: int
+    field: Field, start: Mapping[str, Fraction], times: Sequence[Fraction], digits: int
 ) -> tuple[list[State], NoSolutionError | None]:
-    """Balls of (p, q) at the times, which ascend from 0, and why not at all of them, if so."""
+    """Balls of (p, q) at the times, which ascend from 0, and why not at all of them, if so.
+
+    `start`: p, q and, where H depends on it, t.
+    """
     bits = math.ceil(3.33 * (digits + _MORE)) + 64
     with flint.ctx.workprec(bits):
-        start = flint.arb(number(p)), flint.arb(number(q))
         rough, why = _taylor_solution(field, start, times, digits)
         fine, also = _taylor_solution(field, start, times, digits + _MORE)
         both = [_around(*pair, digits) for pair in zip(rough, fine, strict=False)]
@@ -52,11 +54,11 @@ def _around(rough: State, fine: State, digits: int) -> State:
 
 
 def _taylor_solution(
-    field: Field, start: State, times: Sequence[Fraction], digits: int
+    field: Field, start: Mapping[str, Fraction], times: Sequence[Fraction], digits: int
 ) -> tuple[list[State], NoSolutionError | None]:
     order = digits + digits // 4 + 10
-    p, q = start
-    first, done, found = _largest(start), Fraction(0), []
+    p, q = (flint.arb(number(start[name])) for name in ("p", "q"))
+    first, done, found = _largest((p, q)), Fraction(0), []
     waiting = list(times)
     shortest: float | None = None
     for _ in range(_MOST_STEPS):
@@ -65,7 +67,8 @@ def _taylor_solution(
             waiting.pop(0)
         if not waiting:
             return found, None
-        ps, qs = flow_series(field, p, q, order)
+        t = flint.arb(number(start.get("t", Fraction(0)) + done))
+        ps, qs = flow_series(field, p, q, t, order)
         reach = _reach(ps, qs, digits)
         if not all(x.is_finite() for x in (*ps, *qs)):
             return found, NoSolutionError("H is not defined there")
@@ -82,8 +85,10 @@ def _taylor_solution(
 
 
 def _reach(ps: list[Number], qs: list[Number], digits: int) -> float:
-    """lg₂ of a step whose last terms are 10^−digits of the state."""
-    scale, found = _largest((ps[0], qs[0])), []
+    """lg₂ of a step whose last terms are 10^−digits of the state, or of its speed where it is 0."""
+    sizes = map(_largest, zip(ps, qs, strict=True))
+    scale = next((size for size in sizes if size > -math.inf), 0.0)
+    found = []
     for k in (len(ps) - 1, len(ps) - 2):
         last = _largest((ps[k], qs[k]))
         if last > -math.inf:

@@ -6,6 +6,7 @@ and det J is a d − b c of the four entries. The number system is flint's balls
 recomputed of a scheme's orbit is rigorous.
 """
 
+from collections.abc import Mapping
 from contextlib import suppress
 from fractions import Fraction
 from itertools import zip_longest
@@ -68,7 +69,7 @@ def _run(known: Field, run: Run, file: str, found: Findings) -> None:
 
 def _orbit(step: Step, run: Run, file: Place, *, final: bool) -> None:
     """Every row of a run; _TooWide where a ball does not tell. `final`: there is no further try."""
-    orbit = _Orbit(step, Fraction(run.p), Fraction(run.q), Fraction(run.step_size))
+    orbit = _Orbit(step, run.start, Fraction(run.step_size))
     size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
     left: int | None = None
     for row in run.rows:
@@ -104,15 +105,17 @@ def _orbit(step: Step, run: Run, file: Place, *, final: bool) -> None:
 class _Orbit:
     """A scheme's orbit in balls, with the sums and the product over its steps."""
 
-    def __init__(self, step: Step, p: Fraction, q: Fraction, h: Fraction) -> None:
+    def __init__(self, step: Step, start: Mapping[str, Fraction], h: Fraction) -> None:
         self.step, self.h = step, flint.arb(number(h))
-        self.p, self.q = flint.arb(number(p)), flint.arb(number(q))
+        self.p, self.q = (flint.arb(number(start[name])) for name in ("p", "q"))
+        self._t0, self._size = start.get("t", Fraction(0)), h
         self.done, self.squares, self.lam = 0, flint.arb(0), flint.arb(0)
         self._next: tuple[Any, Number] | None = None  # the state after, and ΔJ here
 
     def ahead(self) -> tuple[Any, Number]:
         if self._next is None:
-            z, (a, b, c, d) = self.step(self.p, self.q, self.h)
+            t = flint.arb(number(self._t0 + self.done * self._size))
+            z, (a, b, c, d) = self.step(self.p, self.q, self.h, t)
             self._next = z, a * d - b * c - 1
         return self._next
 
@@ -203,7 +206,7 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
     times = [row.step * Fraction(flow.step_size) for row in rows]
     for more in _FLOW_DIGITS:
         again, digits = Findings(), flow.digits + more
-        states, why = states_at(known, Fraction(flow.p), Fraction(flow.q), times, digits)
+        states, why = states_at(known, flow.start, times, digits)
         with suppress(_TooWide), flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
             for row, state in zip_longest(rows, states):
                 at = Place(again, file, f"{flow.label}, step {row.step}")
@@ -236,7 +239,7 @@ def _not_reached(
         at.findings.recomputed += 1
         return
     at.is_left_out(why)
-    if row.p is not None and row.q is not None:
+    if row.p is not None and row.q is not None and not known.timed:
         start = (flint.arb(number(Fraction(x))) for x in (flow.p, flow.q))
         ends = (flint.arb(x.value) + flint.arb(0, 1) * flint.arb(x.radius) for x in (row.p, row.q))
         first, last = known.energy(*start), known.energy(*ends)

@@ -3,7 +3,7 @@
 The step is done with power series in h for p, q and the Jacobian: their coefficients are balls.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
@@ -33,9 +33,9 @@ def proof_again(known: Field, data: Data, proof: Proof, file: Place) -> None:
             return
     most = max(_MOST_ORDER if order is None else order, (convergence or 0) + 1)
     looking = _Looking(known, proof, row, most)
-    for p, q in _points(data):
+    for p, q, t in _points(data):
         with flint.ctx.workprec(_BITS), _cap(most + 1):
-            looking.at(p, q)
+            looking.at(p, q, t)
     looking.end()
 
 
@@ -47,8 +47,8 @@ class _Looking:
         self.step, self.leading = step_of(proof.scheme, known), known.tape.read(proof.leading)
         self.looked, self.seen = 0, {"order": False, "convergence_order": False}
 
-    def at(self, p: Fraction, q: Fraction) -> None:
-        area, apart, lead = _powers(self.known, self.step, p, q, self.most, self.leading)
+    def at(self, *point: Fraction) -> None:
+        area, apart, lead = _powers(self.known, self.step, point, self.most, self.leading)
         if not all(x.is_finite() for x in (*area, *apart, lead)):
             return
         self.looked += 1
@@ -84,16 +84,19 @@ class _Looking:
 
 
 def _powers(
-    known: Field, step: Step, p: Fraction, q: Fraction, most: int, leading: int
+    known: Field, step: Step, point: Sequence[Fraction], most: int, leading: int
 ) -> tuple[list[Number], list[Number], Number]:
-    """Coefficients of h⁰ … in det J − 1; in the map less the flow (the larger of two); leading."""
-    x, y = flint.arb(number(p)), flint.arb(number(q))
+    """Coefficients of h⁰ … in det J − 1; in the map less the flow (the larger of two); leading.
+
+    `point`: p, q and t.
+    """
+    x, y, t = (flint.arb(number(z)) for z in point)
     h = flint.arb_series([0, 1], most + 1)
     zero = 0 * h
-    (p_next, q_next), (a, b, c, d) = step(x + zero, y + zero, h)
-    ps, qs = flow_series(known, x, y, most)
+    (p_next, q_next), (a, b, c, d) = step(x + zero, y + zero, h, t + zero)
+    ps, qs = flow_series(known, x, y, t, most)
     value = Expansion(known.tape, [leading])
-    value.begin(x, y)
+    value.begin(x, y, t)
     area = _coefficients(a * d - b * c - 1 + zero, most)
     along = [_coefficients(z + zero, most) for z in (p_next, q_next)]
     apart = [
@@ -112,13 +115,18 @@ def shown(ball: Number, digits: int) -> str:
     return str(ball.str(digits + 2, radius=False))
 
 
-def _points(data: Data) -> list[tuple[Fraction, Fraction]]:
-    """Points near the initial values, of no pattern; both coordinates are other than 0."""
-    starts = dict.fromkeys((Fraction(run.p), Fraction(run.q)) for run in data.runs)
+def _points(data: Data) -> list[tuple[Fraction, Fraction, Fraction]]:
+    """Points near the initial values, of no pattern, with times; p and q are other than 0."""
+    starts = dict.fromkeys(
+        (run.start["p"], run.start["q"], run.start.get("t", Fraction(0))) for run in data.runs
+    )
     found = []
-    for p, q in list(starts)[:3]:
+    for p, q, t in list(starts)[:3]:
         p, q = p or q / 3 or Fraction(2, 3), q or p / 5 or Fraction(4, 5)
-        found += [(p * Fraction(29, 31), q * Fraction(17, 16)), (p * Fraction(-5, 7), q)]
+        found += [
+            (p * Fraction(29, 31), q * Fraction(17, 16), t + Fraction(3, 11)),
+            (p * Fraction(-5, 7), q, t - Fraction(6, 13)),
+        ]
     return found
 
 

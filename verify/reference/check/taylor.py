@@ -24,9 +24,9 @@ def number(x: Fraction) -> Any:
 
 
 class Expansion:
-    """The coefficients of some nodes along p(t) and q(t), as far as those have been given.
+    """The coefficients of some nodes along p(t) and q(t), as far as those have been given, and t.
 
-    `constant`: nodes that do not depend on p and q; they have a first coefficient and no others.
+    `constant`: nodes that do not depend on p, q and t; they have a first coefficient and no others.
     """
 
     def __init__(self, tape: Tape, roots: Sequence[int]) -> None:
@@ -39,21 +39,22 @@ class Expansion:
         for x in tape.needed(*roots):
             kind, *args = tape.nodes[x]
             inner = [a for a in args if not isinstance(a, Fraction)]
-            if kind not in ("p", "q") and all(a in self.constant for a in inner):
+            if kind not in ("p", "q", "t") and all(a in self.constant for a in inner):
                 self.constant.add(x)
             if kind in PAIRS:
                 args.append(tape.node(PAIRS[kind], args[0]))
             self._work.append((x, kind, *[*args, None, None][:2]))
 
-    def begin(self, p: Number, q: Number) -> None:
-        """The first coefficients: the nodes' values at (p, q), in flint's present precision."""
+    def begin(self, p: Number, q: Number, t: Number = 0) -> None:
+        """The first coefficients: the nodes' values at (p, q) and t, in flint's present
+        precision."""
         if self._bits != flint.ctx.prec:
             self._fixed, self._bits = {}, flint.ctx.prec
         c: dict[int, list[Number]] = {}
         for x, kind, a, b in self._work:
             value = self._fixed.get(x)
             if value is None:
-                value = _first(kind, a, b, c, p, q)
+                value = t if kind == "t" else _first(kind, a, b, c, p, q)
                 if x in self.constant:
                     self._fixed[x] = value
             c[x] = [value]
@@ -67,6 +68,8 @@ class Expansion:
                 c[x].append(p)
             elif kind == "q":
                 c[x].append(q)
+            elif kind == "t":
+                c[x].append(flint.arb(int(k == 1)))
             elif x in constant:
                 continue
             elif kind == "scale":

@@ -1,8 +1,9 @@
 """One step of a scheme with its Jacobian, from the scheme's definition in the textbook.
 
 All is written for numbers of any kind that has + − * /: flint's balls, and power series of balls in
-h. z' = f(z) = (−H_q, H_p), and A = ∂f/∂(p, q). Sources as in `verify.schemes`; the coefficients
-stand here once more.
+h. z' = f(z, t) = (−H_q, H_p), and A = ∂f/∂(p, q). Sources as in `verify.schemes`; the coefficients
+stand here once more. A step begins at t: its stages are at t + c h, c the sum of their row, and of
+a splitting each part is at t + h times what the parts of the other kind before it add up to.
 """
 
 import re
@@ -17,7 +18,7 @@ from verify.reference.check.taylor import Expansion, Number, number
 
 State = tuple[Number, Number]
 Matrix = tuple[Number, Number, Number, Number]  # ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q
-Step = Callable[[Number, Number, Number], tuple[State, Matrix]]
+Step = Callable[[Number, Number, Number, Number], tuple[State, Matrix]]  # of p, q, h and t
 IDENTITY: Matrix = (1, 0, 0, 1)
 _F = Fraction
 
@@ -36,6 +37,7 @@ class Field:
         self.h_pp, self.h_pq = (self.tape.diff(self.h_p, name) for name in ("p", "q"))
         self.h_qq = self.tape.diff(self.h_q, "q")
         self.separable = self.tape.value(self.h_pq) == 0
+        self.timed = any(self.tape.nodes[x] == ("t",) for x in self.tape.needed(h))
         self.first = Expansion(self.tape, (self.h_p, self.h_q))
         self.both = Expansion(self.tape, (self.h_p, self.h_q, self.h_pp, self.h_pq, self.h_qq))
         self.alone = Expansion(self.tape, (h,))
@@ -43,14 +45,14 @@ class Field:
         self.of_q = Expansion(self.tape, (self.h_q, self.h_qq))
 
     def energy(self, p: Number, q: Number) -> Number:
-        """H there."""
+        """H there, which does not depend on time."""
         self.alone.begin(p, q)
         return self.alone.value(self.h)
 
-    def at(self, p: Number, q: Number) -> tuple[State, Matrix]:
-        """f and A there."""
+    def at(self, p: Number, q: Number, t: Number) -> tuple[State, Matrix]:
+        """f and A there, at t."""
         known = self.both
-        known.begin(p, q)
+        known.begin(p, q, t)
         pq = known.value(self.h_pq)
         a = (-pq, -known.value(self.h_qq), known.value(self.h_pp), pq)
         return (-known.value(self.h_q), known.value(self.h_p)), a
@@ -74,20 +76,22 @@ def step_of(name: str, field: Field) -> Step:
 # -- the Lie-derivative scheme: the Taylor polynomial of the flow ---------------------------------
 
 
-def flow_series(field: Field, p: Number, q: Number, order: int) -> tuple[list[Any], list[Any]]:
-    """The Taylor coefficients of p(t) and q(t) up to t^order, by recursion: (k+1) z_(k+1) = f_k."""
+def flow_series(
+    field: Field, p: Number, q: Number, t: Number, order: int
+) -> tuple[list[Any], list[Any]]:
+    """The Taylor coefficients of p and q from t on, up to that order: (k+1) z_(k+1) = f_k."""
     ps, qs = [p], [q]
-    for _ in _orders(field, field.first, ps, qs, order):
+    for _ in _orders(field, field.first, ps, qs, t, order):
         pass
     return ps, qs
 
 
 def _orders(
-    field: Field, known: Expansion, ps: list[Number], qs: list[Number], order: int
+    field: Field, known: Expansion, ps: list[Number], qs: list[Number], t: Number, order: int
 ) -> Iterator[int]:
     """The orders 0 … order − 1 of `known`; after each, ps and qs have their next coefficient."""
     p, q = ps[0], qs[0]
-    known.begin(p, q)
+    known.begin(p, q, t)
     for k in range(order):
         if k > 0:
             known.more(ps[-1], qs[-1])
@@ -101,10 +105,10 @@ def lie(field: Field, eta: int) -> Step:
     """z' = Σ h^k z_k, and J the same sum of the variational equation M' = A M, M_0 = 1."""
     entries = (field.h_pq, field.h_qq, field.h_pp)
 
-    def step(p: Number, q: Number, h: Number) -> tuple[State, Matrix]:
+    def step(p: Number, q: Number, h: Number, t: Number) -> tuple[State, Matrix]:
         ps, qs, ms = [p], [q], [IDENTITY]
         a: list[list[Number | None]] = []
-        for k in _orders(field, field.both, ps, qs, eta):
+        for k in _orders(field, field.both, ps, qs, t, eta):
             a.append([field.both.coefficient(x, k) for x in entries])
             ms.append(_variation(a, ms, k))
         z = polynomial(ps, h), polynomial(qs, h)
@@ -153,7 +157,7 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
     """k_i = f(z + h Σ a_ij k_j), K_i = A(…) (1 + h Σ a_ij K_j), z' = z + h Σ b_i k_i."""
 
-    def step(p: Number, q: Number, h: Number) -> tuple[State, Matrix]:
+    def step(p: Number, q: Number, h: Number, t: Number) -> tuple[State, Matrix]:
         slopes: list[tuple[Number, ...]] = []  # k_i, then K_i row by row
 
         def lie_derivatives(row: Sequence[Fraction]) -> list[Number]:
@@ -165,7 +169,7 @@ def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Ste
 
         for row in rows:
             at_p, at_q, *m = lie_derivatives(row)
-            f, a = field.at(at_p, at_q)
+            f, a = field.at(at_p, at_q, t + h * number(sum(row, _F(0))))
             slopes.append((*f, *product(a, tuple(m))))
         z_p, z_q, *j = lie_derivatives(weights)
         return (z_p, z_q), tuple(j)
@@ -204,17 +208,19 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 
 
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
-    """p ← p − a h V'(q), q ← q + a h T'(p); J's rows likewise: p_row ← p_row − a h V'' q_row."""
+    """p ← p − a h V_q(q, s), q ← q + a h T_p(p, s), and J's rows by V_qq and T_pp likewise."""
     made: dict[int, list[tuple[str, Number]]] = {}
 
-    def step(p: Number, q: Number, h: Number) -> tuple[State, Matrix]:
+    def step(p: Number, q: Number, h: Number, t: Number) -> tuple[State, Matrix]:
         if flint.ctx.prec not in made:
             made[flint.ctx.prec] = parts()
         a, b, c, d = IDENTITY
+        reads = {"kick": t, "drift": t}
         for kind, size in made[flint.ctx.prec]:
             known = field.of_q if kind == "kick" else field.of_p
-            known.begin(p, q)
+            known.begin(p, q, reads[kind])
             own = h * size
+            reads["drift" if kind == "kick" else "kick"] += own
             if kind == "kick":
                 bend = own * known.value(field.h_qq)
                 p = p - own * known.value(field.h_q)

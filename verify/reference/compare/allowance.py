@@ -76,18 +76,21 @@ class Allowance:
     def _one(self, step: int, known: dict[str, Bounded]) -> Fraction:
         """The rounding of one determinant, at the largest entries that were met so far."""
         if step not in self._entries and "p" in known and "q" in known:
-            self._entries[step] = products(self.orbit, known["p"], known["q"])
+            self._entries[step] = products(self.orbit, step, known["p"], known["q"])
         most = max((x for n, x in self._entries.items() if n <= step), default=Fraction(1))
         return _PRODUCTS * self.unit * most
 
 
-def products(orbit: Orbit, p: Bounded, q: Bounded) -> Fraction:
-    """A bound of |a d| + |b c| over the step's substeps, at least 1: what det J is the rest of."""
+def products(orbit: Orbit, done: int, p: Bounded, q: Bounded) -> Fraction:
+    """A bound of |a d| + |b c| over the substeps of the step after so many, at least 1: what det J
+    is the rest of."""
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     if step_map.implicit:
         return Fraction(1)
     with working_precision(_BITS):
         box = {"p": around(*p), "q": around(*q), "h": rational_ball(orbit.step_size)}
+        if orbit.hamiltonian.time_dependent:
+            box["t"] = rational_ball(orbit.t0 + done * orbit.step_size)
         whole = [flint.arb(x) for x in (1, 0, 0, 1)]  # the entries' sizes, of all substeps so far
         for step in step_map.substeps:
             own = enclose_all(step.ring, [*step.jacobian, step.p_next, step.q_next], box)

@@ -139,7 +139,7 @@ def _separated(off: list[_Off]) -> Separated | None:
     orbit = run.orbit
     result = separate(
         orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
-        step_size=orbit.step_size, steps=step, digits=_SEPARATED_DIGITS,
+        step_size=orbit.step_size, steps=step, t0=orbit.t0, digits=_SEPARATED_DIGITS,
     )  # fmt: skip
     return Separated(run.label, step, apart, result) if result.plain else None
 

@@ -5,6 +5,7 @@ Adding a mistake is adding a line. What may be wrong with an area error alone is
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -14,6 +15,7 @@ from typing import Any
 from verify import schemes
 from verify.algebra.formula import to_text
 from verify.arithmetic.exact import short
+from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.tangent_map import nearest_double
@@ -25,6 +27,11 @@ _MOST_INEXACT = 4  # inputs of which all subsets are tried
 _OF_SCHEME = "scheme "
 _OTHER = "your scheme is "
 _OTHER_EULER = "symplectic Euler of the other kind"
+_CLOCKS = {
+    "frozen": "your force is read at the step's beginning, in every stage",
+    "at the end": "your force is read at the step's end, in every stage",
+    "exchanged": "your kicks and drifts read each other's clock",
+}
 _ELSEWHERE = Fraction(1, 3), Fraction(2, 7), Fraction(1, 5)  # q, p and h like no others
 _SHARP = 40  # digits
 _ENDS_AND_MIDDLE = 3
@@ -43,6 +50,8 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
     orbit = right.orbit
     exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
+    if orbit.hamiltonian.time_dependent:
+        exact["t0"] = orbit.t0
     doubles = {n: nearest_double(x) for n, x in exact.items()}
     inexact = [n for n, x in doubles.items() if isfinite(x) and x != exact[n]]
     subsets = [c for k in range(1, len(inexact) + 1) for c in combinations(inexact, k)]
@@ -58,6 +67,8 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
 def of_states(right: Setting) -> Iterator[Mistake]:
     """All that can be seen in doubles."""
     yield from _of_columns(right)
+    if right.orbit.hamiltonian.time_dependent:
+        yield from _of_clock(right)
     yield from _of_scheme(right)
     yield from _staggered(right)
     yield from _of_step(right)
@@ -82,6 +93,22 @@ def _of_columns(right: Setting) -> Iterator[Mistake]:
     )  # fmt: skip
     for name, says, change in changes:
         yield Mistake(name, says, replace(right, **change))
+
+
+def _of_clock(right: Setting) -> Iterator[Mistake]:
+    orbit = right.orbit
+    for how, says in _CLOCKS.items():
+        name = f"{orbit.scheme}, clock {how}"
+        with suppress(InputError):  # a scheme of which there is no such clock
+            wrong = replace(orbit, scheme=schemes.get(name).name)
+            yield Mistake(f"{_OF_SCHEME}{name}", says, replace(right, orbit=wrong))
+    t0, h = orbit.t0, orbit.step_size
+    begins = [("zero-t0", "your time begins at 0", Fraction(0))] if t0 else []
+    begins += [("clock+1", "your clock is a step ahead", t0 + h),
+               ("clock-1", "your clock is a step behind", t0 - h)]  # fmt: skip
+    for name, says, begin in begins:
+        told = f"{says}, and not at {short(t0)}" if name == "zero-t0" else says
+        yield Mistake(name, told, replace(right, orbit=replace(orbit, t0=begin)))
 
 
 def _of_step(right: Setting) -> Iterator[Mistake]:
@@ -190,8 +217,13 @@ def _named(parts: tuple[Part, ...]) -> str:
 
 
 def _with(orbit: Orbit, changed: dict[str, Fraction]) -> Orbit:
-    """The orbit with other numbers: h, q0, p0 and parameters by their names."""
+    """The orbit with other numbers: h, q0, p0, t0 and parameters by their names."""
     new = dict(changed)
-    h, q, p = new.pop("h", orbit.step_size), new.pop("q0", orbit.q), new.pop("p0", orbit.p)
+    own = {"h": "step_size", "q0": "q", "p0": "p", "t0": "t0"}
+    numbers = {own[name]: new.pop(name) for name in changed if name in own}
     hamiltonian = orbit.hamiltonian.with_values({**dict(orbit.hamiltonian.values), **new})
-    return Orbit(hamiltonian, orbit.scheme, h, q, p)
+    return Orbit(hamiltonian, orbit.scheme, **_numbers(orbit) | numbers)
+
+
+def _numbers(orbit: Orbit) -> dict[str, Fraction]:
+    return {"step_size": orbit.step_size, "q": orbit.q, "p": orbit.p, "t0": orbit.t0}

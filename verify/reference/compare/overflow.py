@@ -15,7 +15,7 @@ from verify.flows.extrapolation_of_many import arrays
 from verify.kernels.kernel import kernel_for
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.allowance import products
-from verify.reference.compare.scatter import run_of
+from verify.reference.compare.scatter import inputs_of, run_of
 from verify.reference.compare.setting import Bounded
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
@@ -29,7 +29,7 @@ def may_overflow(orbit: Orbit, step: int, known: dict[str, Bounded]) -> bool:
         return _overflows(orbit, step)
     if any(abs(value) > _LARGE for value, _ in known.values()):
         return True
-    return products(orbit, known["p"], known["q"]) > _LARGE or _overflows(orbit, step)
+    return products(orbit, step, known["p"], known["q"]) > _LARGE or _overflows(orbit, step)
 
 
 @lru_cache(maxsize=4096)
@@ -40,7 +40,7 @@ def _overflows(orbit: Orbit, step: int) -> bool:
     arithmetic = replace(arrays(), bits=FLOAT.prec, number=FLOAT.rational)
     try:
         kernel = kernel_for(run.hamiltonian, orbit.scheme, arithmetic, run.observables, False)
-        given = [FLOAT.rational(x) for x in run.inputs(kernel, 0).values()]
+        given = [FLOAT.rational(x) for x in inputs_of(run, kernel, arithmetic)]
         state = [FLOAT.rational(Fraction(x)) for x in (orbit.p, orbit.q, *kernel.start)]
     except OverflowError:  # what is given is no double
         return True

@@ -55,7 +55,12 @@ class PublishedRun:
     def orbit(self) -> Orbit:
         """What was run."""
         h, q, p = self.exact
-        return Orbit(self.hamiltonian, self.run.scheme, h, q, p)
+        return Orbit(self.hamiltonian, self.run.scheme, h, q, p, t0=self.t0 or Fraction(0))
+
+    @property
+    def t0(self) -> Fraction | None:
+        """When it starts, where H depends on time."""
+        return self.run.start.get("t")
 
     @cached_property
     def rows(self) -> dict[int, OrbitPoint]:
@@ -131,7 +136,7 @@ def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
         told = error.errors(include_url=False)[0]
         where = ".".join(map(str, told["loc"]))
         raise InputError("file", name, f"is no reference data: {where}: {told['msg']}") from None
-    hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
+    hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters, time=data.timed)
     for run in data.runs:
         _check_exponents(run, name)
         yield PublishedRun(data.name, hamiltonian, run)

@@ -1,12 +1,13 @@
 """How far rounding scatters runs: many copies of each, pushed a little in every step.
 
 Each copy starts with h, the parameters and the initial value off by a relative ξ·ε, and after every
-step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1. What becomes of that, divided by ε, is what an
-arithmetic's unit roundoff is multiplied with: as long as errors are small they add up, and so ε is
-small: an angle of 10⁸ is pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as
-roundings behave; in the others it stays what it was at first, the worst that roundings do where
-they always fall to the same side. A program's operations are others than ours, but their results
-are of the size of p and q or smaller.
+step p and q are multiplied by 1 + ξ·ε, |ξ| ≤ 1, and so is what a clock counts, as a program's own
+adds up t ← t + h. What becomes of that, divided by ε, is what an arithmetic's unit roundoff is
+multiplied with: as long as errors are small they add up, and so ε is small: an angle of 10⁸ is
+pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as roundings behave; in the
+others it stays what it was at first, the worst that roundings do where they always fall to the same
+side. A program's operations are others than ours, but their results are of the size of p and q or
+smaller.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -17,9 +18,10 @@ from typing import Any
 import numpy as np
 
 from verify.arithmetic.float_context import WIDE
-from verify.arithmetic.number_system import UnsupportedError
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.flows.extrapolation_of_many import arrays
-from verify.kernels.kernel import kernel_for
+from verify.kernels.clock import clock_inputs
+from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 
@@ -30,6 +32,7 @@ _MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go 
 _LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is said
 _BLOCK = 64  # steps whose random numbers are drawn at once
 _TOGETHER = 64  # orbits
+_COUNT = "step"  # what a kernel's clock counts by
 
 
 @dataclass(frozen=True)
@@ -53,12 +56,14 @@ class Scatter:
         if runs[0].implicit:
             raise UnsupportedError("equations are not solved for many points at once")
         self._random = np.random.default_rng(0)
+        arithmetic = arrays()
         kernel = kernel_for(
-            runs[0].hamiltonian, orbits[0].scheme, arrays(), runs[0].observables, False
+            runs[0].hamiltonian, orbits[0].scheme, arithmetic, runs[0].observables, False
         )
         self._names, self._function = kernel.state_names, kernel.function
+        self._pushed = ("p", "q", *([_COUNT] if kernel.timed else []))
         self._shape = len(orbits), _ALL
-        inputs = [list(run.inputs(kernel, 0).values()) for run in runs]
+        inputs = [inputs_of(run, kernel, arithmetic) for run in runs]
         self._given = [self._off(column) for column in zip(*inputs, strict=True)]
         self._state = {"p": self._off([c.p for c in orbits]), "q": self._off([c.q for c in orbits])}
         rest = zip(self._names[2:], kernel.start, strict=True)
@@ -92,7 +97,7 @@ class Scatter:
         push = self._ahead.pop()
         push[..., _COPIES:] = self._biased[..., _COPIES:]
         self._state = self._stepped(self._state)
-        for name, by in zip(("p", "q"), push, strict=True):
+        for name, by in zip(self._pushed, push, strict=True):
             self._state[name] = self._state[name] * by
         self._done += 1
 
@@ -101,8 +106,9 @@ class Scatter:
         return dict(zip(self._names, after, strict=True))
 
     def _draw(self, shape: tuple[int, ...]) -> Any:
-        """Factors for p and q of each copy; the one in the middle is not pushed."""
-        drawn = self._random.uniform(1 - _PUSH, 1 + _PUSH, (*shape, 2, *self._shape))
+        """Factors for what is pushed of each copy; the one in the middle is not."""
+        many = (*shape, len(self._pushed), *self._shape)
+        drawn = self._random.uniform(1 - _PUSH, 1 + _PUSH, many)
         drawn[..., _COPIES] = 1
         return drawn
 
@@ -138,8 +144,16 @@ class Scatter:
 
 def run_of(orbit: Orbit) -> KernelRun:
     """One step of the orbit, with MSE and Λ."""
-    start = {"p": orbit.p, "q": orbit.q, "h": orbit.step_size}
-    return KernelRun(orbit.hamiltonian, orbit.scheme, start, 1, frozenset({"mse", "lambda"}), 0)
+    observed = frozenset({"mse", "lambda"})
+    return KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, observed, 0)
+
+
+def inputs_of(run: KernelRun, kernel: Kernel, arithmetic: Arithmetic) -> list[Fraction]:
+    """What the kernel takes beside the state: h, the parameters, and t₀ where it has a clock."""
+    given = run.inputs(kernel, 0)
+    if kernel.timed:
+        given |= clock_inputs(arithmetic, run.start)
+    return list(given.values())
 
 
 class Scatters:

@@ -29,7 +29,8 @@ _ALIASES = {
 }
 _COUNTED = ("step", "time")
 _WHOLE = re.compile(r"[0-9]{1,40}")
-COLUMNS = ("scene", *KEYS, *_COUNTED, *VALUES)
+_BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
+COLUMNS = ("scene", *KEYS, _BEGINS, *_COUNTED, *VALUES)
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ class _Keys:
         for name in given:
             if name in places:
                 raise InputError(f"--{_option(name)}", given[name], "is a column of the table, too")
-        self.named = tuple(n for n in ("scene", *KEYS) if n in places)
+        self.named = tuple(n for n in ("scene", *KEYS, _BEGINS) if n in places)
         self.at = tuple(places[name] for name in self.named)
         self._known: dict[tuple[str, ...], PublishedRun | None] = {}
 
@@ -179,7 +180,7 @@ class _Keys:
                 raise self.lines.error(f"has the step {text[:40]!r}, which is not a whole number")
             return int(count)
         time = self._number(row[self.places["time"]], "time")
-        count = time / rational(run.run.step_size)
+        count = (time - (run.t0 or 0)) / rational(run.run.step_size)
         near = round(count)
         return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
 
@@ -198,6 +199,10 @@ class _Keys:
         exact = tuple(self._number(inputs[n], n) for n in KEYS[1:])
         h, q, p = map(nearest_double, exact)
         run = self.ours.run(scene, (inputs["scheme"], h, q, p), exact)
+        if run is not None and run.t0 is not None and _BEGINS in inputs:
+            begins = self._number(inputs[_BEGINS], _BEGINS)
+            if nearest_double(begins) != nearest_double(run.t0):
+                return None
         if run is not None:
             for name, theirs, mine in zip(KEYS[1:], exact, run.exact, strict=True):
                 if mine != theirs:

@@ -17,9 +17,11 @@ from verify.reference.make.models import (
     MANIFEST_FORMAT,
     Data,
     Flow,
+    FlowInTime,
     Manifest,
     Proof,
     Run,
+    RunInTime,
     SceneFile,
 )
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
@@ -76,6 +78,8 @@ def committed_scenes() -> list[Path]:
 
 def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
     """A scene's data from the results of its tasks, by their keys."""
+    timed = scene.exact_hamiltonian().time_dependent
+    run, flow = (RunInTime, FlowInTime) if timed else (Run, Flow)
     return Data(
         format=DATA_FORMAT,
         name=scene.name,
@@ -85,9 +89,9 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
             for t in proof_tasks(scene)
         ),
         runs=tuple(
-            Run(scheme=t.scheme, **t.inputs, rows=results[t.key].points) for t in orbit_tasks(scene)
+            run(scheme=t.scheme, **t.inputs, rows=results[t.key].points) for t in orbit_tasks(scene)
         ),
-        flow=tuple(Flow(**t.inputs, rows=results[t.key].points) for t in solution_tasks(scene)),
+        flow=tuple(flow(**t.inputs, rows=results[t.key].points) for t in solution_tasks(scene)),
     )
 
 

@@ -1,5 +1,6 @@
 """What the files of reference data hold. The published JSON Schemas are made from these models."""
 
+from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
@@ -64,6 +65,30 @@ class _FromStart(Frozen):
     p: Annotated[Exact, Field(description="the initial momentum p exactly")]
     digits: Annotated[int, Field(ge=1, description="significant digits of each number")]
 
+    @property
+    def start(self) -> dict[str, Fraction]:
+        """q and p at the start, and t₀ where H depends on time."""
+        return {"q": Fraction(self.q), "p": Fraction(self.p)}
+
+    @property
+    def told(self) -> str:
+        """Step size and start, in words."""
+        return f"h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
+
+
+class _FromTime(_FromStart):
+    """Of an H that depends on time."""
+
+    t0: Annotated[Exact, Field(description="the time at the start exactly")]
+
+    @property
+    def start(self) -> dict[str, Fraction]:
+        return super().start | {"t": Fraction(self.t0)}
+
+    @property
+    def told(self) -> str:
+        return f"{super().told}, t0 = {self.t0}"
+
 
 class Run(_FromStart, _OfScheme):
     """One scheme's orbit from one initial value with one step size."""
@@ -73,7 +98,11 @@ class Run(_FromStart, _OfScheme):
     @property
     def label(self) -> str:
         """The scheme and its inputs."""
-        return f"{self.scheme}, h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
+        return f"{self.scheme}, {self.told}"
+
+
+class RunInTime(_FromTime, Run):
+    """The same for an H that depends on time, from a time on."""
 
 
 class Flow(_FromStart):
@@ -84,7 +113,11 @@ class Flow(_FromStart):
     @property
     def label(self) -> str:
         """The same with "exact flow" for a scheme."""
-        return f"exact flow, h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
+        return f"exact flow, {self.told}"
+
+
+class FlowInTime(_FromTime, Flow):
+    """The same for an H that depends on time; N·h is the time since the start."""
 
 
 class Data(Frozen):
@@ -95,14 +128,27 @@ class Data(Frozen):
     format: Annotated[DataFormat, Field(description="this format")]
     name: Annotated[Name, Field(description="the scene's name; the files begin with it")]
     hamiltonian: Annotated[
-        str, Field(description="the formula of H(p, q) in p, q and the parameters; ** is a power")
+        str,
+        Field(
+            description="the formula of H(p, q), or H(p, q, t), in p, q, t and the parameters; "
+            "** is a power"
+        ),
     ]
     parameters: Annotated[
         dict[str, Exact], Field(description="each parameter's exact value by its name")
     ]
     proofs: Annotated[tuple[Proof, ...], Field(description="one a scheme")]
-    runs: Annotated[tuple[Run, ...], Field(description="one a scheme, initial value and step size")]
-    flow: Annotated[tuple[Flow, ...], Field(description="one an initial value and step size")]
+    runs: Annotated[
+        tuple[RunInTime | Run, ...], Field(description="one a scheme, initial value and step size")
+    ]
+    flow: Annotated[
+        tuple[FlowInTime | Flow, ...], Field(description="one an initial value and step size")
+    ]
+
+    @property
+    def timed(self) -> bool:
+        """Whether H depends on time."""
+        return any(isinstance(of, _FromTime) for of in (*self.runs, *self.flow))
 
     @property
     def count(self) -> int:

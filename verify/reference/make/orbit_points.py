@@ -62,8 +62,7 @@ def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
                 break
             kind = found.error_kind
             known = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in found.values.items()}
-        at = known["p"], known["q"]
-        change = delta_j_at(step_map, *at, orbit.step_size, digits + guard)
+        change = delta_j_at(step_map, known, orbit, step, digits + guard)
         if change is not None:
             known["delta_j"] = change
         last = guard == _GUARDS[-1]
@@ -82,6 +81,7 @@ def _run(orbit: Orbit, steps: int, digits: int) -> RunResult:
         q=orbit.q,
         p=orbit.p,
         step_size=orbit.step_size,
+        t0=orbit.t0,
         steps=steps,
         arithmetic=AUTO,
         digits=digits,
@@ -111,9 +111,10 @@ def _orbit_point(
 
 
 def delta_j_at(
-    step_map: StepMap, p: Bounded, q: Bounded, h: Fraction, digits: int
+    step_map: StepMap, known: Mapping[str, Bounded], orbit: Orbit, step: int, digits: int
 ) -> Bounded | None:
-    """ΔJ of the step from any state within the bounds of p and q: its middle and radius.
+    """ΔJ of the orbit's next step after so many, from any state within the bounds of p and q in
+    `known`: its middle and radius.
 
     Rigorous. None where a step is given by equations and does not preserve area by proof, and where
     it may not be defined there.
@@ -123,10 +124,13 @@ def delta_j_at(
     if step_map.implicit:
         return None
     with working_precision(4 * digits + _BITS):
-        box = {"p": around(*p), "q": around(*q), "h": rational_ball(h)}
+        box = {name: around(*known[name]) for name in ("p", "q")}
+        box |= {"h": rational_ball(orbit.step_size)}
+        if orbit.hamiltonian.time_dependent:
+            box["t"] = rational_ball(orbit.t0 + step * orbit.step_size)
         total = flint.arb(0)
-        for step in step_map.substeps:
-            own = enclose_all(step.ring, [step.delta_j, step.p_next, step.q_next], box)
+        for part in step_map.substeps:
+            own = enclose_all(part.ring, [part.delta_j, part.p_next, part.q_next], box)
             if own is None:
                 return None
             change, box["p"], box["q"] = own
@@ -140,7 +144,8 @@ def delta_j_at(
 def solution_points(
     hamiltonian: Hamiltonian, start: dict[str, Fraction], times: dict[int, Fraction], digits: int
 ) -> SolutionResult:
-    """The exact flow from q and p in `start`, at these times by their N, to so many digits."""
+    """The exact flow from q and p, and t0, in `start`, at these times after it by their N, to so
+    many digits."""
     points = (_flow_point(hamiltonian, start, *at, digits) for at in times.items())
     return SolutionResult(points=tuple(points))
 
@@ -165,7 +170,8 @@ def _flow_point(
             raise
     except NoFlowError:
         with suppress(NoFlowError):  # H may not even be defined at the initial value
-            told = leaves_by_algebra(hamiltonian, **start, time=time)
+            still = None if hamiltonian.time_dependent else leaves_by_algebra
+            told = still and still(hamiltonian, p=start["p"], q=start["q"], time=time)
             if told is not None and told.startswith("it blows up"):
                 return _nothing(step, time, "blows up")
     return _nothing(step, time, "not followed")

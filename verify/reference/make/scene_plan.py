@@ -68,5 +68,7 @@ def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
 def _starts(scene: Scene, section: Reference) -> Iterator[dict[str, Any]]:
     """What the tasks from each initial value with each step size have in common."""
     common = {"steps": section.steps, "digits": section.digits, **scene.hamiltonian_fields()}
+    if scene.exact_hamiltonian().time_dependent:
+        common["t0"] = scene.t0
     for at, h in product(section.initial_values, section.step_sizes):
         yield {"q": at.q, "p": at.p, "step_size": h, **common}

@@ -1,5 +1,6 @@
 """The tasks of reference data: an orbit and the exact flow, every number correctly rounded."""
 
+from fractions import Fraction
 from typing import Any, Literal
 
 from verify.arithmetic import automatic
@@ -20,15 +21,17 @@ class AtSteps(HamiltonianTask):
     imports = ("verify.reference.make.orbit_points",)
     q: Number
     p: Number
+    t0: Number | None = None
     step_size: StepSize
     steps: tuple[int, ...]
     digits: int
 
     @property
     def inputs(self) -> dict[str, Any]:
-        """Step size, initial value and digits, as the files have them."""
-        exact = {"step_size": self.step_size, "q": self.q, "p": self.p}
-        return {**{name: text(x) for name, x in exact.items()}, "digits": self.digits}
+        """Step size, initial value, t₀ of an H in time, and digits, as the files have them."""
+        exact = {"step_size": self.step_size, "q": self.q, "p": self.p, "t0": self.t0}
+        told = {name: text(x) for name, x in exact.items() if x is not None}
+        return {**told, "digits": self.digits}
 
 
 class OrbitTask(AtSteps, InitialValueTask):
@@ -50,7 +53,7 @@ class OrbitTask(AtSteps, InitialValueTask):
         from verify.reference.make.orbit_points import orbit_points
 
         exact = self.exact_hamiltonian()
-        orbit = Orbit(exact, self.scheme, self.step_size, self.q, self.p)
+        orbit = Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=self.t0 or Fraction())
         return orbit_points(orbit, steps=self.steps, digits=self.digits)
 
 
@@ -67,6 +70,6 @@ class SolutionTask(AtSteps):
     def compute(self, keeper: Keeper) -> SolutionResult:
         from verify.reference.make.orbit_points import solution_points
 
-        start = {"q": self.q, "p": self.p}
+        start = {"q": self.q, "p": self.p} | ({} if self.t0 is None else {"t0": self.t0})
         times = {n: n * self.step_size for n in self.steps}
         return solution_points(self.exact_hamiltonian(), start, times, self.digits)

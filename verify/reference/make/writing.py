@@ -29,6 +29,7 @@ SCHEMAS: dict[str, type[BaseModel]] = {
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 Row = tuple[str, ...]
 _GIVEN: Row = ("step_size", "q", "p", "digits")
+_GIVEN_IN_TIME: Row = ("step_size", "q", "p", "t0", "digits")
 _OF_ORBIT: Row = ("step", "status", "failed_step", "kind")
 _OF_FLOW: Row = ("step", "time", "status", "kind")
 
@@ -71,10 +72,11 @@ def schema_text(name: str) -> str:
 
 def tables(data: Data) -> dict[str, list[Row]]:
     """The same as tables of texts, by file name without its ending; the first row names columns."""
+    given = _GIVEN_IN_TIME if data.timed else _GIVEN
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
-        f"{data.name}-runs": list(_rows(data.runs, ("scheme", *_GIVEN), _OF_ORBIT, VALUES)),
-        f"{data.name}-flow": list(_rows(data.flow, _GIVEN, _OF_FLOW, ("p", "q"))),
+        f"{data.name}-runs": list(_rows(data.runs, ("scheme", *given), _OF_ORBIT, VALUES)),
+        f"{data.name}-flow": list(_rows(data.flow, given, _OF_FLOW, ("p", "q"))),
     }
 
 

@@ -25,6 +25,17 @@ initial_values = [{{ q = "0.7", p = "0.4" }}]
 steps = [1, 12]
 digits = 20
 """,
+    "driven": """
+hamiltonian = "p**2/2 + a*q**4 + p**2/(4*(2 + sin(t))) - q*cos(3*t)*exp(-t**2/9)"
+parameters = { a = "1/7" }
+t0 = "2/3"
+schemes = ["lie2", "lie3", "yoshida4", "position-verlet", "symplectic-euler", "rk4"]
+[[reference]]
+step_sizes = ["1/8"]
+initial_values = [{ q = "0", p = "0" }, { q = "0.7", p = "0.4" }]
+steps = [0, 1, 12]
+digits = 20
+""",
     "not-separable": """
 hamiltonian = "p**2/2 + q**2/2 + p**2*q/4 + exp(p*q/3)"
 schemes = ["lie3", "rk4", "explicit-midpoint"]
@@ -50,7 +61,7 @@ def again(of: Data, kind: str, index: int) -> Findings:
     return recomputed(of, "file", kind, index)
 
 
-@pytest.mark.parametrize("name", ["mine", "leaves", "other", "not-separable"])
+@pytest.mark.parametrize("name", ["mine", "leaves", "other", "not-separable", "driven"])
 def test_all_that_is_made_is_found_again(name: str) -> None:
     rows = 0
     for kind, index in units(data(name)):
@@ -103,6 +114,22 @@ def test_any_other_digit_of_any_number_is_found(kind: str) -> None:
 def test_another_input_gives_other_numbers(path: list[Any], value: str, column: str) -> None:
     found = again(changed(data("mine"), path, value), "run", 2)
     assert column in {x.column for x in found.differences}
+
+
+@pytest.mark.parametrize("kind", ["run", "flow"])
+def test_another_time_at_the_start_gives_other_numbers(kind: str) -> None:
+    of = data("driven")
+    assert of.timed
+    items = getattr(of, KINDS[kind])
+    for k in range(len(items)):
+        found = again(changed(of, [KINDS[kind], k, "t0"], "0.6666"), kind, k)
+        assert {"p", "q"} <= {x.column for x in found.differences}
+
+
+def test_an_h_without_t_has_no_t0() -> None:
+    raw = data("mine").model_dump(mode="json", by_alias=True)
+    assert not data("mine").timed
+    assert all("t0" not in x for x in (*raw["runs"], *raw["flow"]))
 
 
 @pytest.mark.parametrize(

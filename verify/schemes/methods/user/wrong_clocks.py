@@ -1,42 +1,61 @@
-"""A splitting with a wrong clock, for comparison: `forest-ruth, clock frozen`.
+"""A scheme with a wrong clock, for comparison: `forest-ruth, clock frozen`, `rk4, clock frozen`.
 
-Without time it is the same splitting. For an H that depends on time it reads
+Without time it is the same scheme. Where H depends on time it reads
 
-- `frozen`: every part at the step's start;
-- `at the end`: every part at the step's end;
-- `exchanged`: each part at the sum of the parts of its own kind before it, and not of the other's.
+- `frozen`: every part or stage at the step's start;
+- `at the end`: every part or stage at the step's end;
+- `exchanged`: each part of a splitting at the sum of the parts of its own kind before it, and not
+  of the other's.
 
-It claims the order that the splitting has with its right clocks, and is refuted.
+It claims the order that the scheme has with its right clocks, and is refuted. `lieη` with such a
+clock is what X makes of H at that time, in place of D.
 """
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import count
 
 import sympy
 
+from verify.algebra.formula import symbol
 from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.schemes.runge_kutta import runge_kutta_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting, sums_before
 from verify.schemes.splitting_conditions import Part, Splitting
+from verify.schemes.step_map import H_STEP, StepMap
 
 EXAMPLES = ()  # its names are the users' own
 _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")
 
 
 def make(name: str) -> Scheme | None:
-    """The scheme for a text `NAME, clock HOW`; InputError for what is no splitting, or no HOW."""
+    """The scheme for a text `NAME, clock HOW`; InputError for what has no clocks, or no HOW."""
     from verify.schemes import get
 
     found = _NAME.fullmatch(name)
     if found is None:
         return None
     base, how = get(found["base"]), " ".join(found["clock"].split())
+    known = _CLOCKS if isinstance(base.every_h, Splitting) else _STANDING
+    if not isinstance(base.every_h, Splitting | RungeKutta | TaylorSeries):
+        problem = f"{base.name} has no such clocks; splittings, explicit stages and lieη do"
+        raise InputError("scheme", name, problem)
+    if how not in known:
+        raise InputError("scheme", name, f"clock {how}: unknown; allowed: {', '.join(known)}")
     if not isinstance(base.every_h, Splitting):
-        raise InputError(
-            "scheme", name, f"{base.name} is no splitting; only those have such clocks"
+        return replace(
+            base,
+            name=f"{base.name}, clock {how}",
+            source=f"{base.source}; with a wrong clock",
+            build=partial(_with_standing_clock, base.every_h, _STANDING[how]),
+            every_h=None,
         )
-    if how not in _CLOCKS:
-        raise InputError("scheme", name, f"clock {how}: unknown; allowed: {', '.join(_CLOCKS)}")
     parts = base.every_h.parts
     return splitting(
         f"{base.name}, clock {how}",
@@ -48,6 +67,22 @@ def make(name: str) -> Scheme | None:
     )
 
 
+def _with_standing_clock(
+    every_h: RungeKutta | TaylorSeries, at: int, hamiltonian: Hamiltonian
+) -> StepMap:
+    """The map of H as it is at t + `at` h."""
+    if isinstance(every_h, RungeKutta):
+        return runge_kutta_map(hamiltonian, every_h, at)
+    if not hamiltonian.time_dependent:
+        return lie_map(hamiltonian, every_h.eta)
+    t, names = symbol("t"), hamiltonian.symbols
+    instant = symbol(next(n for n in map("instant{}".format, count()) if n not in names))
+    still = lie_map(Hamiltonian(hamiltonian.exact.xreplace({t: instant})), every_h.eta)
+    pair = (x.xreplace({instant: t + at * H_STEP}) for x in still.composed)
+    return StepMap.from_expressions(hamiltonian, *pair)
+
+
+_STANDING = {"frozen": 0, "at the end": 1}  # and when it stands, in parts of h
 _CLOCKS: Mapping[str, Callable[[Sequence[Part]], tuple[sympy.Expr, ...]]] = {
     "frozen": lambda parts: (sympy.S.Zero,) * len(parts),
     "at the end": lambda parts: (sympy.S.One,) * len(parts),
