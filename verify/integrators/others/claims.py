@@ -33,6 +33,9 @@ _Judgement = tuple[Verdict, Prose, tuple[tuple[str, ...], ...]]
 NONE = Prose()
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
 _SYMPLECTIC = "symplectic: det J ≡ 1"
+_IN_TIME = "where the force depends on time"
+_UNSAID = f"its order {_IN_TIME}, of which nothing is said"
+_ALWAYS_TOLD = ("agreement", "in time")  # with its reproduction, whatever is found
 _Claim = tuple[str, str, _Judgement, str]  # its kind, the statement, and its reproduction at last
 
 
@@ -41,7 +44,7 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
     one for the order and one for its digits. `prefix` begins the ids."""
     for kind, statement, judgement, code in _claims(integrator.method, integrator):
         verdict, evidence, details = judgement
-        told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or kind == "agreement"
+        told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or kind in _ALWAYS_TOLD
         yield ClaimResult(
             id=f"{prefix}/{integrator.name}/{kind}",
             kind=kind,
@@ -101,9 +104,13 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     point = (method.points or POINTS)[0]
     order, area, code = integrator.order, integrator.area_preserving, integrator.reproduction
+    timed = method.exact.time_dependent
     if order is not None:
         said = of_measured_order(order, finding(method), area)
-        yield "order", f"order {order}", said, reproductions.of_order(code, point, order)
+        statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
+        yield "order", statement, said, reproductions.of_order(code, point, order, timed)
+    elif timed:
+        yield "in time", _UNSAID, of_unsaid(finding(method)), reproductions.of_time(code, point)
     if area:
         said = of_measured_area(finding(method))
         yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point)
@@ -268,6 +275,12 @@ def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -
     if known and order is not None:
         return Verdict.REFUTED, prose(found.reason, notes), ()
     return Verdict.UNDECIDED, prose(found.reason, notes), ()
+
+
+def of_unsaid(found: Finding) -> _Judgement:
+    """What is measured where nothing is claimed: it refutes nothing, whatever it is."""
+    verdict = Verdict.MEASURED if found.order_decided else Verdict.UNDECIDED
+    return verdict, found.reason, ()
 
 
 def _capital(note: Prose) -> Prose:

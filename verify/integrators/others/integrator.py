@@ -4,18 +4,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.others.printed_table import PrintedTable
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 
-Map = Callable[[float, float, float], tuple[float, float]]
+Map = Callable[..., tuple[float, float]]  # of p, q, h; or of p, q, t, h
 Point = tuple[Fraction, Fraction]  # p, q
 FINE = tuple(Fraction(k, 32) for k in (*range(48, 16, -2), *range(16, 3, -1)))
 
 
 @dataclass(frozen=True)
 class FloatStep:
-    """One step in floats, (p, q, h) → (p', q'), for one Hamiltonian, whose formula is given.
+    """One step in floats, (p, q, h) → (p', q'), for one Hamiltonian, whose formula is given; where
+    that has t in it, (p, q, t, h) → (p', q').
 
     `make` imports the library and returns the step. `points`, `ladder`: where it is tried and with
     which steps, falling; else the usual. A high order shows between a step that is too large for it
@@ -26,6 +28,11 @@ class FloatStep:
     make: Callable[[], Map]
     points: tuple[Point, ...] = ()
     ladder: tuple[Fraction, ...] = ()
+
+    @property
+    def exact(self) -> Hamiltonian:
+        """H."""
+        return Hamiltonian.parse(self.hamiltonian, time=True)
 
 
 @dataclass(frozen=True)
@@ -49,8 +56,8 @@ class Compared:
 class ReleasedIntegrator:
     """`driven`: one sentence on how it is made a one-step map. `order`: the claimed order of
     convergence; `area_preserving`: whether it is claimed to be symplectic; None where nothing is
-    claimed. `source`: where. `reproduction`: a few lines of Python that show what was found with
-    nothing but the library.
+    claimed: of a force that depends on time the order is then told all the same. `source`: where.
+    `reproduction`: a few lines of Python that show what was found with nothing but the library.
     """
 
     name: str

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import POINTS
 from verify.integrators.faults import examined
 from verify.integrators.measured import of_measured
@@ -11,7 +10,8 @@ from verify.integrators.others.integrator import FloatStep
 from verify.integrators.probe import Trial, measured
 from verify.integrators.results import Finding
 from verify.integrators.step import Step, StepError, last_line
-from verify.prose import prose, read_prose
+from verify.integrators.still_clock import measured_mistakes
+from verify.prose import joined, prose, read_prose
 from verify.verdict import Verdict
 
 # A library may raise anything, and leave the program too.
@@ -35,9 +35,11 @@ def _undecided(found: Finding, first: float, last: float) -> Finding:
 def finding(method: FloatStep) -> Finding:
     """Its order, and whether an area defect is seen. UNDECIDED, with the reason, where it cannot be
     measured."""
-    hamiltonian = Hamiltonian.parse(method.hamiltonian)
+    hamiltonian = method.exact
+    timed = hamiltonian.time_dependent
+    order = ("p", "q", "t", "h") if timed else ("p", "q", "h")
     try:
-        step = Step(method.make(), left=_SECONDS)
+        step = Step(method.make(), order=order, left=_SECONDS, moving=timed)
         trial = Trial(step, hamiltonian, method.points or POINTS)
         faults, _ = examined(step, trial.points)
         fatal = next((fault for fault in faults if fault.fatal), None)
@@ -50,7 +52,8 @@ def finding(method: FloatStep) -> Finding:
         seen = found.distance
         if seen.power is not None and seen.first < _SPAN * seen.last:
             return _undecided(told, seen.first, seen.last)
-        return told
+        mistakes = measured_mistakes(trial, "floats", told.convergence_order)
+        return replace(told, reason=joined("; ", (told.reason, *mistakes)))
     except FAILURES as error:
         said = error.said if isinstance(error, StepError) else last_line(error)
         return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", said), "calls")

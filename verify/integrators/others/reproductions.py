@@ -61,8 +61,21 @@ def error(h):  # of one step, against 64 steps of h / 64
     return max(abs(x[0] - y[0]), abs(x[1] - y[1]))
 
 
-# the error of one step is O(h^r), r = order + 1; claimed: order {order}
+# the error of one step is O(h^r), r = order + 1{claimed}
 print([(h, math.log2(error(h) / error(h / 2))) for h in (1.0, 0.5, 0.25)])"""
+
+_ORDER_IN_TIME = """
+
+
+def error(h, t=0.75):  # of one step, against 64 steps of h / 64
+    x, y = step({p}, {q}, t, h), ({p}, {q})
+    for k in range(64):
+        y = step(*y, t + k * h / 64, h / 64)
+    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))
+
+
+# the error of one step is O(h^r), r = order + 1{claimed}
+print([(h, math.log2(error(h) / error(h / 2))) for h in (0.5, 0.25, 0.125)])"""
 
 _AREA = """
 
@@ -133,9 +146,16 @@ def _exact(size: str) -> str:
     return _INTEGER.sub(r"F(\g<0>)", size)
 
 
-def of_order(code: str, point: tuple[Fraction, Fraction], order: int) -> str:
-    """`code`, which defines step(p, q, h), and the slopes of its error."""
-    return _with(code, _ORDER.format(p=float(point[0]), q=float(point[1]), order=order))
+def of_order(code: str, point: tuple[Fraction, Fraction], order: int, timed: bool = False) -> str:
+    """`code`, which defines step(p, q, h), or step(p, q, t, h), and the slopes of its error."""
+    slopes = _ORDER_IN_TIME if timed else _ORDER
+    claimed = f"; claimed: order {order}"
+    return _with(code, slopes.format(p=float(point[0]), q=float(point[1]), claimed=claimed))
+
+
+def of_time(code: str, point: tuple[Fraction, Fraction]) -> str:
+    """The same of step(p, q, t, h) where no order is claimed."""
+    return _with(code, _ORDER_IN_TIME.format(p=float(point[0]), q=float(point[1]), claimed=""))
 
 
 def of_area(code: str, point: tuple[Fraction, Fraction]) -> str:

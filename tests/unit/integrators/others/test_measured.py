@@ -1,7 +1,9 @@
 """Steps in floats: what is claimed is measured, and a library that fails refutes nothing."""
 
+import io
 import math
 from collections.abc import Callable
+from contextlib import redirect_stdout
 
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import FINE, FloatStep, Map, ReleasedIntegrator
@@ -74,3 +76,67 @@ def test_a_power_that_is_seen_in_passing_only_is_not_known() -> None:
 
     found = finding(FloatStep(PENDULUM, lambda: passing, ladder=FINE[:14]))
     assert not found.order_decided
+
+
+DRIVEN = "p**2/2 - cos(q) - q*cos(t)/2"
+
+
+def driven(first: float, last: float) -> Map:
+    """Störmer–Verlet, with these moments of its two kicks."""
+
+    def kick(q: float, t: float, h: float) -> float:
+        return h / 2 * (math.cos(t) / 2 - math.sin(q))
+
+    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
+        p += kick(q, t + first * h, h)
+        q += h * p
+        return p + kick(q, t + last * h, h), q
+
+    return step
+
+
+def told(step: Map, order: int | None) -> tuple[str, Verdict, str]:
+    method = FloatStep(DRIVEN, lambda: step)
+    own = ReleasedIntegrator("mine", "by hand", "nowhere", method, order, reproduction=SCRIPT)
+    (claim,) = claims_of(own, "mine", "mine")
+    return claim.kind, claim.verdict, str(claim.evidence)
+
+
+SCRIPT = """\
+from math import cos, sin
+
+
+def step(p, q, t, h):
+    p += h / 2 * (cos(t) / 2 - sin(q))
+    q += h * p
+    return p + h / 2 * (cos(t) / 2 - sin(q)), q
+"""
+
+
+def test_an_order_is_held_against_a_force_that_depends_on_time() -> None:
+    kind, verdict, _ = told(driven(0, 1), 2)
+    assert (kind, verdict) == ("order", Verdict.MEASURED)
+    kind, verdict, evidence = told(driven(0, 0), 2)
+    assert (kind, verdict) == ("order", Verdict.REFUTED)
+    assert "order is 1" in evidence
+    assert "it is of order 2 as if the force were read at t in every stage" in evidence
+
+
+def test_where_nothing_is_claimed_of_time_nothing_is_refuted() -> None:
+    kind, verdict, evidence = told(driven(0, 0), None)
+    assert (kind, verdict) == ("in time", Verdict.MEASURED)
+    assert "its clock stands still" in evidence
+    assert told(driven(0, 1), None)[1] is Verdict.MEASURED
+
+
+def test_what_is_found_of_time_has_lines_that_show_it() -> None:
+    printed = io.StringIO()
+    method = FloatStep(DRIVEN, lambda: driven(0, 0))
+    for order in (2, None):
+        own = ReleasedIntegrator("mine", "by hand", "nowhere", method, order, reproduction=SCRIPT)
+        (claim,) = claims_of(own, "mine", "mine")
+        with redirect_stdout(printed):
+            exec(claim.reproduction, {})  # noqa: S102 - it is what is tested
+    slopes = [slope for line in printed.getvalue().splitlines() for _, slope in eval(line)]  # noqa: S307
+    assert len(slopes) == 6
+    assert all(1.8 < slope < 2.3 for slope in slopes)

@@ -23,6 +23,7 @@ _SOURCE = "the documentation of heyoka.taylor_adaptive"
 _DRIVEN = "taylor_adaptive with tol = exp(3 − 2η) and step(max_delta_t = h)"
 # Slow, since heyoka takes a shorter step than it is given where its tolerance asks for one.
 _SLOW = "p**2/32 - cos(q)/16"
+_SLOWLY_DRIVEN = "p**2/32 - cos(q)/16 - q*cos(t/4)/16"
 _SYSTEMS = {
     "pendulum": "p**2/2 - cos(q)",
     "not separable": "p**2/2 + q**2/2 + p**2*q/4 + p*q**3/8",
@@ -44,6 +45,15 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             FloatStep(_SLOW, lambda eta=eta: _step(eta)),  # type: ignore[misc]
             eta,
             reproduction=_script(eta),
+        )
+    for eta in _ORDERS:
+        yield ReleasedIntegrator(
+            f"Taylor, order {eta}, driven",
+            f"{_DRIVEN}, with heyoka.time in the equations",
+            "the documentation of heyoka.py, Non-autonomous systems",
+            FloatStep(_SLOWLY_DRIVEN, lambda eta=eta: _in_time(eta)),  # type: ignore[misc]
+            eta,
+            reproduction=_script_in_time(eta),
         )
     yield ReleasedIntegrator(
         "Taylor and lieη",
@@ -76,6 +86,26 @@ def _step(eta: int) -> Map:
 
     def step(p: float, q: float, h: float) -> tuple[float, float]:
         taylor.time = 0.0
+        taylor.state[:] = (p, q)
+        _, taken = taylor.step(max_delta_t=h)
+        if taken != h:
+            raise RuntimeError("heyoka took a shorter step")
+        return float(taylor.state[0]), float(taylor.state[1])
+
+    return step
+
+
+def _in_time(eta: int) -> Map:
+    import heyoka as hy
+
+    p, q = hy.make_vars("p", "q")
+    equations: Any = [(p, (hy.cos(hy.time / 4) - hy.sin(q)) / 16), (q, p / 16)]
+    taylor = hy.taylor_adaptive(equations, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
+    if taylor.order != eta:
+        raise RuntimeError(f"heyoka took order {taylor.order}")
+
+    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
+        taylor.time = t
         taylor.state[:] = (p, q)
         _, taken = taylor.step(max_delta_t=h)
         if taken != h:
@@ -144,4 +174,22 @@ def step(p, q, h):
     t.time, t.state[:] = 0.0, (p, q)
     t.step(max_delta_t=h)
     return tuple(t.state)
+"""
+
+
+def _script_in_time(eta: int) -> str:
+    return f"""\
+import math
+import heyoka as hy
+
+p, q = hy.make_vars("p", "q")
+drive = hy.cos(hy.time / 4)
+equations = [(p, (drive - hy.sin(q)) / 16), (q, p / 16)]
+y = hy.taylor_adaptive(equations, [0.0, 0.0], tol=math.exp(3 - 2 * {eta}))
+
+
+def step(p, q, t, h):
+    y.time, y.state[:] = t, (p, q)
+    y.step(max_delta_t=h)
+    return tuple(y.state)
 """

@@ -19,6 +19,10 @@ LEFT_OUT = (
         "OrdinaryDiffEqSymplecticRK's McAte42",
         "its documentation says that it is broken, so that no order is claimed of it",
     ),
+    (
+        "a force that depends on time",
+        "a table has no clock: which time kicks and drifts read is in code that is not run here",
+    ),
 )
 _KINDS = {
     "splitting": "for every H = T(p) + V(q)",

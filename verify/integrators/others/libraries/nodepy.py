@@ -15,7 +15,13 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.others.integrator import Compared, ExactTableau, ReleasedIntegrator
+from verify.integrators.others.integrator import (
+    Compared,
+    ExactTableau,
+    FloatStep,
+    Map,
+    ReleasedIntegrator,
+)
 from verify.integrators.others.tableau import order_of
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
@@ -33,6 +39,7 @@ _ORDERS = {
     "TR-BDF2": 2, "SDIRK23": 3, "SDIRK34": 4, "SDIRK54": 4, "NSSP32": 2, "NSSP33": 3,
 }  # fmt: skip
 _PAIR = re.compile(r"(\d)\((\d)\)")
+_DRIVEN = "p**2/2 - cos(q) - q*cos(t)/4"
 _LOOSE = 1e-12  # above the rounding of a dozen floats, far below a wrong method's residues
 _STAGES_ORDER = re.compile(r"^[A-Za-z]+(\d+)(\d)$")
 
@@ -58,6 +65,23 @@ def integrators() -> Iterator[ReleasedIntegrator]:
                 embedded,
                 reproduction=_script(key, "bhat"),
             )
+    yield ReleasedIntegrator(
+        "nodes",
+        "c and A of each of these methods",
+        "its documentation: it solves u' = f(t, u)",
+        Compared(
+            "The nodes c are the row sums of A, so that the order holds for f(t, u), too", _nodes
+        ),
+        reproduction=_NODES_SCRIPT,
+    )
+    yield ReleasedIntegrator(
+        "RK44 as a step, driven",
+        "rk.loadRKM('RK44') called with an IVP from t to t + h and dt = h",
+        "its documentation: it solves u' = f(t, u)",
+        FloatStep(_DRIVEN, _step),
+        4,
+        reproduction=_STEP_SCRIPT,
+    )
     yield ReleasedIntegrator(
         "order()",
         "what it returns for each of these methods, by default",
@@ -124,6 +148,47 @@ def _number(x: Any) -> tuple[sympy.Expr, bool]:
     return sympy.Rational(numerator, denominator), denominator > 2**10
 
 
+def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
+    """Whether a stage reads f at the time that its place is for; the rest of f(t, u) is then that
+    of an autonomous system with one more unknown."""
+    wrong, rounded = [], 0
+    methods = _loaded()
+    for key, method in methods.items():
+        count = len(method.b)
+        off = [_number(method.c[i])[0] - sum(_number(method.A[i, j])[0] for j in range(count))
+               for i in range(count)]  # fmt: skip
+        exact = [sympy.radsimp(sympy.expand(x)) == 0 for x in off]
+        if not all(exact):
+            close = all(abs(float(x)) <= _LOOSE for x in off)
+            rounded += close
+            wrong += [] if close else [key]
+    if wrong:
+        return Verdict.REFUTED, f"not of {', '.join(wrong)}", ()
+    if rounded:
+        said = f"exactly for {len(methods) - rounded} of {len(methods)} methods, of the others, "
+        return Verdict.MEASURED, f"{said}whose coefficients are floats, but for their rounding", ()
+    return Verdict.PROVED, f"exactly, for all {len(methods)} methods", ()
+
+
+def _step() -> Map:
+    import numpy as np
+    from nodepy import ivp
+
+    method = _loaded()["RK44"]
+
+    def field(t: float, u: Any) -> Any:
+        return np.array([np.cos(t) / 4 - np.sin(u[1]), u[0]])
+
+    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
+        one = ivp.IVP(f=field, u0=np.array([p, q]), T=t + h)
+        times, states = method(one, t0=t, dt=h)
+        if len(times) != 2 or times[-1] != t + h:
+            raise RuntimeError("it took another step")
+        return float(states[-1][0]), float(states[-1][1])
+
+    return step
+
+
 def _check_order_method() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
     rows = [("method", "order() returns", "proved or measured")]
     wrong, coarse = [], []
@@ -175,6 +240,23 @@ print("order 3:", b.dot(c**2) - 1 / 3, b.dot(A.dot(c)) - 1 / 6)
 """
 
 
+_NODES_SCRIPT = """\
+from nodepy import rk
+
+for key, m in rk.loadRKM().items():
+    print(key, max(abs(float(x)) for x in m.A.sum(axis=1) - m.c))
+"""
+_STEP_SCRIPT = """\
+import numpy as np
+from nodepy import ivp, rk
+
+m = rk.loadRKM("RK44")
+
+
+def step(p, q, t, h):
+    f = lambda s, u: np.array([np.cos(s) / 4 - np.sin(u[1]), u[0]])
+    return m(ivp.IVP(f=f, u0=np.array([p, q]), T=t + h), t0=t, dt=h)[1][-1]
+"""
 _ORDER_SCRIPT = """\
 from nodepy import rk
 

@@ -3,11 +3,15 @@
 With G = 1, a star of mass 8 and softening 2, that is H = p²/2 − 8/√(q² + 4). EOS takes no
 softening, and Wisdom–Holman integrators solve the problem of two bodies exactly: so for these the
 star has mass 1, H = p²/2 − 1/q, and for the latter −q/4 is an additional force.
+
+An additional force may read the simulation's time; of one that does the documentation says nothing.
 """
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
@@ -28,6 +32,12 @@ _AWAY: tuple[Point, ...] = tuple(
     (Fraction(a), Fraction(b))
     for a, b in (("1/3", "2"), ("-1/4", "5/2"), ("1/5", "3"), ("0", "9/4"))
 )
+_TIMES = (
+    "",
+    "",
+    "step(0.0, 2.0, 1.0, 0.5)",
+    'print("in the step from 1.0 to 1.5 the force is read at", times)',
+)
 _ONE: tuple[Point, ...] = ((Fraction(1, 3), Fraction(1, 2)),)
 _SOURCE = "the integrator's own documentation, Simulation.integrator.__doc__"
 
@@ -41,6 +51,14 @@ class _Problem:
     softening: float
     forced: bool
     said: str
+    driven: bool = False
+
+    @property
+    def in_time(self) -> "_Problem":
+        """The same with cos(6 t/5)/4 as an additional force."""
+        formula = f"{self.hamiltonian} - q*cos(6*t/5)/4"
+        said = f"{self.said}; and cos(6 t/5)/4 as additional force, t the simulation's time"
+        return replace(self, hamiltonian=formula, said=said, driven=True)
 
 
 _SOFT = _Problem(
@@ -70,6 +88,29 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     for name in ("10_4", "8_6_4", "10_6_4"):
         title = f"SABA({name.replace('_', ',')})"
         yield _integrator(_FORCED, "saba", title, 4, f"type = '{name}'")
+    yield from _in_time()
+
+
+def _in_time() -> Iterator[ReleasedIntegrator]:
+    """One of each kind that reads a time by itself, and of each order where that is another one."""
+    for order in (2, 4):
+        yield _driven(_SOFT, "leapfrog", f"LEAPFROG, order {order}", order, f"order = {order}")
+        yield _driven(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
+    for name, order in (("LF", 2), ("LF4", 4)):  # additional forces belong to the outer splitting
+        settings = f"phi0 = '{name}'", "phi1 = 'LF8'"
+        yield _driven(_FREE, "eos", f"EOS, phi0 = {name}, phi1 = LF8", order, *settings)
+    yield _driven(_FORCED, "whfast", "WHFAST", 2)
+    for name in ("1", "2", "3", "4"):
+        yield _driven(_FORCED, "saba", f"SABA{name}", 2, f"type = '{name}'")
+    for name in ("10_4", "8_6_4", "10_6_4"):
+        title = f"SABA({name.replace('_', ',')})"
+        yield _driven(_FORCED, "saba", title, 4, f"type = '{name}'")
+
+
+def _driven(problem: _Problem, *given: Any) -> ReleasedIntegrator:
+    """The same with a force that depends on time, of whose order nothing is said."""
+    made = _integrator(problem.in_time, *given)
+    return replace(made, name=f"{made.name}, driven", order=None, area_preserving=None)
 
 
 def _integrator(
@@ -97,7 +138,8 @@ def _integrator(
 def _step(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
     import rebound
 
-    def step(p: float, q: float, h: float) -> tuple[float, float]:
+    def step(p: float, q: float, *t_and_h: float) -> tuple[float, float]:
+        *time, h = t_and_h
         simulation = rebound.Simulation()
         simulation.add(m=problem.mass)
         simulation.add(m=0.0, x=q, vx=p)
@@ -107,8 +149,10 @@ def _step(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
             name, _, value = setting.partition(" = ")
             setattr(simulation.integrator, name, value.strip("'") if "'" in value else int(value))
         simulation.softening = problem.softening
-        if problem.forced:
-            simulation.additional_forces = _pull
+        if problem.driven:
+            simulation.t = time[0]
+        if problem.forced or problem.driven:
+            simulation.additional_forces = partial(_push, problem)
         simulation.dt = h
         simulation.steps(1)
         simulation.synchronize()
@@ -118,24 +162,30 @@ def _step(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
     return step
 
 
-def _pull(reference: Any) -> None:
+def _push(problem: _Problem, reference: Any) -> None:
+    """The additional force."""
     particle = reference.contents.particles[1]
-    particle.ax -= particle.x / 4
+    if problem.forced:
+        particle.ax -= particle.x / 4
+    if problem.driven:
+        particle.ax += math.cos(1.2 * reference.contents.t) / 4
 
 
 def _script(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> str:
-    force = """
-
-def pull(s):
-    b = s.contents.particles[1]
-    b.ax -= b.x / 4
-"""
+    forces = [
+        *(["    b.ax -= b.x / 4"] if problem.forced else []),
+        *(["    b.ax += math.cos(1.2 * s.contents.t) / 4"] if problem.driven else []),
+        *(["    times.append(s.contents.t)"] if problem.driven else []),
+    ]
+    push = ["", "", "def push(s):", "    b = s.contents.particles[1]", *forces]
     lines = [
+        *(["import math"] if problem.driven else []),
         "import rebound",
-        *(force.splitlines() if problem.forced else ()),
+        *(["", "times = []"] if problem.driven else []),
+        *(push if forces else ()),
         "",
         "",
-        "def step(p, q, h):",
+        f"def step(p, q, {'t, ' if problem.driven else ''}h):",
         "    s = rebound.Simulation()",
         f"    s.add(m={problem.mass})",
         "    s.add(m=0.0, x=q, vx=p)",
@@ -143,11 +193,13 @@ def pull(s):
         f"    s.integrator = {integrator!r}",
         *(f"    s.integrator.{setting}" for setting in settings),
         *([f"    s.softening = {problem.softening}"] if problem.softening else ()),
-        *(["    s.additional_forces = pull"] if problem.forced else ()),
+        *(["    s.t = t"] if problem.driven else ()),
+        *(["    s.additional_forces = push"] if forces else ()),
         "    s.dt = h",
         "    s.steps(1)",
         "    s.synchronize()",
         "    a, b = s.particles",
         "    return b.vx - a.vx, b.x - a.x",
+        *(_TIMES if problem.driven else ()),
     ]
     return "\n".join(lines)

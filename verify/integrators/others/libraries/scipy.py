@@ -33,8 +33,10 @@ LEFT_OUT = (
     ("odeint, ode", "choose steps and orders by themselves: no map of a fixed h"),
 )
 _PENDULUM = "p**2/2 - cos(q)"
+_DRIVEN = "p**2/2 - cos(q) - q*cos(t)/4"
 # Dormand and Prince made the h⁶ of RK45's error small: at most points h⁷ hides it, and not here.
 _POINTS: tuple[Point, ...] = ((Fraction(1, 2), Fraction(-3, 2)),)
+_PLAIN: tuple[Point, ...] = ((Fraction(1, 7), Fraction(6, 5)),)  # elsewhere h⁷ hides h⁶
 _SOURCE = "the documentation of scipy.integrate.{}"
 _LOOSE = "a single step of scipy.integrate.{}, first_step = h, tolerances that accept any step"
 
@@ -50,11 +52,29 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             None,
             _script(name),
         )
+    for name, order in (("RK23", 3), ("RK45", 5)):
+        yield ReleasedIntegrator(
+            f"{name}, as a step, driven",
+            _LOOSE.format(name),
+            f"{_SOURCE.format(name)}: y' = f(t, y)",
+            FloatStep(_DRIVEN, partial(_in_time, name), *((_POINTS, FINE) if order > 4 else ())),
+            order,
+            None,
+            _script_in_time(name),
+        )
     yield ReleasedIntegrator(
         "Radau, as a step",
         "the collocation equations of scipy's Radau, by its own solver, to rounding",
         _SOURCE.format("Radau"),
-        FloatStep(_PENDULUM, _radau),
+        FloatStep(_PENDULUM, lambda: _without_time(_radau(_field))),
+        5,
+        None,
+    )
+    yield ReleasedIntegrator(
+        "Radau, as a step, driven",
+        "the collocation equations of scipy's Radau, by its own solver, to rounding",
+        f"{_SOURCE.format('Radau')}: y' = f(t, y)",
+        FloatStep(_DRIVEN, lambda: _radau(_driven), _PLAIN),
         5,
         None,
     )
@@ -91,12 +111,37 @@ def _step(name: str) -> Map:
     return step
 
 
-def _radau() -> Map:
+def _driven(t: float, z: Any) -> Any:
+    import numpy as np
+
+    return np.array([np.cos(t) / 4 - np.sin(z[1]), z[0]])
+
+
+def _in_time(name: str) -> Map:
+    from scipy import integrate
+
+    solver = getattr(integrate, name)
+
+    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
+        one = solver(_driven, t, [p, q], t + h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
+        one.step()
+        if one.t != t + h:
+            raise RuntimeError("it took a shorter step")
+        return float(one.y[0]), float(one.y[1])
+
+    return step
+
+
+def _without_time(step: Map) -> Map:
+    return lambda p, q, h: step(p, q, 0.0, h)
+
+
+def _radau(field: Any) -> Map:
     import numpy as np
     from scipy.integrate._ivp.radau import MU_COMPLEX, MU_REAL, solve_collocation_system
     from scipy.linalg import lu_factor, lu_solve
 
-    def step(p: float, q: float, h: float) -> tuple[float, float]:
+    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
         z = np.array([p, q])
         jacobian = np.array([[0.0, -np.cos(q)], [1.0, 0.0]])
         real = lu_factor(MU_REAL / h * np.eye(2) - jacobian)
@@ -104,7 +149,7 @@ def _radau() -> Map:
         stages = np.zeros((3, 2))
         for _ in range(12):  # it ends after six turns at most; each call goes on from the last
             _, _, stages, _ = solve_collocation_system(
-                _field, 0.0, z, h, stages, np.full(2, 1e-14), 1e-3, real, complex_, lu_solve
+                field, t, z, h, stages, np.full(2, 1e-14), 1e-3, real, complex_, lu_solve
             )
         return float(p + stages[-1][0]), float(q + stages[-1][1])
 
@@ -179,6 +224,20 @@ from scipy.integrate import {name}
 def step(p, q, h):
     f = lambda t, z: np.array([-np.sin(z[1]), z[0]])
     s = {name}(f, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
+    s.step()
+    return s.y
+"""
+
+
+def _script_in_time(name: str) -> str:
+    return f"""\
+import numpy as np
+from scipy.integrate import {name}
+
+
+def step(p, q, t, h):
+    f = lambda s, z: np.array([np.cos(s) / 4 - np.sin(z[1]), z[0]])
+    s = {name}(f, t, [p, q], t + h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
     s.step()
     return s.y
 """
